@@ -84,7 +84,7 @@ def started(graph: Graph) -> Ros2ControlNode:
     }.items():
         of_controllers.set("arm", name, value)
     graph.levels.set("", LogLevel.ERROR)
-    node = Ros2ControlNode(graph, NodeOptions(parameters=parameters, for_others=of_controllers))
+    node = Ros2ControlNode(graph, NodeOptions(parameters=parameters, parameters_of_others=of_controllers))
     manager = node._manager
     for name in ("broadcaster", "arm"):
         assert manager.load(name)

@@ -69,7 +69,7 @@ class _Fleet:
             CommandInterface("drive", reference_interface) for reference_interface in controller.reference_interfaces()
         ]
         controller.on_activate()
-        controller.chained = True
+        controller.is_chained = True
         return controller
 
     def update(self, count: int) -> float:

@@ -60,7 +60,7 @@ def toured(scale: float, yaw_per_metre: float, noise: float) -> _Tour:
             step()
             steps.append(time.thread_time() - begun)
 
-        toolbox._next_step.callback = timed
+        toolbox._step_guard.callback = timed
         house.drive(test, house.TOUR)
         here = test.robot_pose()
         true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))

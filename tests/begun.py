@@ -13,8 +13,8 @@ BEGUN = "begun"
 
 _PROGRAM = f"""
 import runpy, sys
-from linkwright.process.interruption import end_at_once
-end_at_once()
+from linkwright.process.interruption import end_on_interrupt
+end_on_interrupt()
 print({BEGUN!r}, flush=True)
 sys.argv[:] = sys.argv[1:]
 runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)

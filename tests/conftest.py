@@ -91,7 +91,7 @@ def own_definitions():
     """Definitions of messages that recordings bring along in a test are not known in the next one."""
     yield
     module = sys.modules.get("linkwright.messages.definitions.library")
-    carried = module.LIBRARY._carried if module is not None else {}
+    carried = module.LIBRARY._embedded_sources if module is not None else {}
     if not carried:
         return
     library, classes = module.LIBRARY, sys.modules["linkwright.messages.classes"]._classes

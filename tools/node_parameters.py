@@ -189,7 +189,7 @@ def _plain(value: Any) -> Any:
 
 def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:
     """Start a node, configure it, and close it; an error after the declarations is of no interest."""
-    options = NodeOptions(parameters=dict(parameters), for_others=others, output=lambda _: None)
+    options = NodeOptions(parameters=dict(parameters), parameters_of_others=others, output=lambda _: None)
     running = None
     with suppress(LinkwrightError, OSError):
         running = EXECUTABLES[executable](Graph(), options)

@@ -5,10 +5,10 @@ It is outside the package of the nodes so that Ctrl-C ends it quietly while that
 
 import sys
 
-from linkwright.process.interruption import end_at_once
+from linkwright.process.interruption import end_on_interrupt
 
 if __name__ == "__main__":
-    end_at_once()
+    end_on_interrupt()
     if len(sys.argv) < 3:
         print("usage: python -m linkwright.node_program PACKAGE EXECUTABLE [ARGUMENTS ...]", file=sys.stderr)
         sys.exit(2)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.bag.history import History, _zstd, uncompressed_bytes
-from linkwright.bag.saving import in_simulated_time, last_reset_ns
+from linkwright.bag.saving import last_reset_ns, to_simulated_time
 from linkwright.bag.stillness import Content, content_of
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
 from tests.waiting import wait_until
@@ -300,7 +300,7 @@ def test_messages_between_which_a_clock_ran_alone_have_the_simulated_times_that_
         tick(history, clock, SECOND + clock.ns)
         if number in (333, 667):
             transforms(history, clock, number)
-    moved = [stamp for name, stamp, _ in in_simulated_time(history.part(0, clock.ns)) if name == "/tf"]
+    moved = [stamp for name, stamp, _ in to_simulated_time(history.part(0, clock.ns)) if name == "/tf"]
     assert moved[:2] == [int(4.33 * SECOND), int(7.67 * SECOND)]
 
 

@@ -66,7 +66,7 @@ def test_of_a_packed_file_that_was_cut_off_what_is_whole_is_read(tmp_path: Path)
 def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plain = tmp_path / "plain.mcap.zstd"
     plain.write_text("not compressed")
-    with pytest.raises(LinkwrightError, match="it does not begin with the zstd header"):
+    with pytest.raises(LinkwrightError, match="it does not begin with a zstd header"):
         BagReader(plain)
     (file,) = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
     cut = tmp_path / "cut.db3.zstd"
@@ -78,5 +78,5 @@ def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_files_that_the_metadata_name_and_that_are_missing_are_named(tmp_path: Path) -> None:
     folder = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
     (folder / "bag.db3").unlink()
-    with pytest.raises(LinkwrightError, match=r"files that its metadata.yaml names are missing: bag\.db3$"):
+    with pytest.raises(LinkwrightError, match=r"files that its metadata.yaml lists are missing: bag\.db3$"):
         BagReader(folder)

@@ -16,8 +16,8 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
 from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summary_text
-from linkwright.bag.names import are_of_one_recording
-from linkwright.bag.qos import from_bag, overrides_of, profile_for_playing, profile_for_recording, to_bag
+from linkwright.bag.names import belong_together
+from linkwright.bag.qos import from_library, parse_overrides, profile_for_playing, profile_for_recording, to_library
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import (
@@ -205,12 +205,12 @@ def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None
 def test_files_of_other_names_are_one_recording_where_all_are_named(tmp_path: Path) -> None:
     files = parts(tmp_path, "mcap", ["morning", "noon"])
     with pytest.raises(
-        LinkwrightError, match=r"different recordings according to their names: morning.mcap, noon.mcap"
+        LinkwrightError, match=r"show that they belong to different recordings: morning.mcap, noon.mcap"
     ) as caught:
         BagReader(tmp_path / "drive")
     (diagnostic,) = caught.value.diagnostics
     assert "linkwright view FILE FILE" in str(diagnostic.hint)
-    with BagReader(files[0], parts=files) as bag:
+    with BagReader(files[0], files=files) as bag:
         assert len(list(bag.messages())) == 7
 
 
@@ -235,7 +235,7 @@ def test_a_part_that_is_damaged_is_named(tmp_path: Path) -> None:
     ],
 )
 def test_which_files_are_of_one_recording(names: list[str], are: bool) -> None:
-    assert are_of_one_recording([Path(name) for name in names]) is are
+    assert belong_together([Path(name) for name in names]) is are
 
 
 def test_an_empty_recording(tmp_path: Path) -> None:
@@ -368,7 +368,7 @@ def test_profiles_survive_a_recording() -> None:
         deadline=Duration(seconds=1.5),
         lifespan=Duration(nanoseconds=7),
     )
-    again = from_bag(to_bag(qos))
+    again = from_library(to_library(qos))
     for policy in ("history", "reliability", "durability", "deadline", "lifespan", "liveliness"):
         assert getattr(again, policy) == getattr(qos, policy)
 
@@ -396,12 +396,12 @@ def test_playing_keeps_the_most_that_any_publisher_kept() -> None:
 def test_playing_keeps_as_much_as_rosbag2_where_publishers_did_not_tell() -> None:
     """Those of Fast DDS do not."""
     untold = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
-    assert profile_for_playing([from_bag(to_bag(untold))]) == QoSProfile(depth=10)
+    assert profile_for_playing([from_library(to_library(untold))]) == QoSProfile(depth=10)
 
 
 def test_overrides() -> None:
     document = {"/a": {"reliability": "best_effort", "depth": 3, "deadline": {"sec": 1, "nsec": 5}}}
-    (qos,) = overrides_of(document, "file").values()
+    (qos,) = parse_overrides(document, "file").values()
     assert (qos.reliability, qos.depth) == (ReliabilityPolicy.BEST_EFFORT, 3)
     assert qos.deadline == Duration(nanoseconds=1_000_000_005)
 
@@ -418,7 +418,7 @@ def test_overrides() -> None:
 )
 def test_wrong_overrides_are_told(document: object, message: str) -> None:
     with pytest.raises(LinkwrightError) as error:
-        overrides_of(document, "qos.yaml")
+        parse_overrides(document, "qos.yaml")
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "BAG106"
     assert message in f"{diagnostic.message} {diagnostic.hint}"
@@ -428,8 +428,8 @@ def test_wrong_overrides_are_told(document: object, message: str) -> None:
     ("name", "beginning", "message"),
     [
         ("a.mcap", b"", "the file is empty"),
-        ("a.mcap", b"no recording", "it does not begin with the MCAP header"),
-        ("a.db3", b"no recording", "it does not begin with the SQLite header"),
+        ("a.mcap", b"no recording", "it does not begin with a MCAP header"),
+        ("a.db3", b"no recording", "it does not begin with a SQLite header"),
         ("a.mcap", b"#ROSBAG V2.0\n", "it is a ROS 1 recording"),
         ("a.mcap", b"\x89MCAP0\r\n\x01", "it is a damaged or truncated MCAP file"),
         ("a.mcap", b"\n<!DOCTYPE html><html>", "it is a web page"),
@@ -449,5 +449,5 @@ def test_what_a_file_is_instead_of_a_recording_is_told(
 def test_a_database_of_something_else_is_told(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "a.db3")) as database:
         database.execute("CREATE TABLE cats (name TEXT)")
-    with pytest.raises(LinkwrightError, match="a database without the tables of a recording"):
+    with pytest.raises(LinkwrightError, match="an SQLite database without the tables of a recording"):
         BagReader(tmp_path / "a.db3")

@@ -8,7 +8,7 @@ import pytest
 from linkwright.bridge.mirrors import MirroredPublisher
 from linkwright.bridge.outlet import Outlet
 from linkwright.bridge.side import Side
-from linkwright.bridge.streams import stream_of
+from linkwright.bridge.streams import publisher_stream
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
@@ -403,7 +403,7 @@ def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(
         EndpointKind.PUBLISHER, NodeIdentity("there", "/"), "/odd", "strange_msgs/msg/Odd", QoSProfile(10), bytes(16)
     )
     node = graph.create_node("there").handle
-    publisher = MirroredPublisher(node, info, stream_of(info, keyed=False))
+    publisher = MirroredPublisher(node, info, publisher_stream(info, keyed=False))
     publisher.expects_listeners = expects
     now[0] += seconds - 0.1
     publisher.put(b"first")

@@ -89,7 +89,7 @@ async def world(**parameters):
         yield made
     finally:
         made.bridge.close()
-        await made.bridge._goodbye
+        await made.bridge._cleanup_task
         await made.graph.close()
 
 
@@ -100,7 +100,7 @@ async def test_wherever_its_start_is_broken_off_it_listens_no_longer(steps):
         await asyncio.sleep(0)
     made.bridge.close()
     assert made.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
-    await asyncio.wait([made.bridge._serving])
+    await asyncio.wait([made.bridge._server_task])
     await made.graph.close()
 
 

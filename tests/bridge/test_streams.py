@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.bridge.streams import awaited_streams, can_receive, stream_of
+from linkwright.bridge.streams import awaited_streams, can_receive, publisher_stream
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
@@ -25,13 +25,13 @@ def test_what_is_listened_to_before_its_publisher_comes_is_what_the_publisher_sa
     hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
     subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, message and hashed)
-    assert stream_of(publisher, keyed=True) in awaited_streams(subscription, keyed=True)
+    assert publisher_stream(publisher, keyed=True) in awaited_streams(subscription, keyed=True)
 
 
 def test_types_of_one_name_with_other_hashes_are_other_streams_where_the_type_is_known():
     ours, theirs = (endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", each) for each in ("", OTHER_HASH))
-    assert stream_of(ours, keyed=True) != stream_of(theirs, keyed=True)
-    assert stream_of(ours, keyed=False) == stream_of(theirs, keyed=False)
+    assert publisher_stream(ours, keyed=True) != publisher_stream(theirs, keyed=True)
+    assert publisher_stream(ours, keyed=False) == publisher_stream(theirs, keyed=False)
 
 
 @pytest.mark.parametrize(

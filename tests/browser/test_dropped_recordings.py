@@ -94,7 +94,7 @@ def test_what_is_no_recording_is_said_and_the_page_stays(page: Page, tmp_path: P
     false = tmp_path / "false.mcap"
     false.write_bytes(b"no recording at all")
     drop(page, false)
-    logged = "'false.mcap' cannot be read as a recording: it does not begin with the MCAP header"
+    logged = "'false.mcap' cannot be read as a recording: it does not begin with a MCAP header"
     expect(dialog).to_contain_text(logged)
     dialog.get_by_role("button", name="OK").click()
     until(page, "lw.timeline?.live && lw.robot")

@@ -102,4 +102,4 @@ def test_in_place_of_an_image_stands_why_there_is_none(shown):
     page = shown(1280, 800, scans=False)
     switch(page, "cut/compressed")
     notice = page.locator(".image-notice", has_text="The image cannot be read")
-    notice.get_by_text("The image's file is truncated").wait_for()
+    notice.get_by_text("The image file is truncated").wait_for()

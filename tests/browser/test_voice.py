@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import Browser, Page, Playwright, expect
 
 from linkwright.messages import get_message
-from linkwright.speech.enrolled.words import TAKES, Take, Words, words_path
+from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Take, Words, words_path
 from linkwright.speech.sound.spectra import BANDS
 from tests.browser.conftest import launched, until
 from tests.browser.live import LiveViewer, configuration
@@ -198,7 +198,7 @@ def test_who_is_not_understood_enrols_words_where_they_stand(
     rng = np.random.default_rng(1)
     words = Words()
     for name in ("stop", "forward"):
-        for _ in range(TAKES):
+        for _ in range(RECOMMENDED_TAKES):
             words.add(name, Take(rng.uniform(1e3, 1e6, (40, BANDS)), np.ones(BANDS)))
     words.write(words_path())
     page.keyboard.down("v")

@@ -187,7 +187,7 @@ def test_the_camera_looks_at_the_world_and_not_at_a_robot_that_fell_which_is_tol
 def test_a_robot_that_touches_nothing_is_told_over_the_scene_until_that_is_closed(live, open_page):
     viewer = described(live)
     page = open_page(viewer)
-    falls = phrase("no link of '{name}' has a <collision>, so it touches nothing and falls", name="seen")
+    falls = phrase("no link of '{name}' has a <collision>, so the model has no contacts and falls", name="seen")
     small = phrase("links without a mass")
     both = [Diagnostic(code, text, severity=Severity.WARNING) for code, text in (("SDF172", small), ("SIM143", falls))]
     viewer.run(lambda: viewer.viewer.show_diagnostics(both))

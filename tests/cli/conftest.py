@@ -15,7 +15,7 @@ def in_graph(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Graph], obj
     """Takes a function that puts nodes into the graph that the next commands look at; nothing outside is joined."""
 
     def use(make: Callable[[Graph], object]) -> None:
-        async def join(graph: Graph, _spin_time: float | None, *, only_looks: bool = False) -> None:
+        async def join(graph: Graph, _spin_time: float | None, *, read_only: bool = False) -> None:
             make(graph)
 
         monkeypatch.setattr(session, "join_others", join)

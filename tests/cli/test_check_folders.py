@@ -118,7 +118,7 @@ def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
     assert find_targets([here / "src"]).packages == (here / "src" / "one", here / "src" / "two")
     assert find_targets([here / "src/one/urdf"]).packages == (here / "src" / "one",)
     assert find_targets([here / "src/one/urdf/r.urdf"]).packages == ()
-    assert find_targets([here / "src/one/urdf/r.urdf"], around=True).packages == (here / "src" / "one",)
+    assert find_targets([here / "src/one/urdf/r.urdf"], with_packages=True).packages == (here / "src" / "one",)
 
 
 def test_a_file_is_judged_without_its_package_unless_asked(here, capsys):

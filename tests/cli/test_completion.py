@@ -16,7 +16,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.cli.command import help_texts
 from linkwright.cli.completion import graph_names
-from linkwright.cli.completion.candidates import complete, divided
+from linkwright.cli.completion.candidates import complete, split_line
 from linkwright.cli.completion.scripts import FILES, script, shell_script
 from linkwright.graph import Graph
 from linkwright.messages import get_message
@@ -50,7 +50,7 @@ def _workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def after(line: str) -> list[str]:
-    return complete(divided(line))
+    return complete(split_line(line))
 
 
 def test_commands() -> None:
@@ -137,8 +137,8 @@ def test_nothing_heavy_is_loaded() -> None:
     """A completion is there in less than a tenth of a second."""
     line = "ros2 launch arm a.launch.py "
     program = (
-        "import sys\nfrom linkwright.cli.completion.candidates import complete, divided\n"
-        f"complete(divided({line!r})); print(*sorted(sys.modules), sep='\\n')"
+        "import sys\nfrom linkwright.cli.completion.candidates import complete, split_line\n"
+        f"complete(split_line({line!r})); print(*sorted(sys.modules), sep='\\n')"
     )
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
     heavy = ("argparse", "asyncio", "linkwright.graph", "linkwright.launch", "linkwright.messages", "numpy", "yaml")
@@ -242,6 +242,6 @@ def test_programs_of_ros_that_are_not_here_say_what_to_use() -> None:
     environment = {**os.environ, "LINKWRIGHT_SHELL": "/nowhere", "LINKWRIGHT_LANG": "en"}
     done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False, env=environment)
     assert done.stdout.split("\n") == ["127", "other no_such_program", "9", ""]
-    assert "there is no command 'rosdep'" in done.stderr
+    assert "command 'rosdep' does not exist" in done.stderr
     assert "put the sources of a missing package into the workspace's src folder" in done.stderr
     assert "which uses Linkwright's simulation" in done.stderr

@@ -48,7 +48,7 @@ def test_ctrl_c_leaves_what_is_complete(words, tmp_path, capsys, monkeypatch):
 
     monkeypatch.setattr(DatasetFolder, "add", interrupted)
     assert main([*words, "-n", "5"]) == INTERRUPTED
-    assert "2 of 5 images were made" in capsys.readouterr().err
+    assert "2 of 5 images were rendered" in capsys.readouterr().err
     assert json.loads((tmp_path / "set/dataset.json").read_text())["images"] == 2
 
 

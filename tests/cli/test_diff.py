@@ -210,7 +210,7 @@ def test_what_git_does_not_have_is_trouble(committed, capsys, words, code):
 def test_without_git_one_error_says_so(package, capsys, monkeypatch):
     monkeypatch.setenv("PATH", "")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 2
-    assert "error[CLI341]: there is no program git" in capsys.readouterr().err
+    assert "error[CLI341]: git is not installed" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -127,7 +127,7 @@ def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
     with full_disk(120_000), pytest.raises(LinkwrightError) as caught:
         fill()
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["BAG108"]
-    assert " stops: " in str(caught.value)
+    assert " stopped: " in str(caught.value)
     writer.write("/chatter", 1, data)  # nothing more is written, and nothing said again
     writer.flush()
     writer.close()
@@ -153,7 +153,7 @@ def test_bag_record_says_once_that_the_disk_is_full(
     with full_disk(20_000):
         assert main(["bag", "record", "-a", "-o", str(tmp_path / "bag")]) == 1
     printed = capsys.readouterr().err
-    assert printed.count(" stops: File too large") == 1
+    assert printed.count(" stopped: File too large") == 1
     assert "Traceback" not in printed
     with BagReader(tmp_path / "bag") as bag:
         list(bag.messages())

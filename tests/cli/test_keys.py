@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.cli.bag.keys import SPACE, UP, listening
+from linkwright.cli.bag.keys import SPACE, UP, reading_keys
 from tests.waiting import eventually
 
 pty = pytest.importorskip("pty")
@@ -31,7 +31,7 @@ async def test_keys_do_what_they_stand_for_and_the_terminal_is_as_it_was(keyboar
     before = termios.tcgetattr(sys.stdin)
     pressed: list[str] = []
     actions = {SPACE: lambda: pressed.append("space"), UP: lambda: pressed.append("up")}
-    with listening(actions) as listens:
+    with reading_keys(actions) as listens:
         assert listens
         for key in (SPACE, "x", UP):
             os.write(keyboard, key.encode())
@@ -43,12 +43,12 @@ async def test_keys_do_what_they_stand_for_and_the_terminal_is_as_it_was(keyboar
 
 async def test_in_the_background_the_terminal_is_left_alone(keyboard: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
-    with listening({}) as listens:
+    with reading_keys({}) as listens:
         assert not listens
 
 
 async def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     with Path(os.devnull).open() as nothing:  # noqa: ASYNC230  # which does not block
         monkeypatch.setattr(sys, "stdin", nothing)
-        with listening({}) as listens:
+        with reading_keys({}) as listens:
             assert not listens

@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
-from linkwright.diagnostics.render import MOST_PRINTED
+from linkwright.diagnostics.render import MAX_PRINTED
 from linkwright.urdf import tree_text
 from linkwright.urdf.listing import DEEPEST
 from linkwright.urdf.model import Joint, Link, Robot
@@ -119,7 +119,7 @@ def test_of_many_findings_the_errors_and_a_number_are_printed() -> None:
     stream = io.StringIO()
     print_diagnostics(found, stream)
     lines = stream.getvalue().splitlines()
-    assert len(lines) == MOST_PRINTED + 1
+    assert len(lines) == MAX_PRINTED + 1
     assert sum("mistake" in line for line in lines) == 3
     assert lines[-1] == "... and 1,503 more findings"
 

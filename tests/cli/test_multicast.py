@@ -73,9 +73,9 @@ def test_a_system_that_refuses_is_told(monkeypatch, capsys):
 def test_greetings_are_counted_by_computer_until_the_table_is_taken():
     counts = Greetings("desk", published=2, sent=1)
     for host in ("robot", "desk", "robot", "laptop"):
-        counts.heard_on_topic(greeting(host))
-    counts.heard_by_multicast("hello, it's me robot")
-    counts.heard_by_multicast("")
+        counts.count_topic_greeting(greeting(host))
+    counts.count_multicast_greeting("hello, it's me robot")
+    counts.count_multicast_greeting("")
     assert counts.take_table("/t", 0.5).splitlines() == [
         "MULTIMACHINE COMMUNICATION SUMMARY",
         "Topic: /t, Published Msg Count: 2",

@@ -297,8 +297,8 @@ def test_license_texts_are_complete(identifier: str) -> None:
     ("words", "message"),
     [
         ([], "the package has no license yet, so no LICENSE is written"),
-        (["--license", "mit"], "no text is known for the license 'mit'"),
-        (["--license", "Proprietary"], "no text is known for the license 'Proprietary'"),
+        (["--license", "mit"], "Linkwright has no text for the license 'mit'"),
+        (["--license", "Proprietary"], "Linkwright has no text for the license 'Proprietary'"),
     ],
 )
 def test_a_license_without_a_text_is_a_warning(

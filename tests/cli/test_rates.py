@@ -33,7 +33,7 @@ def test_a_window_forgets():
         window.add(now)
     spread = window.spread()
     assert spread is not None
-    assert (spread.count, spread.least, spread.most) == (2, 10 * MS, 100 * MS)
+    assert (spread.count, spread.minimum, spread.maximum) == (2, 10 * MS, 100 * MS)
 
 
 def test_time_that_goes_back_begins_anew():

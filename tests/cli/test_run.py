@@ -119,7 +119,7 @@ def test_the_viewer(run: Run) -> None:
     ("words", "message", "hint"),
     [
         (["arm", "wav"], "package 'arm' has no executable 'wav'", "did you mean 'wave'?"),
-        (["amr", "wave"], "package 'amr' of node executable 'wave' not found", "did you mean 'arm'?"),
+        (["amr", "wave"], "package 'amr' of node executable 'wave' was not found", "did you mean 'arm'?"),
         (["tf2_ros", "tf2_ecko"], "package 'tf2_ros' has no executable 'tf2_ecko'", "did you mean 'tf2_echo'"),
     ],
 )

@@ -243,9 +243,9 @@ def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
         (["/joint_states", "--field", "header.stmp"], "did you mean 'stamp'?"),
         (["/joint_states", "--field", "header..stamp"], "Invalid field 'header..stamp'"),
         (["/joint_states", "sensor_msgs/msg/JointStat"], "did you mean 'JointState'"),
-        (["/joint_states", "--filter", "x.data"], "a filter has no name 'x'"),
+        (["/joint_states", "--filter", "x.data"], "a filter cannot use the name 'x'"),
         (["/joint_states", "--filter", "m.__class__"], "a filter cannot use '__class__'"),
-        (["/joint_states", "--filter", "m.nothing > 1"], "the filter failed"),
+        (["/joint_states", "--filter", "m.nothing > 1"], "the filter cannot be evaluated for a message"),
         (["/joint_states", "--filter", "m."], "the filter is not a Python expression"),
     ],
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.control.hardware.description import HardwareDescription, hardware_of
+from linkwright.control.hardware.description import HardwareDescription, hardware_from_robot
 from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
 from linkwright.control.manager.exchange import DirectExchange
 from linkwright.control.manager.manager import ControllerManager
@@ -52,7 +52,7 @@ def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
     """The hardware in a description, and what is wrong with it."""
     reading = DescriptionLibrary().read(text)
     assert reading.robot is not None
-    found, findings = hardware_of(reading.robot)
+    found, findings = hardware_from_robot(reading.robot)
     return found, [f"{finding.code} {finding.message}" for finding in findings]
 
 

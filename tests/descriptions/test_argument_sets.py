@@ -76,7 +76,7 @@ def test_each_choice_of_a_launch_argument_is_a_set(workspace: Path) -> None:
 def test_a_launch_argument_without_values_stays_open(workspace: Path) -> None:
     text = launch_file()
     (found,) = sets(workspace, "arm/launch/view.launch.py", text)
-    assert found.open == ("prefix",)
+    assert found.runtime_names == ("prefix",)
     assert not found.is_complete
 
 
@@ -233,7 +233,7 @@ def test_a_variable_of_the_environment_has_the_value_that_is_written_for_it(
     text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
         command="$(find xacro)/xacro '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/></launch>"""
     (found,) = sets(workspace, "arm/launch/view.launch", text)
-    assert (found.values, found.open) == (known, is_open)
+    assert (found.values, found.runtime_names) == (known, is_open)
 
 
 def test_a_share_folder_in_the_middle_of_a_path_is_no_file_of_it(workspace: Path) -> None:
@@ -311,7 +311,7 @@ def content(urdf_arguments={{}}):
 )
 def test_a_helper_whose_callers_are_elsewhere_gives_nothing_that_is_known(workspace: Path, text: str) -> None:
     (found,) = sets(workspace, "user/launch/helper.py", HEAD + text)
-    assert "" in found.open
+    assert "" in found.runtime_names
     assert not found.is_complete
 
 
@@ -423,7 +423,7 @@ def setup(a0):
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': 'a', 'name': a27}})
 """
     found = sets(workspace, "arm/launch/again.launch.py", text)
-    assert [(dict(each.values), each.open) for each in found] == [({"prefix": "a"}, ("name",))]
+    assert [(dict(each.values), each.runtime_names) for each in found] == [({"prefix": "a"}, ("name",))]
 
 
 @pytest.mark.parametrize(("function", "prefix"), [("describe", "a b"), ("xacro.process_file", '"a b"')])

@@ -14,7 +14,7 @@ from linkwright.diagnostics.extras import EXTRAS, install_hint, missing_extra
 from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
 from linkwright.images import BadImageError
-from linkwright.images.image_files import file_pixels
+from linkwright.images.image_files import decode_file
 from linkwright.lint.engine import examine
 from linkwright.urdf.diagram import render
 from tests import toml_files
@@ -87,7 +87,7 @@ def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
 def test_an_image_display_asks_for_what_unpacks_files(without):
     without("PIL")
     with pytest.raises(BadImageError, match=r"\[image\]"):
-        file_pixels(np.frombuffer(b"\x89PNG\r\n\x1a\n", np.uint8))
+        decode_file(np.frombuffer(b"\x89PNG\r\n\x1a\n", np.uint8))
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ def test_a_source_that_is_gone_is_told_of(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: gone)
     assert str(install_hint("image")) == (
         "run pip install 'PATH_TO_LINKWRIGHT[image]', and replace PATH_TO_LINKWRIGHT with the path of a checkout or "
-        f"wheel of Linkwright: '{tmp_path / 'gone'}', from which it was installed, no longer exists"
+        f"wheel of Linkwright, because '{tmp_path / 'gone'}', from which it was installed, no longer exists"
     )
 
 

@@ -116,7 +116,10 @@ def test_a_domain_that_may_not_work():
 def test_no_state_publisher_at_all():
     seen = replace(WELL, transforms=(), endpoints=())
     found = only(seen, "DOC301")
-    assert found.message == "there is no transform of 3 frames, 'wheel', 'mast', 'copy': no node publishes transforms"
+    assert (
+        found.message
+        == "there is no transform of 3 frames, 'wheel', 'mast', 'copy', because no node publishes transforms"
+    )
 
 
 def test_nobody_publishes_joint_states():
@@ -150,7 +153,7 @@ def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named()
 
 def test_a_static_transform_was_never_published():
     found = only(without(WELL, "mast"), "DOC304")
-    assert found.message == "there is no transform of frame 'mast': no static transform of it was published"
+    assert found.message == "there is no transform of frame 'mast', because no static transform was published for it"
     assert "'stand'" in found.notes[0].message
 
 
@@ -331,7 +334,7 @@ def test_velocities_that_nobody_takes():
     assert (
         found.message == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
     )
-    assert "running" in found.hint
+    assert "controller runs in the same ROS_DOMAIN_ID" in found.hint
 
 
 def test_velocities_that_somebody_takes_elsewhere():
@@ -362,7 +365,10 @@ def test_a_misspelt_command_is_told_once():
 def test_two_drivers_on_one_topic():
     seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
     found = only(replace(seen, disputed=(DriversSeen("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
-    assert found.message == "two nodes drive the robot: '/planner', '/teleop' publish velocities on '/cmd_vel'"
+    assert (
+        found.message
+        == "two nodes drive the robot: '/planner', '/teleop' publish contradictory velocities on '/cmd_vel'"
+    )
     assert codes(seen) == []
 
 
@@ -379,7 +385,9 @@ def test_quality_of_service_that_does_not_match_names_policy_and_sides():
     )
     assert codes(replace(seen, over_zenoh=True)) == []  # there it gets them
     found = only(seen, "DOC203")
-    assert found.message == ("'/rviz' gets nothing from '/lidar' on topic '/scan': their quality of service differs")
+    assert found.message == (
+        "'/rviz' receives nothing from '/lidar' on topic '/scan', because their quality of service is incompatible"
+    )
     assert [note.message for note in found.notes] == [
         "reliability: '/lidar' offers BEST_EFFORT, '/rviz' requests RELIABLE",
         "durability: '/lidar' offers VOLATILE, '/rviz' requests TRANSIENT_LOCAL",
@@ -409,7 +417,7 @@ def test_a_service_that_nobody_serves():
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
         endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
     )
-    assert "'/map' has that type" in only(seen, "DOC206").hint
+    assert "service '/map' has the same type" in only(seen, "DOC206").hint
 
 
 def test_a_service_of_another_type():
@@ -469,7 +477,7 @@ def test_stamps_that_were_never_set():
 def test_managed_nodes_that_wait():
     found = only(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
     assert found.message == "managed node '/camera' is inactive, so it does nothing yet"
-    assert found.hint == "bring it up: ros2 lifecycle set /camera activate"
+    assert found.hint == "request the next transition: ros2 lifecycle set /camera activate"
 
 
 def test_errors_come_before_warnings():

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.geometry.arrays import matrix_from_pose, row_from_pose
-from linkwright.geometry.shapes import Bounds, Box, Capsule, Cylinder, Sphere, bounds_of, placement, union
+from linkwright.geometry.shapes import Bounds, Box, Capsule, Cylinder, Sphere, placement, shape_bounds, union
 from linkwright.geometry.single import Pose
 
 vectors = st.tuples(*[st.floats(-10, 10)] * 3)
@@ -18,10 +18,10 @@ UNIT = Bounds((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
 
 def test_the_box_around_each_shape():
-    assert bounds_of(Box((1, 2, 3))).high == (0.5, 1, 1.5)
-    assert bounds_of(Cylinder(1, 4)).high == (1, 1, 2)
-    assert bounds_of(Capsule(1, 4)).high == (1, 1, 3)
-    assert bounds_of(Sphere(2)) == ((-2, -2, -2), (2, 2, 2))
+    assert shape_bounds(Box((1, 2, 3))).high == (0.5, 1, 1.5)
+    assert shape_bounds(Cylinder(1, 4)).high == (1, 1, 2)
+    assert shape_bounds(Capsule(1, 4)).high == (1, 1, 3)
+    assert shape_bounds(Sphere(2)) == ((-2, -2, -2), (2, 2, 2))
 
 
 @given(vectors, vectors, vectors, vectors)

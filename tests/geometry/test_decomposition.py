@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.geometry.decomposition import THICKNESS, convex_pieces, thicken
-from linkwright.geometry.polygon import triangulated
+from linkwright.geometry.polygon import triangulate
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 BOX = np.array(
@@ -41,7 +41,7 @@ def test_too_many_plates_are_the_hull():
 
 def test_a_face_that_is_not_convex_is_triangles():
     outline = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
-    triangles = triangulated(outline)
+    triangles = triangulate(outline)
     assert len(triangles) == 4
     flat = np.array([[x, y, 0.0] for x, y in outline])
     assert len(convex_pieces(flat, np.array(triangles), 100)) == 4
@@ -56,7 +56,7 @@ def test_what_is_flat_gets_a_thickness():
 def test_a_polygon_either_way_round_keeps_its_area():
     star = [(0.0, 0.0), (4.0, 1.0), (5.0, 5.0), (3.0, 2.0), (0.0, 4.0), (1.5, 1.5)]
     for points in (star, star[::-1], [*star, star[0]]):
-        triangles = triangulated(points)
+        triangles = triangulate(points)
         corners = np.array(points)
         area = sum(
             np.cross(np.append(corners[b] - corners[a], 0), np.append(corners[c] - corners[a], 0))[2] / 2

@@ -110,30 +110,30 @@ CASES = {
         OBJ.replace("v 0 0 0", "v 0 0").replace("1 0 0", "1 0").replace("0 1 0", "0 1"),
         "line 1: 3 numbers are needed, but there are 2",
     ),
-    "index.obj": (OBJ.replace("f 1 2 3", "f 1 2 9"), "line 4: there is no vertex 9; the mesh has 3"),
-    "face.obj": (OBJ.replace("f 1 2 3", "f 1 2 c"), "line 4: 'c' is not the number of a vertex"),
+    "index.obj": (OBJ.replace("f 1 2 3", "f 1 2 9"), "line 4: there is no vertex 9: the mesh has 3 vertices"),
+    "face.obj": (OBJ.replace("f 1 2 3", "f 1 2 c"), "line 4: 'c' is not a vertex number"),
     "unclosed.dae": (COLLADA.replace("</mesh>", ""), "line 10: '</geometry>' does not close '<mesh>'"),
-    "cut.dae": (COLLADA[:500], "line 8: this tag is never finished"),
+    "cut.dae": (COLLADA[:500], "line 8: this tag has no closing '>'"),
     "robot.dae": ("<robot/>", "line 1: the file begins with <robot>, not with <COLLADA>"),
     "word.dae": (COLLADA.replace("0 0 0 1 0 0", "0 0 O 1 0 0"), "line 5: 'O' in <float_array> is not a finite number"),
     "infinite.dae": (COLLADA.replace("0 0 0 1 0 0", "0 0 INF 1 0 0"), "line 5: 'INF' in <float_array>"),
     "few.dae": (COLLADA.replace("1 0 0 0 1 0", "1 0 0"), "line 5: <float_array> has 6 numbers, but 9 are needed"),
-    "index.dae": (COLLADA.replace("<p>0 1 2", "<p>0 1 7"), "line 9: there is no vertex 7; the mesh has 3"),
+    "index.dae": (COLLADA.replace("<p>0 1 2", "<p>0 1 7"), "line 9: there is no vertex 7: the mesh has 3 vertices"),
     "index_word.dae": (COLLADA.replace("<p>0 1 2", "<p>0 1 b"), "line 9: 'b' in <p> is not an index"),
     "source.dae": (
         COLLADA.replace('source="#p"', 'source="#q"'),
-        "line 8: <input> names '#q', which is not in the file",
+        "line 8: <input> refers to '#q', which is not in the file",
     ),
-    "url.dae": (COLLADA.replace('url="#g"', 'url="#h"'), "line 11: <instance_geometry> names '#h'"),
-    "scene.dae": (COLLADA.replace('url="#s"', 'url="#t"'), "line 13: <instance_visual_scene> names '#t'"),
+    "url.dae": (COLLADA.replace('url="#g"', 'url="#h"'), "line 11: <instance_geometry> refers to '#h'"),
+    "scene.dae": (COLLADA.replace('url="#s"', 'url="#t"'), "line 13: <instance_visual_scene> refers to '#t'"),
     "offset.dae": (COLLADA.replace(' offset="0"', ""), "line 9: <input> has no attribute 'offset'"),
     "cut.glb": (glb()[:-20], "its header declares "),
     "tiny.glb": (b"glTF", "it ends after 4 bytes, but the header of a .glb has 20"),
     "letters.glb": (glb().replace(b"glTF", b"glTX", 1), "it does not begin with the letters glTF"),
-    "old.glb": (b"glTF\x01" + glb()[5:], "it is glTF 1, but only glTF 2 is read"),
+    "old.glb": (b"glTF\x01" + glb()[5:], "it is glTF 1, but only glTF 2 is supported"),
     "json.glb": (glb(text=b'{"asset": '), "its JSON cannot be read: "),
     "list.gltf": ("[]", "its JSON is not an object"),
-    "form.gltf": ('{"asset": {"version": "2.0"}, "meshes": [{}]}', "its JSON does not have the form of glTF"),
+    "form.gltf": ('{"asset": {"version": "2.0"}, "meshes": [{}]}', "its JSON does not have the structure of glTF"),
     "nan.glb": (glb(corners=[[0, 0, NAN], *CORNERS[1:]]), "a coordinate is not a finite number"),
     "corner.glb": (glb(indices=(0, 1, 70)), "a triangle refers to vertex 70, but there are 3"),
     "accessor.glb": (
@@ -151,7 +151,7 @@ CASES = {
     ),
     "beside.gltf": (
         json.dumps(document() | {"buffers": [{"byteLength": 42, "uri": "none.bin"}]}),
-        "the file 'none.bin' that it references does not exist",
+        "it refers to the file 'none.bin', which does not exist",
     ),
 }
 
@@ -166,7 +166,7 @@ def test_a_broken_file_is_refused_in_its_own_words(name: str, tmp_path: Path) ->
     with pytest.raises(BadMeshError) as exported:
         read_parts(path, resolver=file_resolver(str(path)))
     assert expected in read.value.diagnostics[0].message
-    assert str(exported.value.why) in read.value.diagnostics[0].message
+    assert str(exported.value.reason) in read.value.diagnostics[0].message
 
 
 @pytest.mark.parametrize(

@@ -29,8 +29,8 @@ def image_of(folder: Path, name: str, data: bytes) -> bytes | None:
     (folder / "m.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
     (folder / name).write_bytes(data)
     (part,) = read_parts(folder / "m.obj", resolver=file_resolver(str(folder / "m.obj")))
-    assert part.own is not None
-    return part.own.image
+    assert part.file_material is not None
+    return part.file_material.image
 
 
 def test_a_png_is_not_encoded_again(tmp_path: Path) -> None:

@@ -13,10 +13,10 @@ from linkwright.geometry.single import (
     axis_and_angle,
     length,
     normalized,
+    pose_quaternion,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
-    quaternion_of,
     rotate,
     rotation_from_z,
     rpy_from_quaternion,
@@ -54,8 +54,8 @@ def test_the_pitch_of_no_rotation_has_the_sign_urdfdom_prints():
 
 
 def test_a_poses_own_quaternion_counts():
-    assert quaternion_of(Pose(quaternion=(1, 0, 0, 0))) == (1, 0, 0, 0)
-    assert quaternion_of(Pose(rpy=(pi, 0, 0))) == pytest.approx((1, 0, 0, 0))
+    assert pose_quaternion(Pose(quaternion=(1, 0, 0, 0))) == (1, 0, 0, 0)
+    assert pose_quaternion(Pose(rpy=(pi, 0, 0))) == pytest.approx((1, 0, 0, 0))
 
 
 @given(angles, angles, angles)

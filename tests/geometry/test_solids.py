@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkwright.geometry.polyhedron import polyhedron_properties
-from linkwright.geometry.shapes import volume_of
+from linkwright.geometry.shapes import shape_volume
 from linkwright.geometry.solids import shape_properties
 from linkwright.urdf import Box, Capsule, Cylinder, Sphere
 
@@ -78,15 +78,15 @@ def test_a_capsule_without_cylinder_is_a_sphere():
 @pytest.mark.parametrize("shape", [Box((1, 0, 1)), Box((1, -1, 1)), Sphere(0), Cylinder(-1, 1), Capsule(1, -1)])
 def test_a_size_that_is_not_positive_has_no_mass(shape):
     assert shape_properties(shape, 1000.0).mass == 0
-    assert volume_of(shape) == 0
+    assert shape_volume(shape) == 0
 
 
 @given(sizes, sizes, sizes)
 def test_the_volume_is_the_mass_at_a_density_of_one(a, b, c):
     for shape in (Box((a, b, c)), Cylinder(a, b), Capsule(a, b), Sphere(a)):
-        assert volume_of(shape) == pytest.approx(shape_properties(shape).mass)
+        assert shape_volume(shape) == pytest.approx(shape_properties(shape).mass)
 
 
 @pytest.mark.parametrize("shape", [Sphere(1e308), Cylinder(1e308, 1.0), Capsule(1e308, 1.0), Box((1e308,) * 3)])
 def test_a_volume_beyond_all_numbers_is_infinite(shape):
-    assert volume_of(shape) == float("inf")
+    assert shape_volume(shape) == float("inf")

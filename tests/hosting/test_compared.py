@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.descriptions.pairs import pair_of
+from linkwright.descriptions.pairs import file_pair
 from linkwright.hosting.compared import ComparedView
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
@@ -47,7 +47,7 @@ def test_what_cannot_be_compared_is_said(words, status, message, capsys):
 
 async def test_an_old_file_that_is_broken_is_waited_for_as_a_new_one_is(tmp_path):
     out, err = io.StringIO(), io.StringIO()
-    pair = pair_of(tmp_path / "broken.urdf", tmp_path / "good.urdf", {})
+    pair = file_pair(tmp_path / "broken.urdf", tmp_path / "good.urdf", {})
     view = ComparedView(pair, HostOptions(port=0, open_browser=False, network=False), LaunchLog(out, err))
     running = asyncio.create_task(view.run(None))
     await eventually(lambda: "broken.urdf:3:1" in err.getvalue() and "Viewer: " in out.getvalue(), what=err.getvalue)

@@ -42,7 +42,7 @@ def test_no_file() -> None:
 
 def test_remarks() -> None:
     messages = [finding.message for finding in read_viewer_config(["--display-confg", "-l", "-d"])[1]]
-    assert messages == ["argument '--display-confg' of rviz2 is unknown", "argument '-d' of rviz2 needs a value"]
+    assert messages == ["rviz2 has no argument '--display-confg'", "argument '-d' of rviz2 needs a value"]
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-d", "x.rviz", "-h"]])

@@ -171,7 +171,8 @@ async def test_a_world_that_cannot_be_simulated_is_told(tmp_path):
     async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
         (tmp_path / "a.world").write_text(world(FALLING, never))
-        await it.until("the simulation continues unchanged: ")
+        await it.until("; the simulation continues unchanged")
+        assert "the changed world was not loaded: " in it.err.getvalue()
         assert "a time step of -1.0 s" in it.err.getvalue()
 
 

@@ -131,11 +131,11 @@ def test_unknown_encodings_are_refused():
 
 def test_a_large_image_is_thinned():
     decoded = DecodedImage(np.arange(100, dtype=np.uint8).reshape(10, 10))
-    assert decoded.thinned(100) is decoded
-    thinned = decoded.thinned(30)
+    assert decoded.subsample(100) is decoded
+    thinned = decoded.subsample(30)
     assert (thinned.width, thinned.height) == (5, 5)
     assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
-    odd = DecodedImage(np.zeros((5, 5), np.uint8)).thinned(4)
+    odd = DecodedImage(np.zeros((5, 5), np.uint8)).subsample(4)
     assert (odd.width, odd.height) == (2, 2)
 
 
@@ -143,7 +143,7 @@ def test_a_large_image_is_thinned():
 def test_a_reduced_image_has_the_mean_of_squares(step):
     pixels = np.full((40, 65, 3), 255, np.uint8)
     pixels[:2, :2, 1] = [[0, 10], [20, 30]]
-    reduced = DecodedImage(pixels).reduced(step)
+    reduced = DecodedImage(pixels).reduce_by(step)
     step = min(step, 16)
     assert (reduced.height, reduced.width) == (40 // step, 65 // step)
     assert reduced.pixels[0, 0].tolist() == [255, pixels[:step, :step, 1].sum() // step**2, 255]
@@ -152,8 +152,8 @@ def test_a_reduced_image_has_the_mean_of_squares(step):
 
 def test_an_image_is_not_reduced_to_nothing():
     decoded = DecodedImage(np.zeros((2, 9), np.uint8))
-    assert decoded.reduced(1) is decoded
-    assert decoded.reduced(3) is decoded
+    assert decoded.reduce_by(1) is decoded
+    assert decoded.reduce_by(3) is decoded
 
 
 def test_grey_and_translucent_images_have_rgb():

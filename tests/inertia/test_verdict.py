@@ -35,27 +35,31 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
 @pytest.mark.parametrize(
     ("block", "standing", "words"),
     [
-        (inertial(), Standing.FITS, "fits its shapes"),
+        (inertial(), Standing.FITS, "it fits its shapes"),
         (inertial(mass=-1), Standing.IMPOSSIBLE, "the mass is not positive"),
         (inertial(moment=-1), Standing.IMPOSSIBLE, "the inertia tensor is not positive definite"),
         (inertial(mass=1e40), Standing.IMPOSSIBLE, "its numbers are out of range"),
         (
             inertial(mass=400, moment=1.6),
             Standing.IMPOSSIBLE,
-            "denser than any solid: osmium has 22 600 kg/m3",
+            "it is denser than any solid: osmium has 22 600 kg/m3",
         ),
-        (inertial(mass=0.004, moment=0.000016), Standing.DOUBTFUL, "lighter than air"),
-        (inertial(moment=16), Standing.DOUBTFUL, "its moments are 1 000 times those of a solid of its shapes"),
-        (inertial(moment=0.00016), Standing.DOUBTFUL, "its moments are 1/100 of those of a solid of its shapes"),
-        (inertial(moment=0.064), Standing.ROUGH, "its moments are 4 times those of a solid of its shapes"),
-        (inertial(origin="0 0.5 0"), Standing.DOUBTFUL, "its centre of mass is 500 mm from that of its shapes"),
-        (inertial(origin="0 0.05 0"), Standing.ROUGH, "its centre of mass is 50 mm from that of its shapes"),
+        (inertial(mass=0.004, moment=0.000016), Standing.DOUBTFUL, "it is lighter than air"),
+        (inertial(moment=16), Standing.DOUBTFUL, "its moments are 1 000 times the moments of a solid with its shapes"),
+        (
+            inertial(moment=0.00016),
+            Standing.DOUBTFUL,
+            "its moments are 1/100 of the moments of a solid with its shapes",
+        ),
+        (inertial(moment=0.064), Standing.ROUGH, "its moments are 4 times the moments of a solid with its shapes"),
+        (inertial(origin="0 0.5 0"), Standing.DOUBTFUL, "its centre of mass is 500 mm from the centre of its shapes"),
+        (inertial(origin="0 0.05 0"), Standing.ROUGH, "its centre of mass is 50 mm from the centre of its shapes"),
         ("", Standing.MISSING, "it has no <inertial>"),
     ],
 )
 def test_a_ball(tmp_path, block, standing, words):
     verdict = verdict_on(tmp_path, block)
-    assert (verdict.standing, verdict.words) == (standing, words)
+    assert (verdict.standing, verdict.reason) == (standing, words)
 
 
 def test_the_worst_is_said_and_sorts_first(tmp_path):
@@ -71,7 +75,7 @@ def test_a_mass_of_next_to_nothing_in_a_large_shape_has_a_density_of_zero(tmp_pa
     large = BALL.replace("0.1", "1e5")
     verdict = verdict_on(tmp_path, inertial(mass=1e-320, moment=1.0), large)
     assert (verdict.standing, verdict.density) == (Standing.DOUBTFUL, 0.0)
-    assert verdict.words.startswith("lighter than air")
+    assert verdict.reason.startswith("it is lighter than air")
 
 
 def test_a_part_of_the_shapes_tells_nothing(tmp_path):
@@ -93,4 +97,4 @@ def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
 def test_a_link_without_an_inertial_that_needs_none(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/></joint><link name="b">{}</link>'
     verdict = verdict_on(tmp_path, "", more=joint.format(inertial()))
-    assert verdict.words == "it is fixed to 'b', which has a mass"
+    assert verdict.reason == "it is fixed to 'b', which has a mass"

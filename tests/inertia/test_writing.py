@@ -164,7 +164,7 @@ REFUSED = {
 def test_what_xacro_writes_is_refused(write, why):
     before = f"{XACRO}{REFUSED[why]}</robot>"
     written, text = write(before, name="r.xacro")
-    assert written.refused == {"a": why}
+    assert written.refusals == {"a": why}
     assert written.links == ()
     assert text == before
 
@@ -184,7 +184,7 @@ def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
     written, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
-    assert written.refused == {"a": "its text in the file defines several links"}
+    assert written.refusals == {"a": "its text in the file defines several links"}
 
 
 def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):
@@ -192,16 +192,16 @@ def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):
     path.write_text('<robot name="r"><link name="a"/></robot>')
     robot = load(path)
     path.write_text('<robot name="other"><link name="a"/></robot>')
-    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "its file has changed since it was read"}
+    assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "its file has changed since it was read"}
     path.write_text('<robot name="s"><link name="a"/></robot>')  # as long as before
-    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "its file has changed since it was read"}
+    assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "its file has changed since it was read"}
     path.unlink()
-    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "it is not written in a file"}
+    assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "it is not written in a file"}
 
 
 def test_a_text_has_no_file():
     robot = load('<robot name="r"><link name="a"/></robot>')
-    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "it is not written in a file"}
+    assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "it is not written in a file"}
 
 
 def test_other_encodings_are_left_alone(tmp_path):
@@ -209,7 +209,7 @@ def test_other_encodings_are_left_alone(tmp_path):
     path.write_bytes(
         '<?xml version="1.0" encoding="latin-1"?><robot name="é"><link name="a"/></robot>'.encode("latin-1")
     )
-    assert write_inertials(load(path), {"a": CUBE}).refused == {"a": "its file is not UTF-8"}
+    assert write_inertials(load(path), {"a": CUBE}).refusals == {"a": "its file is not UTF-8"}
 
 
 def test_a_file_that_cannot_be_written_is_an_error(tmp_path, monkeypatch):

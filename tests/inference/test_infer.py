@@ -76,7 +76,7 @@ def test_joints_are_held_where_the_user_says_that_nothing_rolls():
     ("options", "code", "words"),
     [
         ({"kind": "differential"}, "DRIVE211", "needs one pair of driven wheels, but there are 2"),
-        ({"kind": "ackermann"}, "DRIVE211", "vertical joints steer, but there are 0"),
+        ({"kind": "ackermann"}, "DRIVE211", "steered by vertical joints, but there are 0"),
         ({"wheels": ["a", "zzz"]}, "DRIVE210", "no joint 'zzz'"),
         ({"wheels": ["a", "c"]}, "DRIVE211", "no wheel is opposite 'a_joint', 'c_joint'"),
         ({"wheels": ["a", "b"], "kind": "skid"}, "DRIVE211", "needs 2 pairs of wheels"),

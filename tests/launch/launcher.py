@@ -14,8 +14,8 @@ from pathlib import Path
 from tests.waiting import SECONDS
 
 DRIVER = """
-from linkwright.process.interruption import end_at_once
-end_at_once()
+from linkwright.process.interruption import end_on_interrupt
+end_on_interrupt()
 print("begun", flush=True)
 import sys
 from linkwright.diagnostics import LinkwrightError, print_diagnostics

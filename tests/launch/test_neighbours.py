@@ -93,7 +93,7 @@ async def test_launches_that_share_names_say_so_once_and_on_the_page(
     for each in (first, second):
         assert _shared_lines(each).count("/robot_state_publisher") == 1
         assert f"{SHARED} {domain} " in _shared_lines(each)
-        assert f"as in ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _shared_lines(each)
+        assert f"for example with ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _shared_lines(each)
         assert "Another process has a node" not in each.err
     page = Page()
     await page.follow(second, lambda: page.codes() == ["LAUNCH148"])

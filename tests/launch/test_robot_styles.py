@@ -204,7 +204,7 @@ async def test_yaml_includes_xml(launch: Any, write: Any, robot: Path) -> None:
     path = write("src/bot/launch/system.launch.yaml", dedent(SYSTEM_YAML))
     description = load_launch_file(path)
     done = await launch(description, namespace="ns", current="x")
-    assert "the launch description does not come from a file" in done.err  # $(dirname) outside of a launch file
+    assert "the launch description was not read from a file" in done.err  # $(dirname) outside of a launch file
     done = await launch(_file(path), namespace="ns")
     assert done.messages == ["ns yamlbot at 0.75", "nowhere else"], done.err
 
@@ -266,7 +266,7 @@ async def test_what_an_include_does_not_get(launch: Any, write: Any) -> None:
     )
     done = await launch(_file(path))
     assert "requires argument 'model', which is not given" in done.err
-    assert "'modle' is given; did you mean that?" in done.err
+    assert "'modle' was passed; is its name misspelt?" in done.err
 
 
 async def test_a_package_that_is_not_installed(launch: Any, write: Any) -> None:

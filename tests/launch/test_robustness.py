@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import LaunchTarget, print_description, show_arguments
 from linkwright.launch.arguments import check_arguments
-from linkwright.launch.engine.processes import _LONGEST_LINE, _LineSplitter
+from linkwright.launch.engine.processes import _MAX_LINE_LENGTH, _LineSplitter
 from linkwright.launch.frontend.include import IncludeLaunchDescription
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.launch.ros import Node, PushRosNamespace
@@ -174,7 +174,7 @@ def test_what_a_process_writes_is_divided_into_lines() -> None:
 def test_a_line_without_an_end_is_shown_in_pieces() -> None:
     lines = _LineSplitter()
     shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
-    assert [len(piece) for piece in shown] == [_LONGEST_LINE] * 3
+    assert [len(piece) for piece in shown] == [_MAX_LINE_LENGTH] * 3
     assert lines.end() == []
 
 

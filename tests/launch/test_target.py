@@ -78,7 +78,7 @@ class TestWords:
 
     def test_a_path_and_an_argument_with_a_slip(self, package: Path) -> None:
         path = str(package / "launch" / "display.launch.py")
-        with pytest.raises(LinkwrightError, match="malformed launch argument 'gui=true'") as caught:
+        with pytest.raises(LinkwrightError, match="launch argument 'gui=true' is malformed") as caught:
             parse_launch_words([path, "gui=true"])
         assert caught.value.diagnostics[0].hint == "write gui:=true"
 
@@ -87,7 +87,7 @@ class TestWords:
             parse_launch_words([])
 
     def test_a_package_alone(self, package: Path) -> None:
-        with pytest.raises(LinkwrightError, match="'arm' is a package: also name a launch file in it") as caught:
+        with pytest.raises(LinkwrightError, match="'arm' is a package; also name a launch file in it") as caught:
             parse_launch_words(["arm"])
         assert "display.launch.py" in (caught.value.diagnostics[0].hint or "")
 
@@ -95,7 +95,7 @@ class TestWords:
         with pytest.raises(LinkwrightError) as caught:
             parse_arguments(["a=1", "good:=1", "--gui", "b: 2", ":=x"])
         messages = [diagnostic.message for diagnostic in caught.value.diagnostics]
-        assert messages == [f"malformed launch argument '{word}'" for word in ("a=1", "--gui", "b: 2", ":=x")]
+        assert messages == [f"launch argument '{word}' is malformed" for word in ("a=1", "--gui", "b: 2", ":=x")]
         assert {diagnostic.code for diagnostic in caught.value.diagnostics} == {"LAUNCH111"}
 
 
@@ -129,7 +129,7 @@ class TestChecks:
             check_arguments(self.description(), {"modl": "m", "launch-prefix": "gdb"})
         (error,) = caught.value.diagnostics
         assert error.code == "LAUNCH114"
-        assert error.hint == "'modl' is given; did you mean 'model'?"
+        assert error.hint == "argument 'modl' was passed; did you mean 'model'?"
         with pytest.raises(LinkwrightError) as caught:
             check_arguments(self.description(), {"unlike": "m"})
         assert caught.value.diagnostics[0].hint == "add model:=VALUE"

@@ -65,7 +65,7 @@ def test_what_fails_only_without_arguments_is_one_remark(check):
     assert found[0]["message"] == "'arm.urdf.xacro' needs the arguments 'name' and 'type'"
     assert [note["message"] for note in found[0]["notes"]] == [
         "for instance, it gets name:=a type:=small here",
-        "it is checked with the 2 given sets of values",
+        "the file is checked with 2 sets of values",
     ]
     assert found[0]["notes"][0]["file"].endswith("view.launch.py")
 

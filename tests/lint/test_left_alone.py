@@ -652,7 +652,7 @@ def test_an_origin_that_would_move_nothing(codes_of, xyz, codes):
 def test_a_misplaced_element_belongs_where_it_stands_nearly(tmp_path):
     (tmp_path / "r.urdf").write_text(robot('<link name="base"><material name="red"/></link>'))
     (found,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW105",))).diagnostics
-    assert found.hint == "it belongs directly in <visual>"
+    assert found.hint == "put it directly in <visual>"
 
 
 @pytest.mark.parametrize(

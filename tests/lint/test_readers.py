@@ -51,7 +51,7 @@ def function(given): pass
 )
 def test_values_of_python_expressions(expression, value):
     python = PythonFile(SourceText("x.py", f"{_PREFACE}result = {expression}\n"))
-    result = python.assigned("result")
+    result = python.assigned_expression("result")
     assert result is not None
     assert python.value(result) == value
 
@@ -124,7 +124,7 @@ def test_cmake_reads_anything(text):
 )
 def test_whether_all_installed_files_are_known(data_files, is_complete):
     setup = read_setup(SourceText("setup.py", f"setup(name='a', data_files={data_files})"))
-    assert setup.call
+    assert setup.has_call
     assert setup.is_complete is is_complete
 
 

@@ -75,7 +75,7 @@ def test_models_in_static_models_are_static(findings_of):
 )
 def test_sizes_that_are_not_positive(findings_of, shape):
     collision = f'<collision name="c"><geometry>{shape}</geometry></collision>'
-    assert findings_of(link(GOOD + collision)) == [("SDF122", 2, "a size of collision 'c' is not positive")]
+    assert findings_of(link(GOOD + collision)) == [("SDF122", 2, "collision 'c' has a size that is not positive")]
 
 
 def test_an_axis_and_a_step_of_zero(findings_of):
@@ -95,7 +95,9 @@ def test_an_axis_and_a_step_of_zero(findings_of):
 def test_walls_without_a_length_are_one_finding_for_each_model(findings_of):
     box = '<{0} name="{1}"><geometry>\n<box><size>0 1 2</size></box></geometry></{0}>'
     walls = "".join(box.format(kind, f"{kind}{number}") for number in range(2) for kind in ("visual", "collision"))
-    assert findings_of(link(GOOD + walls)) == [("SDF122", 3, "a size of visual 'visual0' is not positive (and 3 more)")]
+    assert findings_of(link(GOOD + walls)) == [
+        ("SDF122", 3, "visual 'visual0' has a size that is not positive (and 3 more)")
+    ]
 
 
 def test_a_mesh_that_is_not_there_is_told_of_once(findings_of, tmp_path):

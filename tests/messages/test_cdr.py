@@ -127,7 +127,7 @@ class TestRefused:
 
     def test_headers(self):
         assert "0 bytes are too few for the header" in self.refused(b"", String)
-        assert "its header declares CDR2_LE" in self.refused(b"\0\7\0\0\1\0\0\0\0", String)
+        assert "its header declares the encoding CDR2_LE" in self.refused(b"\0\7\0\0\1\0\0\0\0", String)
         assert "it begins with 48 69 21 21" in self.refused(b"Hi!!", String)
 
     def test_a_text_that_is_not_utf_8(self):
@@ -137,19 +137,19 @@ class TestRefused:
         assert "the end of a string does not match its length" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)
 
     def test_a_bool_that_is_none(self):
-        assert "a bool has the value 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
+        assert "a bool has the invalid value 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
         raw = serialize(get_message("test_msgs/msg/UnboundedSequences")(bool_values=[True, False]))
-        assert "a bool has the value 7" in self.refused(raw[:8] + b"\7" + raw[9:],
+        assert "a bool has the invalid value 7" in self.refused(raw[:8] + b"\7" + raw[9:],
                                                    get_message("test_msgs/msg/UnboundedSequences"))  # fmt: skip
 
     def test_more_than_a_bound_allows(self):
         cls = get_message("rcl_interfaces/msg/ParameterDescriptor")
         data = bytearray(serialize(cls()))
         data[-4:] = b"\2\0\0\0"
-        assert "'integer_range' is longer than its bound of 1" in self.refused(bytes(data), cls)
+        assert "'integer_range' is longer than its maximum length of 1" in self.refused(bytes(data), cls)
         cls = get_message("type_description_interfaces/msg/FieldType")
         text = b"\0\1\0\0" + bytes(24) + struct.pack("<I", 301) + b"a" * 300 + b"\0"
-        assert "'nested_type_name' is longer than its bound of 255" in self.refused(text, cls)
+        assert "'nested_type_name' is longer than its maximum length of 255" in self.refused(text, cls)
 
 
 def test_a_text_of_length_zero_is_empty():
@@ -160,7 +160,7 @@ def test_a_text_of_length_zero_is_empty():
 def test_what_was_put_past_the_checks_is_named_when_it_is_written():
     message = JointState(name=["a"])
     message.name.append(3)
-    with pytest.raises(MessageDataError, match="cannot be written: The 'name' field must be a set or sequence"):
+    with pytest.raises(MessageDataError, match="cannot be serialized: The 'name' field must be a set or sequence"):
         serialize(message)
     message = get_message("nav_msgs/msg/Path")()
     message.poses.append(get_message("geometry_msgs/msg/PoseStamped")())
@@ -189,7 +189,9 @@ def test_wide_texts_are_units_of_utf_16_in_four_bytes_each_after_their_number():
     assert deserialize(written, cls).data == "a😀"
     assert deserialize(b"\0\0\0\0\0\0\0\2\0\0\0a\0\0\0b", cls).data == "ab"
     assert deserialize(b"\0\1\0\0\0\0\0\0", cls).data == ""
-    with pytest.raises(MessageDataError, match="a unit of 65536; units of UTF-16 are at most 65535"):
+    with pytest.raises(
+        MessageDataError, match="a wide string contains the UTF-16 unit 65536, but units are at most 65535"
+    ):
         deserialize(b"\0\1\0\0\1\0\0\0\0\0\1\0", cls)
     with pytest.raises(MessageDataError, match="in the middle of the message"):
         deserialize(b"\0\1\0\0\2\0\0\0a\0\0\0", cls)

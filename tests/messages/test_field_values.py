@@ -83,8 +83,20 @@ def test_stamps_of_the_time_of_sending():
         ("JointState", {"xyz": 1}, "MSG301", "has no field 'xyz'", "its fields: header, name, position"),
         ("JointState", {"name": "a"}, "MSG302", "'name' cannot be 'a'", "it must be a list (string[])"),
         ("JointState", {"effort": ["x"]}, "MSG302", "'effort' cannot be ['x']", "it must be a number"),
-        ("JointState", {"header": 5}, "MSG302", "'header' is given as 5, not as fields and values", "stamp, frame_id"),
-        ("JointState", 5, "MSG302", "a sensor_msgs/msg/JointState is given as 5", "its fields: header"),
+        (
+            "JointState",
+            {"header": 5},
+            "MSG302",
+            "'header' must be a mapping of fields to values, not 5",
+            "stamp, frame_id",
+        ),
+        (
+            "JointState",
+            5,
+            "MSG302",
+            "a sensor_msgs/msg/JointState must be a mapping of fields to values, not 5",
+            "its fields: header",
+        ),
         ("CameraInfo", {"k": [1, 2]}, "MSG302", "'k' cannot be [1, 2]", "a list of 9 (float64[9]), not of 2 values"),
         ("CameraInfo", {"height": -1}, "MSG302", "'height' cannot be -1", "unsigned integer in [0, 4294967295]"),
         ("CameraInfo", {"height": 1.5}, "MSG302", "'height' cannot be 1.5", "an integer, 0 to 4294967295"),
@@ -94,7 +106,13 @@ def test_stamps_of_the_time_of_sending():
         ("PointCloud2", {"fields": [{"offset": "x"}]}, "MSG302", "'fields[0].offset' cannot be 'x'", "an integer"),
         ("PointCloud2", {"fields": [{"ofset": 1}]}, "MSG301", "PointField ('fields[0]') has no", "'offset'"),
         ("PointCloud2", {"data": [256]}, "MSG302", "'data' cannot be [256]", "unsigned integer in [0, 255]"),
-        ("PointCloud2", {"header": None}, "MSG302", "'header' is given as None", "its fields"),
+        (
+            "PointCloud2",
+            {"header": None},
+            "MSG302",
+            "'header' must be a mapping of fields to values, not None",
+            "its fields",
+        ),
     ],
 )
 def test_what_is_wrong_is_told(name, values, code, message, hint):

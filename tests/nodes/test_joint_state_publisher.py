@@ -6,7 +6,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Header, JointState
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.nodes.joint_state_publisher import JointStatePublisher
 from linkwright.urdf import Joint, Limit, Link, Robot
 from tests.nodes.stage import joint, mimic, robot
@@ -123,7 +123,7 @@ class TestLimits:
             for name, pair in limits.items()
         }
         links = {name: Link(name) for name in ("base", *joints)}
-        layout = layout_of(Robot("robot", "base", links, joints, {}), JointSettings())
+        layout = make_layout(Robot("robot", "base", links, joints, {}), JointSettings())
         found = {name: (each.lower, each.upper) for name, each in layout.ranges.items()}
         assert found == {"wide": (-pi, pi), "up": (1.0, 3.0), "down": (-1.0, 1.0)}
         assert [joint.zero for joint in layout.free] == [0.0, 2.0, 0.0]
@@ -300,7 +300,7 @@ class TestParameters:
             ),
             (
                 {"dependent_joints": {"a": {"parent": "b", "faktor": 2.0}}},
-                ["invalid dependent_joint name 'a.faktor': allowed are JOINT.parent, JOINT.factor and JOINT.offset"],
+                ["invalid dependent_joint name 'a.faktor': write JOINT.parent, JOINT.factor or JOINT.offset"],
             ),
         ],
     )

@@ -113,7 +113,7 @@ def test_a_node_that_cannot_start_says_why(start):
 @pytest.mark.parametrize(
     ("package", "executable", "message", "hint"),
     [
-        ("tf2_rs", "tf2_echo", "package 'tf2_rs' has no node that comes with Linkwright", "did you mean 'tf2_ros'"),
+        ("tf2_rs", "tf2_echo", "Linkwright provides no nodes of the package 'tf2_rs'", "did you mean 'tf2_ros'"),
         ("tf2_ros", "tf2_eco", "package 'tf2_ros' has no executable 'tf2_eco'", "did you mean 'tf2_echo'?"),
     ],
 )

@@ -156,7 +156,7 @@ async def test_view_frames_without_frames(stage, tmp_path, monkeypatch):
 
 
 async def test_misuse_of_view_frames(stage, logged, tmp_path):
-    with pytest.raises(LinkwrightError, match="does not know the arguments --wat"):
+    with pytest.raises(LinkwrightError, match="does not accept the arguments --wat"):
         started(stage, ViewFrames, "--wat")
     with pytest.raises(LinkwrightError, match="-t: invalid float value: 'long'"):
         started(stage, ViewFrames, "-t", "long")

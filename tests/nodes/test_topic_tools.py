@@ -238,14 +238,14 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
 @pytest.mark.parametrize(
     ("kind", "words", "text"),
     [
-        (Relay, [], "parameter 'input_topic' of 'relay' is not given"),
+        (Relay, [], "parameter 'input_topic' of 'relay' is not set"),
         (Relay, ["a", "b", "c"], "unexpected argument 'c'"),
         (Throttle, ["often", "a", "1"], "parameter 'throttle_type' of 'throttle' cannot be 'often'"),
         (Throttle, ["messages", "a", "fast"], "'fast' is not a value of 'msgs_per_sec'"),
         (Throttle, ["messages", "a", "0"], "parameter 'msgs_per_sec' of 'throttle' cannot be '0.0'"),
-        (Drop, ["a", "1"], "parameter 'Y' of 'drop' is not given"),
+        (Drop, ["a", "1"], "parameter 'Y' of 'drop' is not set"),
         (Delay, ["a", "-1"], "parameter 'delay' of 'delay' cannot be '-1.0'"),
-        (Mux, ["out"], "parameter 'input_topics' of 'mux' is not given"),
+        (Mux, ["out"], "parameter 'input_topics' of 'mux' is not set"),
         (Transform, ["a", "b", "std_msgs/Nothing"], "there is no message 'std_msgs/msg/Nothing'"),
         (Transform, ["a", "b", "std_msgs/String", "m +"], "'m +' cannot be parsed"),
         (Transform, ["a", "b"], "the following arguments are required: output_type"),
@@ -282,4 +282,4 @@ async def test_a_stop_is_sent_when_who_sent_the_last_velocity_is_lost(test, kind
     await test.settle()
     assert driven.last.linear.x == 0.0
     (line,) = logged(test, "WARN")
-    assert line.endswith("was lost (killed, crashed or out of reach): a stop is sent to '/cmd_vel'")
+    assert line.endswith("was lost (killed, crashed or out of reach): a stop command is sent to '/cmd_vel'")

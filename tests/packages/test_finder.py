@@ -182,7 +182,7 @@ def test_an_unknown_package_says_what_was_searched_and_what_is_near(tmp_path: Pa
     assert (diagnostic.hint or "").startswith("did you mean 'turtlebot4_description'")
     assert f"AMENT_PREFIX_PATH: {tmp_path / 'ros'}" in notes
     assert str(tmp_path / "ws" / "src") in notes
-    assert "broken/package.xml, which names no package" in notes
+    assert "broken/package.xml, which does not contain a package name" in notes
     assert "my_robot_description" in notes
 
 
@@ -286,8 +286,8 @@ class TestResolve:
     @pytest.mark.parametrize(
         ("address", "message"),
         [
-            ("package:/arm/a.stl", "lacks the two slashes"),
-            ("package:///a.stl", "names no package"),
+            ("package:/arm/a.stl", "has no '//' after the scheme"),
+            ("package:///a.stl", "does not name a package"),
             ("file://a.stl", "has no absolute path"),
             ("http://example.org/a.stl", "does not name a local file"),
             ("model://arm/a.stl", "does not name a local file"),

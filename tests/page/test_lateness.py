@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from linkwright.page.audience import Lateness
+from linkwright.page.audience import LoopLag
 
 
 class Loop:
@@ -35,7 +35,7 @@ class Loop:
 
 def test_a_program_is_as_late_as_its_timers_of_the_last_second():
     loop = Loop()
-    lateness = Lateness(loop)  # type: ignore[arg-type]
+    lateness = LoopLag(loop)  # type: ignore[arg-type]
     assert lateness.mean == 0.0
     for _ in range(20):
         loop.run(0.08)

@@ -9,39 +9,39 @@ import time
 
 import pytest
 
-from linkwright.page.access import keep_token, leave_token, token_folder
+from linkwright.page.access import load_token, store_pages_wait, token_folder
 
 PORT = 7448
 posix = pytest.mark.skipif(os.name != "posix", reason="Windows guards the user's folders itself")
 
 
 def test_the_next_program_at_a_port_has_the_same_token():
-    assert keep_token(PORT).token == keep_token(PORT).token
+    assert load_token(PORT).token == load_token(PORT).token
 
 
 def test_each_port_has_its_own():
-    assert keep_token(PORT).token != keep_token(PORT + 1).token
+    assert load_token(PORT).token != load_token(PORT + 1).token
 
 
 def test_pages_wait_for_the_next_program_only_where_some_were_open_at_the_end():
-    token = keep_token(PORT).token
-    leave_token(PORT, token, pages_wait=True)
-    assert keep_token(PORT).pages_wait
-    assert not keep_token(PORT).pages_wait  # that program was killed, or nobody had its page open
-    leave_token(PORT, token, pages_wait=False)
-    assert not keep_token(PORT).pages_wait
+    token = load_token(PORT).token
+    store_pages_wait(PORT, token, pages_wait=True)
+    assert load_token(PORT).pages_wait
+    assert not load_token(PORT).pages_wait  # that program was killed, or nobody had its page open
+    store_pages_wait(PORT, token, pages_wait=False)
+    assert not load_token(PORT).pages_wait
 
 
 def test_a_program_that_ends_leaves_the_token_of_another_alone():
-    token = keep_token(PORT).token
-    leave_token(PORT, "another", pages_wait=True)
-    assert keep_token(PORT).token == token
+    token = load_token(PORT).token
+    store_pages_wait(PORT, "another", pages_wait=True)
+    assert load_token(PORT).token == token
 
 
 @posix
 def test_nobody_else_may_read_the_file_or_list_the_folder():
-    keep_token(PORT)
-    leave_token(PORT, keep_token(PORT).token, pages_wait=True)
+    load_token(PORT)
+    store_pages_wait(PORT, load_token(PORT).token, pages_wait=True)
     assert stat.S_IMODE((token_folder() / str(PORT)).stat().st_mode) == 0o600
     assert stat.S_IMODE(token_folder().stat().st_mode) == 0o700
 
@@ -49,37 +49,37 @@ def test_nobody_else_may_read_the_file_or_list_the_folder():
 @posix
 @pytest.mark.parametrize("mode", [0o640, 0o604, 0o620])
 def test_a_file_that_others_could_read_or_write_counts_for_nothing(mode):
-    token = keep_token(PORT).token
+    token = load_token(PORT).token
     (token_folder() / str(PORT)).chmod(mode)
-    assert keep_token(PORT).token != token
+    assert load_token(PORT).token != token
     assert stat.S_IMODE((token_folder() / str(PORT)).stat().st_mode) == 0o600
 
 
 @posix
 def test_a_link_counts_for_nothing(tmp_path):
-    token = keep_token(PORT).token
+    token = load_token(PORT).token
     elsewhere = tmp_path / "token"
     (token_folder() / str(PORT)).rename(elsewhere)
     (token_folder() / str(PORT)).symlink_to(elsewhere)
-    assert keep_token(PORT).token != token
+    assert load_token(PORT).token != token
 
 
 @pytest.mark.parametrize("days", [7.1, -1])
 def test_a_token_lives_for_a_week_and_none_is_of_the_future(days):
-    token = keep_token(PORT).token
+    token = load_token(PORT).token
     file = token_folder() / str(PORT)
     file.write_text(json.dumps({"token": token, "made": time.time() - days * 86400}))
-    assert keep_token(PORT).token != token
+    assert load_token(PORT).token != token
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"token": "short", "made": 0}', "[" * 100_000, '{"token": 1}'])
 def test_whatever_else_is_in_the_file_the_program_starts(text):
-    keep_token(PORT)
+    load_token(PORT)
     (token_folder() / str(PORT)).write_text(text)
-    assert len(keep_token(PORT).token) == 32
+    assert len(load_token(PORT).token) == 32
 
 
 def test_where_no_state_can_be_kept_each_program_has_a_token_of_its_own(tmp_path, monkeypatch):
     (tmp_path / "blocked").write_text("a file, not a folder")
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "blocked"))
-    assert keep_token(PORT).token != keep_token(PORT).token
+    assert load_token(PORT).token != load_token(PORT).token

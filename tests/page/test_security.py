@@ -14,10 +14,10 @@ import psutil
 import pytest
 
 from linkwright.page import files
-from linkwright.page.access import MAXIMUM_CONNECTIONS
-from linkwright.page.audience import MAXIMUM_PAGES
+from linkwright.page.access import MAX_CONNECTIONS
+from linkwright.page.audience import MAX_PAGES
 from linkwright.page.protocol.configuration import DisplayStatus, StatusRow
-from linkwright.page.server import MAXIMUM_MESSAGE
+from linkwright.page.server import MAX_MESSAGE_SIZE
 from tests.leaving import UPGRADE, ask_and_leave
 from tests.page.test_files import package, write
 from tests.viewer.scene import page, world
@@ -247,7 +247,7 @@ async def closed_with(client) -> int:
 
 async def test_a_message_too_long_ends_the_connection(served):
     async with page(served.viewer) as client:
-        await client.socket.send_str("x" * (MAXIMUM_MESSAGE + 1))
+        await client.socket.send_str("x" * (MAX_MESSAGE_SIZE + 1))
         assert await closed_with(client) == 1009
 
 
@@ -271,12 +271,12 @@ async def test_nonsense_is_passed_over_and_logged_but_not_forever(served):
 async def test_more_pages_than_allowed_are_refused(served):
     address = served.viewer.url.replace("/?", "/ws?")
     async with aiohttp.ClientSession() as session:
-        pages = [await session.ws_connect(address) for _ in range(MAXIMUM_PAGES)]
+        pages = [await session.ws_connect(address) for _ in range(MAX_PAGES)]
         with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
             await session.ws_connect(address)
         assert caught.value.status == 503
         await pages[0].close()
-        await eventually(lambda: len(served.viewer._audience) < MAXIMUM_PAGES)
+        await eventually(lambda: len(served.viewer._audience) < MAX_PAGES)
         pages[0] = await session.ws_connect(address)
         for page in pages:
             await page.close()
@@ -312,7 +312,7 @@ async def test_a_thousand_connections_trouble_nobody(served):
         await is_served(client)
         # Those that say nothing make room for one who shows the token.
         assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
-        await eventually(lambda: served.viewer._server.web._admission._count <= MAXIMUM_CONNECTIONS)
+        await eventually(lambda: served.viewer._server.web._admission._count <= MAX_CONNECTIONS)
         assert memory() - before < 64 << 20
         for each in knocking:
             each.close()
@@ -339,8 +339,8 @@ async def test_a_thousand_sockets_are_refused_but_for_some(served):
             kept += await asyncio.gather(*(connect() for _ in range(100)))
             await is_served(client)
         assert set(statuses) <= {0, 503}
-        assert len(statuses) >= 1000 - MAXIMUM_PAGES
-        assert len(served.viewer._audience) <= MAXIMUM_PAGES
+        assert len(statuses) >= 1000 - MAX_PAGES
+        assert len(served.viewer._audience) <= MAX_PAGES
 
 
 async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
@@ -380,7 +380,7 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
     asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
     async with page(served.viewer) as client:
         await client.opened()
-        readers = [await asyncio.open_connection(address.hostname, address.port) for _ in range(MAXIMUM_CONNECTIONS)]
+        readers = [await asyncio.open_connection(address.hostname, address.port) for _ in range(MAX_CONNECTIONS)]
         for _, writer in readers:
             writer.write(asking)
         for reader, _ in readers[1:]:
@@ -388,7 +388,7 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
         await is_served(client)
         assert len(server._page_contents) == 1
         waiting = [stranger._transport.get_write_buffer_size() for stranger in server._admission._strangers.values()]
-        assert len(waiting) > MAXIMUM_CONNECTIONS - 5
+        assert len(waiting) > MAX_CONNECTIONS - 5
         assert max(waiting) < 256 << 10
         status, body, _ = await raw(served.viewer, "/assets/index-abc.js", token=False)
         assert (status, len(body)) == (200, 4 << 20)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.page.outbox import Line
+from linkwright.page.outbox import ConnectionMeter
 from linkwright.page.protocol.message import PIECE_KIND
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
@@ -244,7 +244,7 @@ class Hand:
 
 def test_a_line_learns_from_acknowledgements():
     clock = Hand()
-    line = Line(clock)
+    line = ConnectionMeter(clock)
     line.sending(10)
     clock.now += 0.05
     line.received(1)
@@ -259,7 +259,7 @@ def test_a_line_learns_from_acknowledgements():
 
 
 def test_small_messages_never_fill_a_line():
-    line = Line(Hand())
+    line = ConnectionMeter(Hand())
     line.sending(10)
     line.received(1)
     for _ in range(1000):
@@ -268,7 +268,7 @@ def test_small_messages_never_fill_a_line():
 
 
 def test_a_page_cannot_upset_its_line():
-    line = Line(Hand())
+    line = ConnectionMeter(Hand())
     for count in (-5, 10**12, 0):
         line.received(count)
     line.sending(10_000)

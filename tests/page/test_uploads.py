@@ -288,7 +288,7 @@ async def test_only_some_are_shown_at_once_and_all_end_with_the_program(tmp_path
             assert (await sender.send("drive", files))[0] == 200
         status, answer = await sender.send("drive", files)
         assert status == REFUSED
-        assert "open already" in answer["problem"]
+        assert "already open" in answer["problem"]
         assert len(left(scratch)) == 4
         await asyncio.sleep(11)
         status, answer = await sender.send("drive", files)

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from linkwright.descriptions import examine
-from linkwright.descriptions.pairs import pair_of, text_of_old
+from linkwright.descriptions.pairs import file_pair, old_description_key
 from linkwright.graph import SENSOR_DATA_QOS
 from linkwright.messages import Header, JointState
 from linkwright.page.protocol.comparison import ComparedDescriptions
-from linkwright.panels.comparison.feature import show_old, without_paths
+from linkwright.panels.comparison.feature import add_old_robot, without_paths
 from linkwright.rviz import RvizConfig
 from tests.viewer.scene import Client, World, page, world
 from tests.waiting import eventually
@@ -55,7 +55,7 @@ class Compared:
 
     def __init__(self, made: World, folder: Path, old: str, new: str) -> None:
         self.made = made
-        self.pair = pair_of(self.write(folder, "old.urdf", old), self.write(folder, "new.urdf", new), {})
+        self.pair = file_pair(self.write(folder, "old.urdf", old), self.write(folder, "new.urdf", new), {})
         node = made.graph.create_node("old_robot_state_publisher")
         self.publish_old = made.viewer.attach_comparison(self.pair, node)
         self.joint_states = made.graph.create_node("joints").create_publisher(
@@ -72,7 +72,7 @@ class Compared:
 
     def show_old(self) -> None:
         found = examine(self.pair.old.path)
-        self.publish_old(self.made.library.store(found, text_of_old(found), self.pair.old.finder))
+        self.publish_old(self.made.library.store(found, old_description_key(found), self.pair.old.finder))
 
     def show_new(self) -> None:
         self.made.describe(self.made.library.store(examine(self.pair.new.path)))
@@ -99,7 +99,7 @@ class Compared:
 @asynccontextmanager
 async def compared(folder: Path, old: str = OLD, new: str = NEW) -> AsyncIterator[tuple[Compared, Client]]:
     config = RvizConfig.for_model("base")
-    show_old(config, "old.urdf")
+    add_old_robot(config, "old.urdf")
     async with world(config) as made:
         both = Compared(made, folder, old, new)
         async with page(made.viewer) as client:

@@ -81,7 +81,7 @@ async def test_only_configurations_are_opened_and_saved(tmp_path, name):
         for kind, fields in (("save_configuration", {"replace": True}), ("open_configuration", {"discard": True})):
             await client.send(kind, path=name, **fields)
             refusal = await client.until("configuration_refused")
-            assert "is not the name of an RViz configuration" in refusal["message"]
+            assert "is not a valid file name for an RViz configuration" in refusal["message"]
     assert (tmp_path / "secret.txt").read_text() == "secret"
 
 

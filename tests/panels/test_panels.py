@@ -119,16 +119,16 @@ def test_a_file_without_panels_gets_a_list():
 @pytest.mark.parametrize("state", ["", "zz", "00 ff", "fb0000000a0056006900650077007", "fbffffffff00560069"])
 def test_a_window_state_that_is_none_says_nothing(state):
     assert is_shown(state, "Views") is None
-    assert set_dock_shown(state, "Views", shown=False) == state
+    assert set_dock_shown(state, "Views", is_visible=False) == state
 
 
 def test_of_a_dock_named_twice_the_first_counts():
     views = "FB0000000A00560069006500770073"
     state = f"00ff{views}01aa{views}03bb"
     assert is_shown(state, "Views") is True
-    hidden = set_dock_shown(state, "Views", shown=False)
+    hidden = set_dock_shown(state, "Views", is_visible=False)
     assert hidden == f"00ff{views}00aa{views}03bb"
-    assert set_dock_shown(hidden, "Views", shown=True) == state
+    assert set_dock_shown(hidden, "Views", is_visible=True) == state
     assert is_shown(state, "View") is None
 
 

@@ -184,7 +184,7 @@ async def test_a_disk_that_refuses_ends_the_recording_and_keeps_what_was_written
                 await made.settle()
             await asyncio.sleep(2.0)
             state = await ended(client)
-        assert " stops: " in state["problem"]
+        assert " stopped: " in state["problem"]
         (file,) = state["files"]
         with BagReader(Path(file["path"])) as bag:
             assert len(list(bag.messages())) >= 1

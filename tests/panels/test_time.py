@@ -62,7 +62,7 @@ def point(x: float, stamp: float, frame: str = "base"):
 
 def test_exact_shows_the_time_of_the_sources_last_message():
     clock, received = FakeClock(), []
-    control = TimeControl(clock, signalled=lambda: received.append(1))
+    control = TimeControl(clock, on_signal=lambda: received.append(1))
     control.took("scan", 90)
     assert (control.lookup_ns(), control.sources) == (None, ["scan"])
     control.set(paused=False, mode="Exact", source="scan")

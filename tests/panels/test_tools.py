@@ -8,7 +8,7 @@ import yaml
 from linkwright.graph import ActionServer
 from linkwright.messages import get_action
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.config.tools import TOOL_KINDS, USUAL_TOOLS, tool_name
+from linkwright.rviz.config.tools import DEFAULT_TOOLS, TOOL_KINDS, tool_name
 from tests.viewer.scene import page, rows_by_id, world
 from tests.waiting import eventually
 
@@ -69,11 +69,11 @@ def test_the_tools_of_a_file_keep_order_classes_and_what_is_unknown():
 
 def test_a_file_without_tools_has_the_usual_ones_and_lists_them_when_one_changes():
     config = RvizConfig.parse("Visualization Manager: {}\n")
-    assert [entry.cls for entry in config.tools.entries] == list(USUAL_TOOLS)
+    assert [entry.cls for entry in config.tools.entries] == list(DEFAULT_TOOLS)
     assert "Tools" not in config.text()
     config.tools.remove(config.tools.entries[0].id)
     config.tools.add("rviz_default_plugins/Measure")
-    assert [each["Class"] for each in tools_of(config)] == [*list(USUAL_TOOLS)[1:], "rviz_default_plugins/Measure"]
+    assert [each["Class"] for each in tools_of(config)] == [*list(DEFAULT_TOOLS)[1:], "rviz_default_plugins/Measure"]
     with pytest.raises(ValueError, match="no tool"):
         config.tools.add("no/Such")
     while len(config.tools.entries) < 100:

@@ -13,7 +13,7 @@ from linkwright.geometry.single import (
     rotate,
     rpy_from_quaternion,
 )
-from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude
+from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude_at_rest
 
 angles = st.floats(-1.4, 1.4)
 DIP = 1.0
@@ -41,15 +41,15 @@ def apart(first, second):
 @given(angles, angles, angles, st.sampled_from(World))
 def test_a_body_at_rest_knows_how_it_is_turned(roll, pitch, yaw, world):
     orientation = quaternion_from_rpy((roll, pitch, yaw))
-    assert apart(attitude(felt(orientation, world), field(orientation, world), world), orientation) < 1e-6
-    without = rpy_from_quaternion(attitude(felt(orientation, world), None, world))
+    assert apart(attitude_at_rest(felt(orientation, world), field(orientation, world), world), orientation) < 1e-6
+    without = rpy_from_quaternion(attitude_at_rest(felt(orientation, world), None, world))
     assert without == pytest.approx((roll, pitch, 0.0), abs=1e-9)
 
 
 def test_where_nothing_tells_a_direction():
-    assert attitude((0.0, 0.0, 0.0), None, World.ENU) is None
-    assert attitude((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), World.ENU) is None
-    assert attitude((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), World.ENU) is None
+    assert attitude_at_rest((0.0, 0.0, 0.0), None, World.ENU) is None
+    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), World.ENU) is None
+    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), World.ENU) is None
 
 
 @pytest.mark.parametrize("world", World)

@@ -8,7 +8,7 @@ import textwrap
 
 PROGRAM = """
     import os, signal, time
-    from linkwright.process.interruption import end_at_once, raise_interrupts
+    from linkwright.process.interruption import end_on_interrupt, raise_interrupts
 
     class Dropping:
         def __del__(self):
@@ -16,7 +16,7 @@ PROGRAM = """
             for _ in range(1000):
                 pass
 
-    end_at_once()
+    end_on_interrupt()
     raise_interrupts()
     try:
         Dropping()

@@ -126,7 +126,7 @@ from linkwright.process import interruption
 def watch():
     print(*(each for each in sys.modules if each.partition(".")[0] == "linkwright"))
     raise SystemExit
-interruption.end_at_once = watch
+interruption.end_on_interrupt = watch
 sys.argv[:] = sys.argv[1:]
 runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
 """

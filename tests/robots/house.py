@@ -60,7 +60,7 @@ class House(SteppedSimulation):
         options = NodeOptions(parameters={**given, "autostart_node": True, **more})
         if costmap:
             for key, value in flat(self._told[costmap][costmap]["ros__parameters"]).items():
-                options.for_others.set(f"/{costmap}/{costmap}", key, value)
+                options.parameters_of_others.set(f"/{costmap}/{costmap}", key, value)
         return options
 
     def advance_and_watch(self, seconds: float) -> None:

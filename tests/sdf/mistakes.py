@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from linkwright.descriptions import examine_world
-from linkwright.lint.engine import sorted_by_place
+from linkwright.lint.engine import sorted_by_location
 from tests.urdf.mistakes import lines_of
 
 
@@ -16,5 +16,5 @@ def describe(text: str) -> str:
         path = Path(folder, "w.world")
         path.write_text(text, encoding="utf-8")
         found = examine_world(path, environment={"HOME": folder}).diagnostics
-        lines = [line for each in sorted_by_place(found, str(path)) for line in lines_of(each)]
+        lines = [line for each in sorted_by_location(found, str(path)) for line in lines_of(each)]
         return "\n".join(lines).replace(folder, "FOLDER")

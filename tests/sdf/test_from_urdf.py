@@ -109,7 +109,7 @@ def test_a_floating_link_moves_freely_and_a_planar_one_too():
     assert conversion.model.joints == ()
     assert Frames(conversion.model).pose("b")[:3] == (1.0, 0.0, 0.0)
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
-        ("SDF171", "joint 'p' is planar, which SDF does not support: it is left out")
+        ("SDF171", "joint 'p' is left out, because SDF does not support planar joints")
     ]
 
 
@@ -342,7 +342,7 @@ def test_a_sensor_of_a_lumped_joint_is_told_of():
     text = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
     conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + text), lump_fixed_joints=True)
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
-        ("SDF171", "sensor 'ft' is left out: the links of joint 'j' are merged")
+        ("SDF171", "sensor 'ft' is left out, because the links of joint 'j' are merged")
     ]
 
 

@@ -101,16 +101,20 @@ def joint(parent: str, child: str, name: str = "j") -> str:
 @pytest.mark.parametrize(
     ("inside", "start", "words"),
     [
-        (TWO, "<model name='m'>", "link 'b' has no parent, and neither has 'a'"),
+        (TWO, "<model name='m'>", "neither link 'b' nor the root link 'a' has a parent"),
         (TWO + joint("b", "a"), "<model name='m'>", "the canonical link 'a' is the child of joint 'j'"),
         (TWO + joint("a", "b") + joint("a", "b", "k"), "<model name='m'>", "link 'b' is the child of two joints"),
-        (TWO + joint("world", "a"), "<model name='m'>", "joint 'j' connects the model with the world"),
+        (TWO + joint("world", "a"), "<model name='m'>", "joint 'j' connects the model to the world"),
         (
             TWO + "<link name='c'/>" + joint("b", "c") + joint("c", "b", "k"),
             "<model name='m'>",
-            "is below itself",
+            "link 'b' is its own descendant in the tree of joints",
         ),
-        ("<pose>1 0 0 0 0 0</pose><link name='a'/>", "<model name='m'>", "the model has a <pose>"),
+        (
+            "<pose>1 0 0 0 0 0</pose><link name='a'/>",
+            "<model name='m'>",
+            "the model has a <pose>, which URDF does not support",
+        ),
         ("<link name='a'/><model name='in'><link name='x'/></model>", "<model name='m'>", "contains another model"),
         ("", "<model name='m'>", "the model has no link"),
         (
@@ -123,7 +127,7 @@ def joint(parent: str, child: str, name: str = "j") -> str:
             "<model name='m'>",
             "joint 'j' has no <axis>",
         ),
-        ("<link name='a'/></model><model name='n'><link name='a'/>", "<model name='m'>", "it has 2 models"),
+        ("<link name='a'/></model><model name='n'><link name='a'/>", "<model name='m'>", "it contains 2 models"),
         (TWO + joint("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
     ],
 )

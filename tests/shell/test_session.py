@@ -129,7 +129,7 @@ def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_
 def test_tab_completes_and_programs_that_are_not_here_say_what_to_use(tmp_path: Path) -> None:
     result = in_bash(tmp_path, "complete -p linkwright ros2; rosdep update; echo $?\n")
     assert [line.rpartition(" ")[2] for line in result.stdout.splitlines()] == ["linkwright", "ros2", "127"]
-    assert "there is no command 'rosdep'" in result.stderr
+    assert "command 'rosdep' does not exist" in result.stderr
 
 
 def test_a_real_ros2_completes_as_it_does(tmp_path: Path) -> None:

@@ -93,4 +93,4 @@ async def test_a_car_goes_round_as_its_steered_wheels_say(forward):
 async def test_a_wheel_without_a_round_collision_is_told_of():
     async with served(GROUND, car(plugin(), "<box><size>0.2 0.2 0.05</size></box>")) as (server, _, log):
         assert not server.plugins("car")
-        assert [each.text for each in log if "no round collision" in each.text]
+        assert [each.text for each in log if "needs a collision that is a cylinder or a sphere" in each.text]

@@ -168,7 +168,13 @@ async def test_masses_and_joints_are_changed_by_services():
         server.advance(SECOND // 10)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(begin)
         refused = await ask(graph, server, kind, "/set_link_properties", **(facts | {"ixx": 9.0}))
-        assert (refused.success, refused.status_message) == (False, "this mass or inertia is not physically possible")
+        assert (refused.success, refused.status_message) == (
+            False,
+            (
+                "this mass or inertia is not physically possible; give a positive mass and moments that "
+                "fulfil the triangle inequality"
+            ),
+        )
 
         config = get_message("gazebo_msgs/msg/ODEJointProperties")(damping=[2.0], hi_stop=[0.25])
         kind = "gazebo_msgs/srv/SetJointProperties"
@@ -201,4 +207,4 @@ async def test_joints_jump_from_point_to_point():
         publisher.publish(message)
         await graph.settle()
         server.advance(SECOND)
-        assert [each.text for each in log] == ["plugin 'poses': no joint 'elbow' moves"]
+        assert [each.text for each in log] == ["plugin 'poses': there is no movable joint 'elbow'"]

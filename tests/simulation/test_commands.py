@@ -23,7 +23,7 @@ async def test_a_drive_stops_at_a_command_that_is_no_number_and_obeys_the_next(m
         driver.publish(forward(strange))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
-        assert warnings(log) == ["'cmd_vel': a command with NaN or an infinite number stops the motion"]
+        assert warnings(log) == ["a command on 'cmd_vel' contains NaN or an infinite number: the motion stops"]
         driver.publish(forward(0.3))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)

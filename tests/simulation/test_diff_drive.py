@@ -115,7 +115,7 @@ async def test_after_a_reset_it_stands_still_at_the_start():
     [
         (classic("<right_joint>front</right_joint>"), "1 left wheels, but 2 right wheels"),
         (classic().replace("0.12", "0"), "must be positive"),
-        (classic().replace(">left_joint<", ">left_jiont<"), "no joint 'left_jiont' moves"),
+        (classic().replace(">left_joint<", ">left_jiont<"), "there is no movable joint 'left_jiont'"),
     ],
 )
 async def test_what_cannot_drive_is_told(plugin, words):

@@ -113,7 +113,7 @@ async def test_a_car_without_wheels_to_turn_is_told_of():
     none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
     async with served(GROUND, car(none)) as (server, _, log):
         assert not server.plugins("car")
-        assert [each.text for each in log if "needs wheel joints and positive dimensions" in each.text]
+        assert [each.text for each in log if "needs wheel joints on both sides, and positive dimensions" in each.text]
 
 
 @pytest.mark.parametrize(

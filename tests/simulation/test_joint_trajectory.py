@@ -84,7 +84,7 @@ async def test_joints_that_are_not_moved_are_named_and_no_points_end_a_trajector
     async with served(arm(controller())) as (server, graph, log):
         await follow(graph, server, trajectory((0.0, 1.0), name="elbow"), 0.1)
         assert [each.text for each in log] == [
-            "plugin 'gz::sim::systems::JointTrajectoryController' does not move a joint named elbow"
+            "plugin 'gz::sim::systems::JointTrajectoryController' does not control a joint named elbow"
         ]
         await follow(graph, server, trajectory((3.0, 0.4), (8.0, 1.0)), 2.9)
         await follow(graph, server, trajectory(), 5.0)

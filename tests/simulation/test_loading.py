@@ -193,7 +193,7 @@ async def test_no_world_and_no_such_file_are_said(tmp_path):
         answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world")
         assert (answer.result.result, answer.result.error_message) == (
             answer.NO_RESOURCE,
-            "no world is given (give the file of a world, or its text)",
+            "no world was specified (pass the path of a world file, or the text of a world)",
         )
         resource = get_message("simulation_interfaces/msg/Resource")(uri="no_such")
         answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=resource)

@@ -74,7 +74,7 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) 
                 await advance(server, graph, 0.1)
         (logged,) = warnings(log)
         assert logged.startswith(
-            "two nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot"
+            "several nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot"
         )
 
 

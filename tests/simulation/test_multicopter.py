@@ -146,11 +146,11 @@ async def test_it_falls_when_it_is_switched_off_and_hovers_when_its_pilot_is_los
 async def test_rotors_that_cannot_hold_it_are_refused() -> None:
     async with served(GROUND, quadcopter(["front_right", "back_left", "front_left"])) as (_, __, log):
         (logged,) = warnings(log)
-        assert "its rotors cannot hold the model" in logged
+        assert "its rotors cannot control thrust and all three torques" in logged
 
 
 async def test_a_rotor_without_numbers_is_told() -> None:
     text = quadcopter().replace(f"<momentConstant>{MOMENT}</momentConstant><direction>", "<direction>")
     async with served(GROUND, text) as (_, __, log):
         (logged,) = warnings(log)
-        assert "a <rotor> has no number in <momentConstant>" in logged
+        assert "each <rotor> needs a number in <momentConstant>" in logged

@@ -23,7 +23,7 @@ from linkwright.simulation.plugins.registry import (
     _SENSORS_OF_SYSTEMS,
     SENSORS,
     is_built_in,
-    is_of_gz,
+    is_gz_library,
 )
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
@@ -79,8 +79,8 @@ def test_systems_that_are_built_in_need_nothing():
     assert is_built_in("libignition-gazebo-physics-system.so")
     assert is_built_in("libgazebo_ros_factory.so")
     assert not is_built_in("gz-sim-diff-drive-system")
-    assert is_of_gz("gz-sim7-diff-drive-system")
-    assert not is_of_gz("libgazebo_ros_camera.so")
+    assert is_gz_library("gz-sim7-diff-drive-system")
+    assert not is_gz_library("libgazebo_ros_camera.so")
 
 
 def test_what_is_called_simulated_is():
@@ -205,7 +205,7 @@ async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over(
 async def test_the_second_of_two_nodes_of_one_name_is_not_loaded():
     async with served(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
         assert [len(server.plugins(name)) for name in ("mbot", "two")] == [1, 0]
-        assert [each.text for each in log if "another plugin already has the node name '/joints'" in each.text]
+        assert [each.text for each in log if "another plugin already uses the node name '/joints'" in each.text]
 
 
 async def test_what_is_not_simulated_is_listed_once():

@@ -8,7 +8,7 @@ from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.simulation.nodes.bridge import ParameterBridge
 from linkwright.simulation.nodes.simulator import GzServer, Simulator
-from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ
+from linkwright.simulation.plugins.registry import DEFAULT_GZ_SYSTEMS
 from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND, robot, served
@@ -94,7 +94,7 @@ async def test_it_keeps_the_rate_that_it_is_given():
 async def test_a_world_without_plugins_has_those_of_gz_and_another_only_its_own():
     other = '<plugin name="p" filename="gz-sim-physics-system"/>'
     for parts, has in (((), True), ((other,), False), ((other, BROADCASTER), True)):
-        async with served(GROUND, *parts, options=ServerOptions(systems=SYSTEMS_OF_GZ)) as (_, graph, log):
+        async with served(GROUND, *parts, options=ServerOptions(systems=DEFAULT_GZ_SYSTEMS)) as (_, graph, log):
             assert (DYNAMIC in graph.topics()) == has
             assert not log
 

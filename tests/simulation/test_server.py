@@ -69,6 +69,8 @@ SHAPES = {
     "</link></model></sdf>",
 }
 
+PYRAMID = {"URDF": "<pyramid> in <geometry>", "SDF": "the <geometry> of visual 'v' contains <pyramid>"}
+
 
 @pytest.mark.parametrize("language", SHAPES)
 async def test_a_model_with_an_unknown_shape_is_refused_with_the_reason(tmp_path, language):
@@ -76,7 +78,7 @@ async def test_a_model_with_an_unknown_shape_is_refused_with_the_reason(tmp_path
         text = SHAPES[language].format("<pyramid/>")
         answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
         assert not answer.success
-        assert "<pyramid> in <geometry>" in answer.status_message
+        assert PYRAMID[language] in answer.status_message
         assert "is not a shape" in answer.status_message
         assert "one" not in it.simulator.server.simulation.scene.models
 
@@ -114,7 +116,7 @@ async def test_models_come_and_go_by_services(tmp_path):
         (URDF, "a model 'one' already exists"),
         ("<robot", "<the description>:1:1"),
         ("<html/>", "the root element is <html>"),
-        ('<sdf version="1.7"><world name="w"/></sdf>', "it is a world"),
+        ('<sdf version="1.7"><world name="w"/></sdf>', "it describes a world"),
         ('<robot name="a"/>', ""),
     ],
 )

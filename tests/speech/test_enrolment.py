@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.speech.enrolled.enrolment import enrol
-from linkwright.speech.enrolled.words import MOST_TAKES, MOST_WORDS, Words, words_path
+from linkwright.speech.enrolled.words import MAX_TAKES, MAX_WORDS, Words, words_path
 from linkwright.speech.sound.spectra import BANDS
 from tests.speech.voices import WORDS, say
 
@@ -59,9 +59,9 @@ def test_names_of_any_language_are_kept(tmp_path):
 
 def test_only_the_newest_takes_are_kept():
     words = Words()
-    for number in range(MOST_TAKES + 2):
+    for number in range(MAX_TAKES + 2):
         enrol(words, "stop", say(WORDS["stop"], seed=number))
-    assert len(words.takes("stop")) == MOST_TAKES
+    assert len(words.takes("stop")) == MAX_TAKES
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_a_name_that_cannot_be_shown_is_not_taken(name):
 
 def test_there_is_a_most_of_words():
     take = enrolled(("stop",)).takes("stop")
-    words = Words({str(number): take[:1] for number in range(MOST_WORDS)})
+    words = Words({str(number): take[:1] for number in range(MAX_WORDS)})
     assert enrol(words, "more", say(WORDS["stop"]))[0].code == "VOICE204"
     assert enrol(words, "7", say(WORDS["stop"]))[0].code == "VOICE209"
     assert len(words.takes("7")) == 2
@@ -145,11 +145,11 @@ def test_there_is_a_most_of_words():
     ("change", "why"),
     [
         (lambda document: document.update(format="words"), "is not marked"),
-        (lambda document: document.update(version=2), "version '2', but only 1 is supported"),
-        (lambda document: document.update(words={}), "no list of words"),
-        (lambda document: document["words"].append({"takes": []}), "word 3 has no name"),
-        (lambda document: document["words"].append(document["words"][0]), "word 3 has no name, or the name of"),
-        (lambda document: document["words"][1].update(takes=[]), "'stop' has no takes"),
+        (lambda document: document.update(version=2), "version is '2', but only version 1 is supported"),
+        (lambda document: document.update(words={}), "must contain a list of at most 200 words"),
+        (lambda document: document["words"].append({"takes": []}), "word 3 has no valid name"),
+        (lambda document: document["words"].append(document["words"][0]), "word 3 has no valid name, or the name of"),
+        (lambda document: document["words"][1].update(takes=[]), "the word 'stop' must have 1 to 10 takes"),
         (lambda document: document["words"][1]["takes"][0].update(frames="!"), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].update(frames=7), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].pop("noise"), "'stop' cannot be decoded"),

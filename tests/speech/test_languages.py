@@ -7,12 +7,12 @@ import pytest
 from linkwright.cli import voice
 from linkwright.diagnostics.translation import LANGUAGES
 from linkwright.model_files import model_entry
-from linkwright.speech.commands.quantities import SAYABLE
+from linkwright.speech.commands.quantities import GRAMMAR_VALUES
 from linkwright.speech.engines.vosk_engine import MODELS
 from linkwright.vision.places import words
 
 
-@pytest.mark.parametrize("table", [voice._LANGUAGES, words._NUMBERS, *SAYABLE.values()])
+@pytest.mark.parametrize("table", [voice._LANGUAGES, words._NUMBERS, *GRAMMAR_VALUES.values()])
 def test_a_table_has_each_language(table) -> None:
     assert tuple(table) == LANGUAGES
 

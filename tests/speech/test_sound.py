@@ -70,13 +70,13 @@ def test_what_is_written_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"", "does not begin"),
-        (b"OggS" + bytes(60), "does not begin"),
+        (b"", "has no header of a WAV file"),
+        (b"OggS" + bytes(60), "has no header of a WAV file"),
         (wav(b"")[:12], "no samples"),
         (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "before the chunk with their format"),
-        (wav(bytes(8), kind=7, bits=8), "mu-law of 8 bits"),
+        (wav(bytes(8), kind=7, bits=8), "mu-law with 8 bits"),
         (wav(bytes(8), kind=0x1234, bits=8), "0x1234"),
-        (wav(bytes(8), bits=12), "PCM of 12 bits"),
+        (wav(bytes(8), bits=12), "PCM with 12 bits"),
         (wav(bytes(8), channels=0), "0 channels"),
         (wav(bytes(8), rate=0), "0 Hz"),
         (wav(bytes(8), rate=10_000_000), "10000000 Hz"),

@@ -195,7 +195,7 @@ def test_rosidl_runtime_py(tmp_path):
         "ValueError",
         "ValueError",
         "std_msgs/msg/Header has no field 'frame'",
-        "'stamp' is given as 3, not as fields and values",
+        "'stamp' must be a mapping of fields to values, not 3",
     ]
 
 

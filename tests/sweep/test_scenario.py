@@ -85,8 +85,10 @@ BAD = {
     "SWEEP102 squares.py:1:1 the scenario cannot be loaded: ModuleNotFoundError: No module named 'nothing_of_this'": (
         "import nothing_of_this\n"
     ),
-    "SWEEP103  there is no scenario in 'squares.py'": HEAD,
-    "SWEEP103 squares.py:7:1 there are 2 scenarios in 'squares.py'": f"{SQUARES}\n@scenario()\ndef other(): ...\n",
+    "SWEEP103  no function in 'squares.py' is a scenario": HEAD,
+    "SWEEP103 squares.py:7:1 'squares.py' contains 2 scenarios, but must contain one": (
+        f"{SQUARES}\n@scenario()\ndef other(): ...\n"
+    ),
     "SWEEP104 squares.py:2:1 the function 'f' does not accept 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
     "SWEEP104 squares.py:2:1 the function 'f' needs 'm', which @scenario does not set": (
         f"{HEAD}@scenario()\ndef f(m, k=1, seed=0): ...\n"
@@ -95,13 +97,13 @@ BAD = {
         f"{HEAD}@scenario(row=[1])\ndef f(row): ...\n"
     ),
     "SWEEP105 squares.py:2:1 parameter 'm' has no values": f"{HEAD}@scenario(m=[])\ndef f(m): ...\n",
-    "SWEEP105 squares.py:2:1 parameter 'm' needs a list of values, a Uniform or a Normal": (
+    "SWEEP105 squares.py:2:1 the values of parameter 'm' must be a list, a Uniform or a Normal": (
         f"{HEAD}@scenario(m='maze')\ndef f(m): ...\n"
     ),
     "SWEEP105 squares.py:2:1 a value of parameter 'm' must be a number, text, True or False, not dict": (
         f"{HEAD}@scenario(m=[{{}}])\ndef f(m): ...\n"
     ),
-    "SWEEP105 squares.py:2:1 parameter 'm': the numbers of its distribution must be finite": (
+    "SWEEP105 squares.py:2:1 the distribution of parameter 'm' must have finite numbers": (
         f"{HEAD}@scenario(m=Uniform(0, float('inf')))\ndef f(m): ...\n"
     ),
     "SWEEP105 squares.py:2:1 the seeds must be a positive number of seeds, or a list of integers of at least 0": (

@@ -7,7 +7,7 @@ from math import inf, pi
 import pytest
 
 from linkwright.diagnostics import Severity
-from linkwright.geometry.single import quaternion_of
+from linkwright.geometry.single import pose_quaternion
 from linkwright.urdf import Box, Capsule, Limit, Mimic, Pose, read
 from linkwright.xmltree import Document, Element, parse
 from tests.imports import loaded_by, rooms_of
@@ -229,11 +229,11 @@ class TestVersions:
     def test_quaternions(self):
         turned = joint('<origin xyz="1 2 3" quat_xyzw="0 0 2 2"/>', "fixed", "1.1").origin
         assert turned.xyz == (1, 2, 3)
-        assert quaternion_of(turned) == pytest.approx((0, 0, 0.5**0.5, 0.5**0.5))
+        assert pose_quaternion(turned) == pytest.approx((0, 0, 0.5**0.5, 0.5**0.5))
         assert turned.rpy == pytest.approx((0, 0, pi / 2))
 
     def test_a_zero_quaternion_is_the_identity(self):
-        assert quaternion_of(joint('<origin quat_xyzw="0 0 0 0"/>', "fixed", "1.1").origin) == (0, 0, 0, 1)
+        assert pose_quaternion(joint('<origin quat_xyzw="0 0 0 0"/>', "fixed", "1.1").origin) == (0, 0, 0, 1)
 
     def test_a_quaternion_of_three_numbers(self):
         result = reading(chain('fixed:<origin quat_xyzw="0 0 1"/>'), version="1.1")

@@ -13,7 +13,7 @@ from linkwright.bag import BagReader, BagWriter, Playback
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import JointState, String, TFMessage, TransformBatch, serialize
-from linkwright.viewer.recorded_robot import PlacedRobot, published, robot_of
+from linkwright.viewer.recorded_robot import RecordingWithTransforms, published, robot_of
 
 START = 1_700_000_000
 SECOND = 1_000_000_000
@@ -110,7 +110,7 @@ async def test_without_joint_states_it_stands_at_zero(tmp_path: Path) -> None:
 async def test_recorded_transforms_are_those_that_count(tmp_path: Path, transforms: bool) -> None:
     with BagReader(recorded(tmp_path / "bag", [0.5], transforms)) as bag:
         shown = Shown(bag)
-        assert isinstance(shown.output, PlacedRobot) is not transforms
+        assert isinstance(shown.output, RecordingWithTransforms) is not transforms
         assert bool(await shown.at(0)) is not transforms
         await shown.close()
 

@@ -196,8 +196,8 @@ async def test_what_the_file_says_wrong_is_in_the_terminal():
     text = "Visualization Manager:\n  Global Options: {Frame Rate: often}\n  Displays:\n    - {Name: x}\n"
     async with world(RvizConfig.parse(text, "a.rviz")) as made:
         made.viewer.config.options.rows()
-    assert "a.rviz:2:32: 'Frame Rate': an integer is expected, not 'often'; 30 is used" in made.logged()
-    assert "a.rviz:4:7: a display without a 'Class' is left out" in made.logged()
+    assert "a.rviz:2:32: 'Frame Rate': an integer is expected, not 'often'; 30 is used instead" in made.logged()
+    assert "a.rviz:4:7: a display without a 'Class' is ignored" in made.logged()
 
 
 @skipping

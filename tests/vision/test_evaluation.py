@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.vision.detections import Detections
-from linkwright.vision.evaluation import GroundTruth, balanced_score, evaluate, overlap
+from linkwright.vision.evaluation import GroundTruth, best_f1_threshold, evaluate, intersection_over_union
 
 NAMES = ("ball", "box")
 BOX = (10.0, 10.0, 30.0, 30.0)
@@ -31,7 +31,7 @@ def found(*rows, names=NAMES):
 def test_boxes_overlap_by_intersection_over_union():
     one = np.array([[0, 0, 10, 10]], np.float32)
     others = np.array([[0, 0, 10, 10], [5, 0, 15, 10], [20, 20, 30, 30], [0, 0, 5, 5]], np.float32)
-    assert overlap(one, others)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
+    assert intersection_over_union(one, others)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
 
 
 def test_all_found_exactly_is_one():
@@ -101,9 +101,9 @@ def test_recall_is_told_by_size():
 def test_the_balanced_score_is_that_of_the_last_detection_that_is_worth_it():
     truth = [objects((0, *BOX), (1, *ELSEWHERE), (1, 200, 200, 240, 240), ignored={2})]
     rows = [(0, 0.9, *BOX), (1, 0.6, *ELSEWHERE), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
-    assert balanced_score(NAMES, truth, [found(*rows)]) == pytest.approx(0.6)
-    assert balanced_score(NAMES, truth, [found(*rows[2:])]) == 0.5
-    assert balanced_score(NAMES, truth, [found()]) == 0.5
+    assert best_f1_threshold(NAMES, truth, [found(*rows)]) == pytest.approx(0.6)
+    assert best_f1_threshold(NAMES, truth, [found(*rows[2:])]) == 0.5
+    assert best_f1_threshold(NAMES, truth, [found()]) == 0.5
 
 
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 60)), max_size=6), st.randoms())

@@ -10,7 +10,7 @@ from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.messages import String
 from linkwright.wire.dds import departures
-from linkwright.wire.dds.departures import FAREWELL_WITHIN, GRACE, Departures
+from linkwright.wire.dds.departures import GRACE, WITHDRAWAL_TIMEOUT_S, Departures
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
 from linkwright.wire.engine import ends_by_error
@@ -49,7 +49,7 @@ def test_who_withdraws_a_publisher_before_it_goes_has_left():
     scene.announce(OTHER)
     scene.remote.remove_endpoint(WRITER)
     assert scene.after(0.0) is None
-    assert scene.after(2 * FAREWELL_WITHIN) is None
+    assert scene.after(2 * WITHDRAWAL_TIMEOUT_S) is None
     assert not scene.lost
 
 
@@ -58,7 +58,7 @@ def test_a_farewell_may_be_heard_after_the_participant_has_gone():
     scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(10.0) is not None
     scene.announce()
-    scene.after(2 * FAREWELL_WITHIN)
+    scene.after(2 * WITHDRAWAL_TIMEOUT_S)
     assert not scene.lost
 
 
@@ -67,10 +67,10 @@ def test_a_participant_that_goes_without_a_farewell_is_lost_with_its_publishers(
     scene.remote.remove_participant(PARTICIPANT)
     scene.after(10.0)  # what had come by then was not taken before
     assert not scene.lost
-    scene.after(2 * FAREWELL_WITHIN)
+    scene.after(2 * WITHDRAWAL_TIMEOUT_S)
     (lost,) = scene.lost
     assert (lost.name, lost.node, lost.gid) == ("/chatter", NodeIdentity("talker", "/far"), WRITER)
-    assert scene.after(FAREWELL_WITHIN) is None
+    assert scene.after(WITHDRAWAL_TIMEOUT_S) is None
     assert len(scene.lost) == 1
 
 
@@ -85,7 +85,7 @@ def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(mo
     scene.after(2 * GRACE)
     assert [each.name for each in scene.lost] == ["/chatter"]
     scene.remote.remove_participant(PARTICIPANT)
-    assert scene.after(2 * FAREWELL_WITHIN) is None
+    assert scene.after(2 * WITHDRAWAL_TIMEOUT_S) is None
     assert len(scene.lost) == 1
 
 
@@ -95,7 +95,7 @@ def test_a_process_that_ends_after_it_has_left_is_not_lost(monkeypatch):
     scene.after(0.0)
     scene.announce()
     scene.remote.remove_participant(PARTICIPANT)
-    scene.after(2 * FAREWELL_WITHIN)
+    scene.after(2 * WITHDRAWAL_TIMEOUT_S)
     assert not scene.lost
 
 

@@ -104,7 +104,7 @@ def unfit(message, value):
 def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(processes):
     a = processes("a", join_now=False)
     publisher = a.node.create_publisher(String, "described", LASTING)
-    publisher._copies = False  # as of nodes that come with Linkwright, which hand their messages over
+    publisher._copies_messages = False  # as of nodes that come with Linkwright, which hand their messages over
     for message in (String(data="one"), unfit(String(), 5), String(data="three")):
         publisher.publish(message)
     a.join()

@@ -80,7 +80,7 @@ def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(proces
     joining.close()
     assert not engines
     may_join.set()
-    joining._starter.join(SECONDS)
+    joining._join_thread.join(SECONDS)
     assert [engine._participant.closed for engine in engines] == [True]
     assert open_domains._opened == {}
     assert not joining.wait_until_ready(SECONDS)

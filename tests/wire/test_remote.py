@@ -41,7 +41,7 @@ def test_the_readers_of_a_node_may_be_heard_of_before_its_writers(remote):
 
 def test_who_never_speaks_is_not_waited_for_for_ever():
     remote = RemoteGraph()
-    remote.add_participant(RemoteParticipant(PARTICIPANT, came_at=time.monotonic() - 10.0))
+    remote.add_participant(RemoteParticipant(PARTICIPANT, discovered_at=time.monotonic() - 10.0))
     remote.add_endpoint(endpoint(LISTENER, is_writer=False))
     assert remote.is_complete()
 

@@ -171,7 +171,10 @@ def test_the_list_of_a_file_that_cannot_be_expanded(write, run):
     answer = run("--args", "a.xacro")
     assert answer.status == 0
     assert answer.out.startswith("which  required")
-    assert answer.err.startswith("warning[XAC803]: the file cannot be expanded with the arguments given")
+    assert answer.err.startswith(
+        "warning[XAC803]: the list of arguments may be incomplete because the file cannot be expanded with the "
+        "arguments given"
+    )
     assert "hint: give which:=..." in answer.err
 
 

@@ -114,7 +114,7 @@ def test_the_provenance_of_what_has_changed_since(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
     robot.write_text(robot.read_text().replace('side="left"', 'side="right"'))
-    with pytest.raises(LinkwrightError, match="is not what"):
+    with pytest.raises(LinkwrightError, match="does not match the expansion of"):
         expansion.provenance(link)
 
 
@@ -213,7 +213,9 @@ def test_names_of_elements_deeper_down(write):
 def test_unknown_names(robot, run, name, hint):
     answer = run("--explain", name, str(robot))
     assert answer.status == 1
-    assert answer.err == (f"error[XAC801]: 'a.xacro' expands to no link or joint named '{name}'\n   = hint: {hint}\n")
+    assert answer.err == (
+        f"error[XAC801]: the expansion of 'a.xacro' has no link or joint named '{name}'\n   = hint: {hint}\n"
+    )
 
 
 def test_a_file_with_mistakes(write, run):

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand
 from linkwright.xmltree import parse
-from linkwright.xmltree.formatting import changes, format_text, with_changes
+from linkwright.xmltree.formatting import apply_edits, changes, format_text
 from linkwright.xmltree.style import Style
 
 SHARED = Path(__file__).parents[3] / "shared"
@@ -89,8 +89,8 @@ def test_what_is_no_xml_is_not_formatted():
 def test_only_lines_of_a_range_change():
     before = "<a>\n<b/>\n<c/>\n\n<d/>\n</a>\n"
     after = format_text(before, "a.xml")
-    assert with_changes(before, changes(before, after, (4, 5))) == "<a>\n<b/>\n<c/>\n\n  <d/>\n</a>\n"
-    assert with_changes(before, changes(before, after)) == after
+    assert apply_edits(before, changes(before, after, (4, 5))) == "<a>\n<b/>\n<c/>\n\n  <d/>\n</a>\n"
+    assert apply_edits(before, changes(before, after)) == after
 
 
 TEXTS = st.sampled_from(["", " ", "\n", "\n\n  ", " x ", "<!-- c -->", "<?p q?>", "<![CDATA[ ]]>", "&lt;"])

@@ -9,7 +9,7 @@ export interface ComparedRobot {
   marks: Record<string, Mark>;
 }
 
-/** A position in a source text, 1-based: as text for users, and the file for the Source panel. */
+/** A 1-based position in a source text: a text for users, and the file and line for the Source panel. */
 export interface ComparedPlace {
   text: string;
   file: string;

@@ -8,7 +8,7 @@ export type PropertyValue = boolean | number | string | null;
 
 export type RowDetails = "frame" | "link" | "joint" | "effort";
 
-/** The topics offered for a row: those with one of the types whose names contain one of the words. */
+/** The topics offered for a row: topics of one of the types with a name that contains one of the words. */
 export interface TopicOffer {
   messages: string[];
   words: string[];
@@ -103,7 +103,7 @@ export type EditKind = "set" | "enable" | "disable" | "add" | "duplicate" | "ren
 
 export type Question = "unsaved" | "exists" | "changed_on_disk";
 
-/** An edit to undo or redo: its kind, and the name of the property or display. */
+/** An edit to undo or redo: the kind of the edit, and the name of the property or display. */
 export interface EditName {
   kind: EditKind;
   name: string;
@@ -127,7 +127,7 @@ export interface DisplayClass {
   messages: string[];
 }
 
-/** A topic of the graph, its message type, and the display classes that can show it, possibly none. */
+/** A topic of the graph, its message type, and the display classes that can show it, if any. */
 export interface TopicChoice {
   topic: string;
   message: string;
@@ -163,7 +163,7 @@ export interface ConfigurationSaved {
   type: "configuration_saved";
 }
 
-/** The rejection of a page's request, with the reason. */
+/** The notice that a request of the page was refused, with the reason. */
 export interface ConfigurationRefused {
   message: string;
   question: Question | null;
@@ -199,7 +199,7 @@ export interface RemoveDisplays {
   type: "remove_displays";
 }
 
-/** A request to move displays into a group, before one of its displays. */
+/** A request to move displays into a group, before one of the displays in it. */
 export interface MoveDisplays {
   displays: string[];
   group: string | null;
@@ -207,7 +207,7 @@ export interface MoveDisplays {
   type: "move_displays";
 }
 
-/** A request to move displays into a new group, at the position of the first of them. */
+/** A request to move displays into a new group at the position of the first display. */
 export interface GroupDisplays {
   displays: string[];
   name: string;
@@ -219,7 +219,7 @@ export interface Undo {
   type: "undo";
 }
 
-/** A request to redo the edit that was last undone. */
+/** A request to redo the last undone edit. */
 export interface Redo {
   type: "redo";
 }
@@ -290,7 +290,7 @@ export interface Panels {
   type: "panels";
 }
 
-/** The panels that are open after the user has opened or closed one; the file stores them. */
+/** The open panels, sent after the user has opened or closed a panel; the file stores them. */
 export interface ShowPanels {
   shown: PanelName[];
   type: "show_panels";

@@ -55,7 +55,7 @@ export interface EditHistory {
   type: "edit_history";
 }
 
-/** A request for the editable parts of a link, which the user has selected. */
+/** A request for the editable parts of a link that the user has selected. */
 export interface AskEditableParts {
   display: string;
   link: string;
@@ -86,7 +86,7 @@ export interface UndoEdit {
   type: "undo_edit";
 }
 
-/** A request to redo the edit that was last undone. */
+/** A request to redo the last undone edit. */
 export interface RedoEdit {
   type: "redo_edit";
 }

@@ -2,7 +2,7 @@
 
 import type { View } from "./views-and-tools";
 
-/** A request to export the scene as a file; `view` is the page's view. */
+/** A request to export the scene as a file; `view` is the current view of the page. */
 export interface AskExport {
   format: "html" | "glb";
   view: View;

@@ -12,7 +12,7 @@ export interface CameraModel {
   offset_y: number;
 }
 
-/** One image of Image or Camera. */
+/** An image of the displays Image and Camera. */
 export interface ImageFrame {
   width: number;
   height: number;
@@ -33,7 +33,7 @@ export interface ImageSize {
   type: "image_size";
 }
 
-/** The cells of Map, row by row from the origin's corner, each as the byte of its int8 value. */
+/** The cells of Map, row by row from the corner at the origin, each as the byte of its int8 value. */
 export interface OccupancyMap {
   width: number;
   height: number;

@@ -40,7 +40,7 @@ export interface MarkerShape {
   texture: string | null;
 }
 
-/** Marker and MarkerArray: new and changed markers, and the IDs of removed markers. */
+/** The new and changed markers of Marker and MarkerArray, and the IDs of removed markers. */
 export interface MarkersChanged {
   everything: boolean;
   gone: string[];
@@ -101,7 +101,7 @@ export interface InteractiveMarkerMoved {
   kind: "interactive_marker_moved";
 }
 
-/** The user acted on an interactive marker; poses and points are in the marker's frame. */
+/** An action of the user on an interactive marker; poses and points are in the frame of the marker. */
 export interface MarkerFeedback {
   display: string;
   marker: string;

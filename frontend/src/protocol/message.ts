@@ -11,13 +11,13 @@ export interface Hello {
   type: "hello";
 }
 
-/** Whether the program, and not the connection, causes most of the delay that the page observes. */
+/** Whether most of the delay that the page observes is caused by the program, not by the connection. */
 export interface ProgramIsLate {
   late: boolean;
   type: "program_is_late";
 }
 
-/** The number of messages that the page has received, by which it acknowledges them. */
+/** The acknowledgement of messages: the number of messages that the page has received. */
 export interface Received {
   count: number;
   type: "received";
@@ -35,7 +35,7 @@ export interface FrameTable {
 
 export const DATA_KIND = 2;
 
-/** The removal of a display's content: the content under a key, or all of it. */
+/** The removal of content of a display: the content under a key, or all content if the key is None. */
 export interface DisplayForgotten {
   display: string;
   key: string | null;

@@ -12,7 +12,7 @@ export interface WatchNavigation {
   type: "watch_navigation";
 }
 
-/** A command of the user: one for both lifecycle managers, or one that cancels all goals. */
+/** A command of the user, which is for both lifecycle managers or cancels all goals. */
 export interface CommandNavigation {
   command: NavigationCommand;
   type: "command_navigation";

@@ -10,7 +10,7 @@ export interface CloudPoints {
   kind: "cloud_points";
 }
 
-/** The cells of GridCells: centres, shape (N, 3), and side lengths, metres, in the message's frame. */
+/** The cells of GridCells in the frame of the message: centres, shape (N, 3), and side lengths, metres. */
 export interface CellGrid {
   positions: Float32Array;
   width: number;

@@ -21,7 +21,7 @@ export interface Joints {
   type: "joints";
 }
 
-/** The positions of the Joints panel's joints, rad or m, including mimic joints. */
+/** The positions of the joints in the Joints panel, rad or m, including mimic joints. */
 export interface JointPositions {
   positions: Record<string, number>;
   type: "joint_positions";
@@ -34,7 +34,7 @@ export interface SetJoint {
   type: "set_joint";
 }
 
-/** Positions of several joints, rad or m: a pose was recalled, or a sweep advances. */
+/** New positions of several joints, rad or m, when a pose is restored or a sweep advances. */
 export interface SetJoints {
   positions: Record<string, number>;
   type: "set_joints";
@@ -79,7 +79,7 @@ export interface Surface {
   occlusion_map: string | null;
 }
 
-/** A shape to draw, posed in its link's frame. */
+/** A shape to draw, with its pose in the frame of the link. */
 export interface Shape {
   kind: ShapeKind;
   size: number[];
@@ -98,7 +98,7 @@ export interface Shape {
   surface: Surface | null;
 }
 
-/** A link to draw, and the frame whose pose the link has. */
+/** A link to draw, which is placed at the pose of a frame. */
 export interface LinkScene {
   name: string;
   frame: string;
@@ -109,7 +109,7 @@ export interface LinkScene {
   inertia: LinkInertia | null;
 }
 
-/** A joint, posed in its parent link's frame; `axis` is in the joint's own frame. SI units. */
+/** A joint with its pose in the frame of the parent link; `axis` is in the frame of the joint. SI units. */
 export interface JointScene {
   name: string;
   kind: "revolute" | "continuous" | "prismatic" | "fixed" | "floating" | "planar";
@@ -141,7 +141,7 @@ export interface MeshStatus {
   type: "mesh_status";
 }
 
-/** A request for the source positions of a RobotModel display's link, which the user has selected. */
+/** A request for the source positions of a link that the user has selected in a RobotModel display. */
 export interface AskProvenance {
   display: string;
   link: string;

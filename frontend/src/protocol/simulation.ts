@@ -50,7 +50,7 @@ export interface ModelChoices {
   type: "model_choices";
 }
 
-/** A change of a model or light; fields that are None are left unchanged. */
+/** A change of a model or light; fields that are None do not change. */
 export interface EntityChange {
   name: string;
   pose: number[] | null;
@@ -112,7 +112,7 @@ export interface UndoWorld {
   type: "undo_world";
 }
 
-/** A request to redo the change that was undone last. */
+/** A request to redo the last undone change. */
 export interface RedoWorld {
   type: "redo_world";
 }
@@ -144,7 +144,7 @@ export interface SimulationNotice {
   type: "simulation_notice";
 }
 
-/** The confirmation that the model that the page requested is in the world. */
+/** The confirmation that a model that the page requested was added to the world. */
 export interface ModelAdded {
   name: string;
   type: "model_added";

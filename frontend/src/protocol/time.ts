@@ -18,7 +18,7 @@ export interface Timeline {
   type: "timeline";
 }
 
-/** The extent of the stored last minutes: first and last time, size in bytes, and maximum size. */
+/** The extent of the stored last minutes: start and end, size in bytes, and maximum size in bytes. */
 export interface HistoryExtent {
   start: number;
   end: number;
@@ -51,14 +51,14 @@ export interface SeekTime {
   type: "seek_time";
 }
 
-/** A request to jump to the next or previous displayed message, of any topic or of a single one. */
+/** A request to jump to the next or previous message, of the displayed topics or of a single topic. */
 export interface StepTime {
   forward: boolean;
   topic: string;
   type: "step_time";
 }
 
-/** A request to return from the last minutes to the present. */
+/** A request to show the present again instead of the last minutes. */
 export interface GoLive {
   type: "go_live";
 }
@@ -103,7 +103,7 @@ export interface StopRecording {
   type: "stop_recording";
 }
 
-/** A request to save the last minutes, or the part of them between two times. */
+/** A request to save the last minutes, or only the messages between two times. */
 export interface SaveMinutes {
   start: number | null;
   end: number | null;

@@ -9,14 +9,14 @@ export interface View {
   values: Record<string, PropertyValue>;
 }
 
-/** A class of views: its property rows, whose IDs are the names of values, and RViz's defaults. */
+/** A class of views: its property rows, with the names of values as IDs, and the defaults of RViz. */
 export interface ViewClass {
   cls: string;
   properties: Property[];
   defaults: Record<string, PropertyValue>;
 }
 
-/** All types of views; sent before the first view. */
+/** All classes of views, sent before the first view. */
 export interface ViewClasses {
   classes: ViewClass[];
   type: "view_classes";
@@ -83,7 +83,7 @@ export interface Tool {
   properties: Property[];
 }
 
-/** A type of tool that can be added. */
+/** A class of tools that can be added. */
 export interface ToolClass {
   cls: string;
   name: string;
@@ -96,7 +96,7 @@ export interface Tools {
   type: "tools";
 }
 
-/** A tool's new property value, set by any page, or the current value after a refused one. */
+/** The value of a tool property after any page has set it, or after a value was refused. */
 export interface ToolPropertyChanged {
   id: string;
   value: PropertyValue;

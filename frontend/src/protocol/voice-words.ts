@@ -6,7 +6,7 @@ export interface EnrolledWord {
   takes: number;
 }
 
-/** Whether the page receives the words from now on, at first and after every change. */
+/** Whether the page receives the words, initially and after every change. */
 export interface WatchWords {
   watched: boolean;
   type: "watch_words";

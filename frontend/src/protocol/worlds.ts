@@ -22,7 +22,7 @@ export interface RayAngles {
   count: number;
 }
 
-/** A lidar of a world, and those of its rays that are drawn. */
+/** A lidar of a world, and the rays of the lidar that are drawn. */
 export interface LidarScene {
   name: string;
   link: string;
@@ -83,7 +83,7 @@ export interface WorldPoses {
   kind: "world_poses";
 }
 
-/** The measured ray lengths of a World display's lidar, m, shape (vertical * horizontal,). */
+/** The measured ray lengths of a lidar of a World display, in m, shape (vertical * horizontal,). */
 export interface WorldRays {
   lidar: string;
   ranges: Float32Array;

@@ -58,4 +58,4 @@ __getattr__ = deferred(
         "writing": ("COMPRESSIONS", "STORAGES", "BagWriter"),
     },
 )
-"""All that reads, writes or plays: many only ask whether a file is a recording."""
+"""The classes and functions that read, write or play load lazily, because many callers only ask `is_recording`."""

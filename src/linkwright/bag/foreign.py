@@ -1,7 +1,7 @@
-"""Reads MCAP files that also contain data of other systems, such as recordings of Foxglove.
+"""Read MCAP files that also contain data of other systems, such as recordings of Foxglove.
 
 The library rejects the whole file if the file's profile is not ``ros2``, or if a schema is in a language that ROS 2
-does not use (JSON, Protobuf, ROS 1 ...). The library therefore receives a patched file, in which these parts are
+does not use (JSON, Protobuf, ROS 1 ...). The library therefore receives a patched file, in which these pieces are
 replaced by others of equal length: the profile ``ros2``, and empty schemas. `BagReader` omits topics with other
 encodings, and reports them.
 """
@@ -14,88 +14,88 @@ from typing import BinaryIO
 
 MAGIC = b"\x89MCAP0\r\n"
 HEAD = struct.Struct("<BQ")
-"""The head of a record: its kind, and the length of its content."""
+"""The head of a record: its type, and the length of its content."""
 FOOTER_BODY = struct.Struct("<QQI")
 
-_HEADER, _SCHEMA = 0x01, 0x03
+_HEADER_TYPE, _SCHEMA_TYPE = 0x01, 0x03
 _PROFILE = b"ros2"
-_LANGUAGES = (b"ros2msg", b"ros2idl", b"omgidl", b"")
-_LENGTH, _ID = struct.Struct("<I"), 2
+_ROS_LANGUAGES = (b"ros2msg", b"ros2idl", b"omgidl", b"")
+_LENGTH, _ID_SIZE = struct.Struct("<I"), 2
 
 
-def patches_of(path: Path) -> dict[int, bytes]:
-    """Return the patches that let the library read a complete file with an index.
+def find_patches(path: Path) -> dict[int, bytes]:
+    """Return the patches that let the library read a complete file with an index, by offset.
 
-    The result maps the offset of each patch in the file to the bytes to insert there.
+    Each offset in the file is mapped to the bytes that replace those at the offset.
     """
     with path.open("rb") as file:
         patches = header_patch(file)
         file.seek(-HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
         end = file.tell()
-        (place, *_) = FOOTER_BODY.unpack_from(file.read(), HEAD.size)
-        while place + HEAD.size <= end:
-            file.seek(place)
-            kind, length = HEAD.unpack(file.read(HEAD.size))
-            place += HEAD.size
-            if kind == _SCHEMA:
-                patches |= schema_patch(place, file.read(length))
-            place += length
+        (offset, *_) = FOOTER_BODY.unpack_from(file.read(), HEAD.size)
+        while offset + HEAD.size <= end:
+            file.seek(offset)
+            record_type, length = HEAD.unpack(file.read(HEAD.size))
+            offset += HEAD.size
+            if record_type == _SCHEMA_TYPE:
+                patches |= schema_patch(offset, file.read(length))
+            offset += length
     return patches
 
 
 def header_patch(file: BinaryIO) -> dict[int, bytes]:
-    """Return the patch that sets the profile to ``ros2``, or an empty dict if none is needed.
+    """Return the patch that sets the profile to ``ros2``; empty if none is needed.
 
-    The profile replaces a part of the name of the program that wrote the file.
+    The profile takes bytes from the name of the program that wrote the file.
     """
     file.seek(len(MAGIC))
     head = file.read(HEAD.size)
     if len(head) < HEAD.size:
         return {}
-    kind, length = HEAD.unpack(head)
-    parts = _texts(file.read(min(length, 1 << 16)), 0, 2)
-    if kind != _HEADER or parts is None or parts[0] == _PROFILE:
+    record_type, length = HEAD.unpack(head)
+    profile_and_library = _read_strings(file.read(min(length, 1 << 16)), 0, 2)
+    if record_type != _HEADER_TYPE or profile_and_library is None or profile_and_library[0] == _PROFILE:
         return {}
-    rest = b"".join(parts)[: -len(_PROFILE)]
-    if len(rest) + len(_PROFILE) != sum(map(len, parts)):
+    library = b"".join(profile_and_library)[: -len(_PROFILE)]
+    if len(library) + len(_PROFILE) != sum(map(len, profile_and_library)):
         return {}
-    return {len(MAGIC) + HEAD.size: _text(_PROFILE) + _text(rest)}
+    return {len(MAGIC) + HEAD.size: _text(_PROFILE) + _text(library)}
 
 
-def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
-    """Return the patch that empties a schema in a language that ROS 2 does not use.
+def schema_patch(place: int, content: bytes) -> dict[int, bytes]:
+    """Return the patch that empties a schema in a language that ROS 2 does not use; else an empty patch.
 
-    The result is an empty dict for any other schema.
+    The length of the schema record stays the same.
 
     Args:
-        place: the offset of the record's body in the file.
-        body: the body of the record.
+        place: the offset of the record's content in the file.
+        content: the content of the record.
     """
-    parts = _texts(body, _ID, 3)
-    if parts is None or parts[1] in _LANGUAGES:
+    fields = _read_strings(content, _ID_SIZE, 3)
+    if fields is None or fields[1] in _ROS_LANGUAGES:
         return {}
-    name, language, text = parts
-    return {place + _ID: _text(name) + _text(b"") + _text(b" " * (len(language) + len(text)))}
+    name, language, text = fields
+    return {place + _ID_SIZE: _text(name) + _text(b"") + _text(b" " * (len(language) + len(text)))}
 
 
-def known_schema(body: bytes) -> bytes:
-    """Return the body of a schema record, patched if the library cannot read it otherwise."""
-    return body[:_ID] + schema_patch(0, body).get(_ID, body[_ID:])
+def readable_schema(content: bytes) -> bytes:
+    """Return the content of a schema record, patched if the library could not read it."""
+    return content[:_ID_SIZE] + schema_patch(0, content).get(_ID_SIZE, content[_ID_SIZE:])
 
 
-def _texts(body: bytes, place: int, count: int) -> list[bytes] | None:
-    """Return `count` consecutive length-prefixed strings, or None if the body is truncated."""
-    found = []
+def _read_strings(content: bytes, place: int, count: int) -> list[bytes] | None:
+    """Return `count` consecutive length-prefixed strings; None if the content is truncated."""
+    strings = []
     for _ in range(count):
-        if place + _LENGTH.size > len(body):
+        if place + _LENGTH.size > len(content):
             return None
-        (length,) = _LENGTH.unpack_from(body, place)
+        (length,) = _LENGTH.unpack_from(content, place)
         place += _LENGTH.size
-        if place + length > len(body):
+        if place + length > len(content):
             return None
-        found.append(body[place : place + length])
+        strings.append(content[place : place + length])
         place += length
-    return found
+    return strings
 
 
 def _text(text: bytes) -> bytes:

@@ -1,4 +1,4 @@
-"""The names of recordings' files and of topics, and the types of messages, that this package shares."""
+"""Names of files, topics and types that the modules of recordings share."""
 
 from __future__ import annotations
 
@@ -8,59 +8,59 @@ from pathlib import Path
 
 TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
 TRANSFORMS_NS = 2_000_000_000
-"""The time before a moment in which transforms are used: each message has only some of the frames."""
+"""The time before a moment in which transforms are used: a single message has only some of the frames."""
 
 Recorded = tuple[str, int, bytes]
-"""A message: its topic, when it was received, nanoseconds since the epoch, and its CDR bytes."""
+"""A message: its topic, its reception time in nanoseconds since the epoch, and its serialized data."""
 
 SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
-"""The suffixes of the files of a recording, with the names of their storages."""
+"""The suffixes of files of recordings, with the storage format of each."""
 
 METADATA = "metadata.yaml"
-"""The file that describes the other files in the folder of a recording."""
+"""The name of the file that describes the other files in the folder of a recording."""
 
-ROS1 = ".bag"
-"""The suffix of recordings of ROS 1, which are refused with a hint on converting them."""
+ROS1_SUFFIX = ".bag"
+"""The suffix of recordings of ROS 1, which are rejected with a hint on how to convert them."""
 
 PACKED = ".zstd"
-"""Put behind the name of a file that is compressed as a whole."""
+"""The suffix that follows the name of a file that is compressed as a whole."""
 
-_NUMBERED = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
-"""The names that rosbag2 gives to the files of a recording; those that end with a time of day have a zero there."""
+_NUMBERED_NAME = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
+"""The pattern of the names that rosbag2 gives to files: a base name, a number, a suffix, and a compression suffix."""
 
 
-def numbered(folder: Path, number: int, suffix: str) -> Path:
-    """Return the path of a file in a recording, named after the folder and a number that starts at 0."""
+def numbered_path(folder: Path, number: int, suffix: str) -> Path:
+    """Return the path of a file in a recording: the folder's name with a number from 0 and a suffix."""
     return folder / f"{Path(folder.absolute()).name}_{number}{suffix}"
 
 
-def storage_of(path: Path) -> str | None:
-    """Return the storage format that the name of a file indicates, or None if it indicates none.
+def storage_format(path: Path) -> str | None:
+    """Return the storage format that the name of a file indicates; None if it is not a file of a recording.
 
-    The file may be compressed.
+    The name may end with the suffix of compressed files.
     """
     return SUFFIXES.get(Path(path.name.removesuffix(PACKED)).suffix)
 
 
 def is_recording(path: Path) -> bool:
-    """Return whether a path looks like a recording.
+    """Return whether a path looks like a recording, without opening it.
 
     A recording is a file with a suffix of recordings, or a folder with such files or a ``metadata.yaml``.
     """
     if not path.is_dir():
-        return storage_of(path) is not None or path.suffix == ROS1
-    return (path / METADATA).exists() or any(storage_of(entry) is not None for entry in path.iterdir())
+        return storage_format(path) is not None or path.suffix == ROS1_SUFFIX
+    return (path / METADATA).exists() or any(storage_format(entry) is not None for entry in path.iterdir())
 
 
 def in_order(files: Sequence[Path]) -> list[Path]:
-    """Return the files of a recording, sorted by number."""
-    found = [(int(match[2]) if (match := _NUMBERED.fullmatch(file.name)) else 0, file) for file in files]
-    return [each for _, each in sorted(found)]
+    """Return the files of a recording in the order of their numbers."""
+    numbered_files = [(int(match[2]) if (match := _NUMBERED_NAME.fullmatch(file.name)) else 0, file) for file in files]
+    return [file for _, file in sorted(numbered_files)]
 
 
-def are_of_one_recording(files: Sequence[Path]) -> bool:
-    """Return whether the names of files have consecutive numbers, as those of one recording do."""
-    found = [_NUMBERED.fullmatch(file.name) for file in files]
-    numbers = sorted(int(match[2]) for match in found if match is not None)
-    alike = {(match[1], match[3], match[4]) for match in found if match is not None}
-    return len(alike) == 1 and len(numbers) == len(files) == numbers[-1] - numbers[0] + 1
+def belong_together(files: Sequence[Path]) -> bool:
+    """Return whether files have one base name and consecutive numbers, as the files of a recording have."""
+    matches = [_NUMBERED_NAME.fullmatch(file.name) for file in files]
+    numbers = sorted(int(match[2]) for match in matches if match is not None)
+    base_names = {(match[1], match[3], match[4]) for match in matches if match is not None}
+    return len(base_names) == 1 and len(numbers) == len(files) == numbers[-1] - numbers[0] + 1

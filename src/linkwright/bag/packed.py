@@ -1,7 +1,7 @@
-"""Reads compressed files of recordings without metadata.
+"""Read compressed files of recordings without metadata.
 
-The metadata are missing if only the file was copied, or if the recorder was killed. rosbag2 compresses whole files or
-single messages, and only ``metadata.yaml`` states which.
+The metadata is missing if only a file was copied, or if the recorder was killed. rosbag2 compresses whole files or
+single messages, and only ``metadata.yaml`` states the unit.
 """
 
 from __future__ import annotations
@@ -24,38 +24,38 @@ else:
     from backports import zstd
 
 _MAGIC = b"\x28\xb5\x2f\xfd"
-"""The first bytes of zstd's format (RFC 8878); messages begin with a zero."""
+"""The first bytes of zstd data (RFC 8878); an uncompressed message begins with a zero."""
 
 
 def decompress_file(path: Path, folder: Path) -> Path:
     """Decompress a file into a folder, and return the path of the result.
 
-    Of a truncated file, the available part is decompressed.
+    Of a truncated file, the part that exists is decompressed.
 
     Raises:
         zstd.ZstdError: the file is not compressed with zstd.
         OSError: the result cannot be written.
     """
-    plain = folder / path.name.removesuffix(PACKED)
-    with zstd.open(path, "rb") as source, plain.open("wb") as target, suppress(EOFError):
+    target_path = folder / path.name.removesuffix(PACKED)
+    with zstd.open(path, "rb") as source, target_path.open("wb") as target, suppress(EOFError):
         shutil.copyfileobj(source, target)
-    return plain
+    return target_path
 
 
-def unpack_messages(reader: Reader) -> None:
+def decompress_messages(reader: Reader) -> None:
     """Make the reader of a single file decompress its messages, if the first message is compressed.
 
     Args:
-        reader: the library's reader, which is open.
+        reader: the library's reader of a single file; it must be open.
     """
     storage: Any = reader.storage
-    first = next(iter(reader.messages()), None) if reader.message_count else None
-    if first is None or not first[2].startswith(_MAGIC):
+    first_message = next(iter(reader.messages()), None) if reader.message_count else None
+    if first_message is None or not first_message[2].startswith(_MAGIC):
         return
-    packed = storage.messages
+    read_messages = storage.messages
 
     def messages(*arguments: Any) -> Iterator[tuple[Any, int, bytes]]:
-        for connection, stamp_ns, data in packed(*arguments):
+        for connection, stamp_ns, data in read_messages(*arguments):
             yield connection, stamp_ns, zstd.decompress(data)
 
     storage.messages = messages

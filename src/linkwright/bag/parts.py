@@ -1,4 +1,4 @@
-"""Writes the files of a recording, and the ``metadata.yaml`` that lists them."""
+"""Write the files of a recording, and the ``metadata.yaml`` that lists them."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from linkwright.files import whole_files
 from linkwright.files.scratch_folders import ScratchFolder
 
 VERSION: Literal[8] = 8
-"""The version of the metadata; Humble reads 8 and below, except unknown fields; Jazzy writes 9."""
+"""The version of the metadata. Humble reads versions up to 8, except for unknown fields; Jazzy writes 9."""
 
 INFORMATION = "rosbag2_bagfile_information"
-"""The key of ``metadata.yaml`` below which everything is."""
+"""The top-level key of ``metadata.yaml``."""
 
 _Metadata = dict[str, Any]
 
@@ -34,7 +34,7 @@ class Part:
 
     Attributes:
         start_ns: the reception time of the first message, in nanoseconds since the epoch; None if there is no message.
-        path: the path of the file, which gets a second suffix when a compressed file is closed.
+        path: the path of the file; it gets a second suffix when a compressed file is closed.
     """
 
     def __init__(self, path: Path, compression: str, custom_data: Mapping[str, str]) -> None:
@@ -42,27 +42,27 @@ class Part:
         self._writer = Writer(path, version=VERSION, storage_plugin=plugin)
         self._writer.set_compression(CompressionMode[compression.upper()], CompressionFormat.ZSTD)
         self._writer.custom_data = dict(custom_data)
-        into: Any = _File(path)
-        self._writer.storage = Writer.STORAGE_PLUGINS[plugin](into, self._writer.compression_mode)
+        target: Any = _FixedPath(path)
+        self._writer.storage = Writer.STORAGE_PLUGINS[plugin](target, self._writer.compression_mode)
         if hasattr(self._writer.storage, "conn"):
-            _let_any_thread_close(self._writer.storage)
+            _allow_all_threads(self._writer.storage)
         self._connections: dict[str, Any] = {}
         self.start_ns: int | None = None
         self.path = path
 
     @property
     def storage(self) -> Any:
-        """The writer of the file, or None after the file was closed."""
+        """The library's storage of the file; None after the file was closed."""
         return self._writer.storage
 
     @property
     def size(self) -> int:
-        """The number of bytes written so far, including buffered ones."""
+        """The number of bytes written so far, including buffered bytes."""
         storage = self.storage
         if hasattr(storage, "conn"):
-            (pages,) = storage.conn.execute("PRAGMA page_count").fetchone()
-            (page,) = storage.conn.execute("PRAGMA page_size").fetchone()
-            return int(pages) * int(page)
+            (page_count,) = storage.conn.execute("PRAGMA page_count").fetchone()
+            (page_size,) = storage.conn.execute("PRAGMA page_size").fetchone()
+            return int(page_count) * int(page_size)
         return int(storage.bio.tell() + storage.chunk.bio.tell())
 
     def add_topic(self, name: str, type_name: str, schema: str, digest: str, offered_qos: Collection[Qos]) -> None:
@@ -72,12 +72,12 @@ class Part:
         )
 
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Add a message."""
+        """Append a message."""
         self._writer.write(self._connections[topic], stamp_ns, data)
         self.start_ns = stamp_ns if self.start_ns is None else min(self.start_ns, stamp_ns)
 
     def flush(self) -> None:
-        """Pass all buffered messages to the operating system."""
+        """Write all buffered messages to the operating system."""
         storage = self.storage
         if hasattr(storage, "close_chunk"):
             if storage.chunk.msgs:
@@ -87,7 +87,7 @@ class Part:
             storage.conn.commit()
 
     def close(self) -> _Metadata:
-        """Write the index, close the file and return the metadata of this file."""
+        """Write the index, close the file, and return the metadata of this file."""
         with ScratchFolder("bag") as folder:  # the library writes the metadata into this folder
             self._writer.metapath = Path(folder) / METADATA
             self._writer.close()
@@ -97,18 +97,18 @@ class Part:
         return information
 
     def abort(self) -> None:
-        """Close the file without completing it."""
+        """Close the file without an index and metadata."""
         self._writer.abort()
 
 
-def write_metadata(folder: Path, parts: Sequence[_Metadata]) -> None:
+def write_metadata(folder: Path, file_metadata: Sequence[_Metadata]) -> None:
     """Write the ``metadata.yaml`` of a recording.
 
     Args:
         folder: the folder of the recording.
-        parts: the metadata of the files, at least one.
+        file_metadata: the metadata of the recording's files, one or more.
     """
-    write_information(folder, _joined(parts))
+    write_information(folder, _combine(file_metadata))
 
 
 def write_information(folder: Path, information: _Metadata) -> None:
@@ -117,40 +117,46 @@ def write_information(folder: Path, information: _Metadata) -> None:
     whole_files.write_whole_file(folder / METADATA, text)
 
 
-def _joined(parts: Sequence[_Metadata]) -> _Metadata:
-    """Return the combined metadata of several files."""
-    files = [item for part in parts for item in part["files"]]
-    spans = [
+def _combine(file_metadata: Sequence[_Metadata]) -> _Metadata:
+    """Return the metadata of several files, combined into that of one recording."""
+    files = [item for metadata in file_metadata for item in metadata["files"]]
+    times_and_durations = [
         (file["starting_time"]["nanoseconds_since_epoch"], file["duration"]["nanoseconds"])
         for file in files
         if file["message_count"]
     ]
     topics: dict[tuple[str, str], _Metadata] = {}
-    for topic in (topic for part in parts for topic in part["topics_with_message_count"]):
+    for topic in (topic for part in file_metadata for topic in part["topics_with_message_count"]):
         key = topic["topic_metadata"]["name"], topic["topic_metadata"]["type"]
-        known = topics.get(key)
-        topics[key] = {**topic, "message_count": topic["message_count"] + (known["message_count"] if known else 0)}
-    start = min((start for start, _ in spans), default=parts[0]["starting_time"]["nanoseconds_since_epoch"])
+        merged = topics.get(key)
+        topics[key] = {**topic, "message_count": topic["message_count"] + (merged["message_count"] if merged else 0)}
+    start = min(
+        (start for start, _ in times_and_durations),
+        default=file_metadata[0]["starting_time"]["nanoseconds_since_epoch"],
+    )
     return {
-        **parts[-1],
+        **file_metadata[-1],
         "relative_file_paths": [file["path"] for file in files],
         "files": files,
         "starting_time": {"nanoseconds_since_epoch": start},
-        "duration": {"nanoseconds": max((begin + length for begin, length in spans), default=start) - start},
+        "duration": {
+            "nanoseconds": max((file_start + length for file_start, length in times_and_durations), default=start)
+            - start
+        },
         "message_count": sum(file["message_count"] for file in files),
         "topics_with_message_count": list(topics.values()),
     }
 
 
-def _let_any_thread_close(storage: Any) -> None:
-    """Replace the library's database connection, which can be used only in one thread."""
+def _allow_all_threads(storage: Any) -> None:
+    """Replace the library's database connection, which can only be used in one thread, by one without this limit."""
     storage.conn.close()
     storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
     storage.cursor = storage.conn.cursor()
 
 
-class _File:
-    """A path that replaces the folder in which the library would create its file."""
+class _FixedPath:
+    """Replaces the folder in which the library creates its file, so that the file gets a given path."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem

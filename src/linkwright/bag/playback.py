@@ -1,7 +1,7 @@
-"""Plays a recording interactively: play, pause, seek, step, speed, loop.
+"""Play a recording interactively: play, pause, seek, step, speed, loop.
 
-Recordings in files and the history of the last minutes are played in the same way. Messages are published in
-serialized form with the time at which they were received, so that subscribers handle them like live messages.
+Recordings in files and the history of the last minutes are played in the same way. Messages are published
+serialized, with the time at which they were received, so that subscribers handle them like live messages.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.time.clock import Alarm
 
 _TICK_NS = 16_000_000
-"""Real time between two looks for messages that are due."""
+"""The real time between two checks for messages to publish."""
 
 _MOST_MESSAGES, _MOST_BYTES = 1000, 16 << 20
-"""Published in one tick; when more are due, time goes slower, so that the program answers and nothing is left out."""
+"""The maximum number of messages and bytes in one tick; if there are more, playback is slower but skips nothing."""
 
 SLOWEST, FASTEST = 0.1, 10.0
-"""Least and greatest speed."""
+"""The minimum and maximum speed."""
 
 
 class Recording(Protocol):
-    """The interface of recordings that can be played; times are in nanoseconds since the epoch."""
+    """The interface of recordings that can be played. Times are in nanoseconds since the epoch."""
 
     @property
     def start_ns(self) -> int:
@@ -40,20 +40,20 @@ class Recording(Protocol):
         """Yield the messages of topics that were received at or after a time, ordered by time."""
 
     def state_at(self, topics: Collection[str], at_ns: int, /) -> list[Recorded]:
-        """Return the state at a time: the last message of each topic, and transforms."""
+        """Return the state at a time: the last message of each topic, and the transforms."""
 
     def time_before(self, topics: Collection[str], at_ns: int, /) -> int | None:
-        """Return the reception time of the last message before a time, or None if there is none."""
+        """Return the reception time of the last message before a time, or None."""
 
 
 class Output(Protocol):
-    """The interface of destinations for played messages."""
+    """The interface for destinations of played messages."""
 
     def wanted(self) -> frozenset[str]:
-        """Return the topics of the recording that have subscriptions."""
+        """Return the topics of the recording that have subscribers."""
 
     def publish_time(self, stamp_ns: int, /) -> None:
-        """Set the time of the playback, in nanoseconds since the epoch."""
+        """Set the time of playback, in nanoseconds since the epoch."""
 
     def publish(self, topic: str, stamp_ns: int, data: bytes, /) -> None:
         """Publish a message that was received at a time, in nanoseconds since the epoch."""
@@ -66,30 +66,30 @@ class Playback:
         node: the node whose dispatcher runs the playback.
         recording: the recording to play.
         output: the destination of the messages.
-        failed: called with the error if the recording cannot be read any further; playback is then paused.
+        on_error: called with the error if the recording can no longer be read; playback is then paused.
 
     Attributes:
         position_ns: the playback position, in nanoseconds since the epoch; all messages up to it have been published.
-        playing: whether the position advances.
+        playing: whether playback is running.
         speed: the number of recorded seconds per real second.
         loop: whether playback restarts at the end.
-        seeks: the number of seeks, including seeks to positions that could not be read.
-        changed: called when one of these attributes changes for a reason other than the passing of time.
-        on_reset: called when playback jumps to another time, so that subscribers drop their state.
+        seeks: the number of finished seeks, including those whose position could not be read.
+        changed: functions that are called when one of these attributes changes, except by the passing of time.
+        on_reset: called when playback jumps to another time, so that subscribers can drop their state.
     """
 
     def __init__(
-        self, node: NodeHandle, recording: Recording, output: Output, failed: Callable[[LinkwrightError], object]
+        self, node: NodeHandle, recording: Recording, output: Output, on_error: Callable[[LinkwrightError], object]
     ) -> None:
         self._node = node
         self._recording = recording
         self._output = output
-        self._failed = failed
+        self._failed = on_error
         self._wanted: frozenset[str] = frozenset()
         self._stream: Iterator[Recorded] = iter(())
         self._next: Recorded | None = None
         self._alarm: Alarm | None = None
-        self._ticked_ns = 0
+        self._last_tick_ns = 0
         self._target_ns: int | None = None
         self.position_ns = recording.start_ns
         self.playing = False
@@ -110,13 +110,13 @@ class Playback:
         return self._recording.end_ns
 
     def play(self) -> None:
-        """Start playing, from the beginning if the position is at the end."""
+        """Start playing; from the beginning if the position is at the end."""
         if self.playing:
             return
-        if self._aim() >= self.end_ns:
+        if self._target() >= self.end_ns:
             self.seek(self.start_ns)
         self.playing = True
-        self._ticked_ns = self._steady_ns()
+        self._last_tick_ns = self._steady_ns()
         self._set_alarm()
         self._notify()
 
@@ -139,34 +139,34 @@ class Playback:
     def seek(self, stamp_ns: int) -> None:
         """Jump to another time in the next iteration of the event loop.
 
-        Of several pending seeks, only the last one takes effect. The new time is published first. The messages of the
-        new state follow one iteration of the event loop later, because subscribers drop their state when the
-        clock goes back.
+        Of several pending seeks, only the last one takes effect. The new time is published first, and the messages of
+        the new state one iteration of the event loop later, because subscribers drop their state when the clock goes
+        back.
         """
-        pending = self._target_ns is not None
+        is_pending = self._target_ns is not None
         self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))
-        if not pending:
-            asyncio.get_running_loop().call_soon(self._begin_landing)
+        if not is_pending:
+            asyncio.get_running_loop().call_soon(self._begin_seek)
 
     def step(self, forward: bool, topic: str = "") -> None:
         """Pause, and step to the next or the previous message.
 
         Args:
-            forward: whether to step to the next message.
-            topic: the topic of the message to step to; empty for all subscribed topics.
+            forward: True for the next message, False for the previous one.
+            topic: the topic of that message; empty for any subscribed topic.
         """
         self.pause()
         try:
             if not forward:
-                before = self._recording.time_before({topic} if topic else self._wanted, self._aim())
-                if before is not None:
-                    self.seek(before)
+                previous_ns = self._recording.time_before({topic} if topic else self._wanted, self._target())
+                if previous_ns is not None:
+                    self.seek(previous_ns)
             elif topic:
                 self._step_to_next_of(topic)
             elif self._target_ns is None:
                 self._next = next(self._stream, None) if self._next is None else self._next
                 if self._next is not None:
-                    self._show_until(self._next[1])
+                    self._publish_until(self._next[1])
                     self._notify()
         except LinkwrightError as error:
             self._fail(error)
@@ -174,55 +174,55 @@ class Playback:
     def _step_to_next_of(self, topic: str) -> None:
         """Play up to the next message of a topic.
 
-        If these messages are too many for one iteration of the event loop, jump to that message instead.
+        If there are too many messages before it for one iteration of the event loop, jump to it instead.
         """
-        following = next(self._recording.messages({topic}, self._aim() + 1), None)
+        next_message = next(self._recording.messages({topic}, self._target() + 1), None)
         if self._target_ns is None:
             self._open_stream()  # reading ahead closed the stream, because a file supports only one
-            if following is not None:
-                self._show_until(following[1])
-        if following is not None and self._aim() < following[1]:
-            self.seek(following[1])
+            if next_message is not None:
+                self._publish_until(next_message[1])
+        if next_message is not None and self._target() < next_message[1]:
+            self.seek(next_message[1])
         self._notify()
 
     def take_over(self, stamp_ns: int) -> None:
-        """Continue from a time whose state the subscribers have already received."""
+        """Continue from a time at which the subscribers already have the state."""
         self.position_ns, self._target_ns = stamp_ns, None
         self._wanted = self._output.wanted()
         self._open_stream()
 
-    def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """Return the messages of topics that precede the current position.
+    def before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
+        """Return the messages of topics shortly before the current position.
 
         Args:
             topics: the names of the topics.
-            length_ns: the duration before the position to read.
-            most_bytes: the maximum size of the messages; if they are larger, the result is empty.
+            length_ns: the duration to read before the position.
+            max_bytes: the maximum total size of the messages; if it is exceeded, the result is empty.
         """
-        found: list[Recorded] = []
+        messages: list[Recorded] = []
         size = 0
         try:
             for message in self._recording.messages(topics, self.position_ns - length_ns):
                 size += len(message[2])
                 if message[1] > self.position_ns:
                     break
-                if size > most_bytes:
-                    found = []
+                if size > max_bytes:
+                    messages = []
                     break
-                found.append(message)
+                messages.append(message)
             self._open_stream()  # reading back closed the stream, because a file supports only one
         except LinkwrightError as error:
             self._fail(error)
-        return found
+        return messages
 
     def review(self) -> None:
-        """Update the set of subscribed topics, and publish the last message of each new one."""
-        wanted = self._output.wanted()
-        if wanted == self._wanted or self._target_ns is not None:
+        """Update the set of subscribed topics, and publish the last message of each topic that was added."""
+        topics = self._output.wanted()
+        if topics == self._wanted or self._target_ns is not None:
             return
-        new, self._wanted = wanted - self._wanted, wanted
+        new_topics, self._wanted = topics - self._wanted, topics
         try:
-            for message in self._recording.state_at(new, self.position_ns) if new else ():
+            for message in self._recording.state_at(new_topics, self.position_ns) if new_topics else ():
                 self._output.publish(*message)
             self._open_stream()
         except LinkwrightError as error:
@@ -234,15 +234,15 @@ class Playback:
         self.changed.clear()
         self._stream, self._next = iter(()), None
 
-    def _aim(self) -> int:
+    def _target(self) -> int:
         return self.position_ns if self._target_ns is None else self._target_ns
 
-    def _begin_landing(self) -> None:
-        self._output.publish_time(self._aim())
-        asyncio.get_running_loop().call_soon(self._land)
+    def _begin_seek(self) -> None:
+        self._output.publish_time(self._target())
+        asyncio.get_running_loop().call_soon(self._finish_seek)
 
-    def _land(self) -> None:
-        self.position_ns, self._target_ns = self._aim(), None
+    def _finish_seek(self) -> None:
+        self.position_ns, self._target_ns = self._target(), None
         self.seeks += 1
         self._wanted = self._output.wanted()
         try:
@@ -255,11 +255,11 @@ class Playback:
         self.on_reset()
         for message in state:
             self._output.publish(*message)
-        self._ticked_ns = self._steady_ns()
+        self._last_tick_ns = self._steady_ns()
         self._notify()
 
     def _open_stream(self) -> None:
-        """Open the stream of messages that follow the last published message."""
+        """Open the stream of the messages after the current position."""
         self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
         self._next = next(self._stream, None)
 
@@ -268,11 +268,11 @@ class Playback:
         if not self.playing:
             return
         now = self._steady_ns()
-        passed, self._ticked_ns = now - self._ticked_ns, now
+        elapsed, self._last_tick_ns = now - self._last_tick_ns, now
         if self._target_ns is None:
             end = self.end_ns  # the end moves while the recording is still being written
             try:
-                self._show_until(min(end, self.position_ns + round(passed * self.speed)))
+                self._publish_until(min(end, self.position_ns + round(elapsed * self.speed)))
             except LinkwrightError as error:
                 self._fail(error)
                 return
@@ -283,8 +283,8 @@ class Playback:
                 return
         self._set_alarm()
 
-    def _show_until(self, stamp_ns: int) -> None:
-        """Publish the messages up to a time, at most as many as one iteration of the loop allows."""
+    def _publish_until(self, stamp_ns: int) -> None:
+        """Publish the messages up to a time, but no more than one tick allows."""
         self._output.publish_time(stamp_ns)
         if self._next is None:
             self._next = next(self._stream, None)  # a recording in progress may have new messages
@@ -319,8 +319,8 @@ class Playback:
         self._notify()
 
     def _notify(self) -> None:
-        for each in self.changed:
-            each()
+        for listener in self.changed:
+            listener()
 
     def _steady_ns(self) -> int:
         return self._node.timebase.steady_ns()

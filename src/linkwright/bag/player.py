@@ -1,4 +1,4 @@
-"""Plays a recording with the original intervals between messages, as ``ros2 bag play`` does."""
+"""Play a recording with the original intervals between messages, as ``ros2 bag play`` does."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from linkwright.graph.time.clock import Alarm
 from linkwright.messages import Time, get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_AT_ONCE = 200
-"""Messages that are due are published this many at a time, so that the loop can serve others in between."""
+_MAX_BATCH = 200
+"""The maximum number of messages that are published at once, so that the event loop can run other tasks in between."""
 
-_SHORTEST_ROUND_NS = 1_000_000
-"""How long a round of a looped recording takes at least, so that others are served where it has but one message."""
+_MIN_ROUND_NS = 1_000_000
+"""The minimum duration of a round in a loop, so that other tasks run even if the recording has only one message."""
 
 
 @dataclass(frozen=True)
@@ -29,19 +29,19 @@ class PlayOptions:
     Attributes:
         rate: the playback speed; 2.0 is twice the speed of the recording.
         topics: the topics to play; empty for all.
-        without: the topics to exclude.
-        pattern: a regular expression; if `topics` is empty, only topics whose names contain a match are played.
-        without_pattern: a regular expression; topics whose names contain a match are excluded.
-        loop: whether to restart at the end, without a limit.
+        without: the topics that are not played.
+        pattern: a regular expression; if `topics` is empty, only topics with a match in their names are played.
+        without_pattern: a regular expression; topics with a match in their names are not played.
+        loop: whether to restart at the end again and again.
         clock_hz: the rate at which the recording's time is published on ``/clock``, in Hz; 0 to publish no clock.
         clock_topics: topics whose messages are each preceded by a clock message.
         clock_before_all: whether every message is preceded by a clock message.
         delay: the time to wait at the beginning of each round, in seconds.
-        start_offset: the position at which to begin, in seconds from the start of the recording.
-        duration: the duration to play, in seconds of the recording; None for all.
-        until_ns: the time at which to end, in nanoseconds since the epoch; None to play to the end.
+        start_offset: where to begin, in seconds from the start of the recording.
+        duration: the duration to play, in seconds of the recording; None to play to the end.
+        until_ns: the time at which to stop, in nanoseconds since the epoch; None to play to the end.
         paused: whether playback begins paused.
-        qos_overrides: topic -> the QoS profile to publish with.
+        qos_overrides: the QoS profiles with which topics are published, by topic.
     """
 
     rate: float = 1.0
@@ -65,8 +65,8 @@ class Player:
     """Plays a recording on the dispatcher of a node.
 
     Args:
-        node: the node that publishes; its log reports events.
-        bag: the recording, which must stay open during playback.
+        node: the node that publishes the messages and logs events.
+        bag: the recording; it must stay open during playback.
         options: the options of playback.
 
     Raises:
@@ -89,13 +89,13 @@ class Player:
         self._next: tuple[str, int, bytes] | None = None
         self._alarm: Alarm | None = None
         self._rate = options.rate
-        self._paused = options.paused
+        self._is_paused = options.paused
         self._position_ns = self._begin_ns
-        self._since_ns = 0
+        self._reference_ns = 0
         self.finished = False
         """Whether everything was played, or the player was closed."""
         self.message_count = 0
-        """How many messages were published."""
+        """The number of published messages."""
 
     @property
     def publishers(self) -> tuple[Publisher[Any], ...]:
@@ -110,27 +110,27 @@ class Player:
     @property
     def paused(self) -> bool:
         """Whether playback is paused."""
-        return self._paused
+        return self._is_paused
 
     def start(self) -> None:
         """Start playing."""
         self._begin()
 
     def pause(self) -> None:
-        """Pause playback, unless it is paused already."""
-        if not self._paused:
+        """Pause playback if it is not paused."""
+        if not self._is_paused:
             self.toggle_paused()
 
     def resume(self) -> None:
         """Resume playback if it is paused."""
-        if self._paused:
+        if self._is_paused:
             self.toggle_paused()
 
     def toggle_paused(self) -> None:
         """Pause or resume playback."""
-        self._anchor()
-        self._paused = not self._paused
-        self._logger.info("Pausing play." if self._paused else "Resuming play.")
+        self._set_reference()
+        self._is_paused = not self._is_paused
+        self._logger.info("Pausing play." if self._is_paused else "Resuming play.")
         self._schedule()
 
     def set_rate(self, rate: float) -> None:
@@ -141,24 +141,27 @@ class Player:
         """
         if not 0 < rate < inf:
             raise ValueError(f"a rate must be positive, not {rate}")
-        self._anchor()
+        self._set_reference()
         self._rate = rate
         self._logger.info(f"Set rate to {rate:.2f}")
         self._schedule()
 
     def play_next(self) -> bool:
-        """Publish the next message while paused, and return whether there was one."""
+        """Publish the next message while paused; return False if there is none."""
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:
-        """Publish messages while paused, and return how many were published.
+        """Publish messages while paused, and return the number of published messages.
 
         Args:
-            count: the number of messages; 0 for all remaining messages of this round.
+            count: the maximum number of messages; 0 for all remaining messages of this round.
         """
         published = 0
         while (
-            self._paused and self._next is not None and not self._is_beyond_end() and (published < count or not count)
+            self._is_paused
+            and self._next is not None
+            and not self._is_beyond_end()
+            and (published < count or not count)
         ):
             self._position_ns = max(self._position_ns, self._next[1])
             self._publish_next()
@@ -169,7 +172,7 @@ class Player:
 
     def seek(self, time_ns: int) -> None:
         """Jump to another time in the recording, in nanoseconds since the epoch."""
-        self._anchor()
+        self._set_reference()
         self._read_from(max(time_ns, self._bag.start_ns))
         self._end_or_schedule()
 
@@ -182,16 +185,16 @@ class Player:
 
     def now_ns(self) -> int:
         """Return the current time in the recording, in nanoseconds since the epoch."""
-        if self._paused:
+        if self._is_paused:
             return self._position_ns
-        return self._position_ns + max(0, round((self._steady_ns() - self._since_ns) * self._rate))
+        return self._position_ns + max(0, round((self._steady_ns() - self._reference_ns) * self._rate))
 
     # --- the round ------------------------------------------------------------------------------------------------
 
     def _begin(self, not_before_ns: int = 0) -> None:
         self._read_from(self._begin_ns)
         delay_ns = round(self._options.delay * NANOSECONDS_PER_SECOND)
-        self._since_ns = max(not_before_ns, self._steady_ns() + delay_ns)
+        self._reference_ns = max(not_before_ns, self._steady_ns() + delay_ns)
         self._end_or_schedule()
 
     def _read_from(self, time_ns: int) -> None:
@@ -202,10 +205,10 @@ class Player:
 
     def _run(self) -> None:
         self._alarm = None
-        if self.finished or self._paused:
+        if self.finished or self._is_paused:
             return
         now = self.now_ns()
-        for _ in range(_AT_ONCE):
+        for _ in range(_MAX_BATCH):
             if self._next is None or self._next[1] > now or self._is_beyond_end():
                 break
             self._publish_next()
@@ -224,7 +227,7 @@ class Player:
         if self._next is not None and not self._is_beyond_end():
             self._schedule()
         elif self._options.loop and self.message_count:
-            self._begin(self._since_ns + _SHORTEST_ROUND_NS)
+            self._begin(self._reference_ns + _MIN_ROUND_NS)
         else:
             self.close()
 
@@ -235,16 +238,16 @@ class Player:
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
-        if self.finished or self._paused or self._next is None:
+        if self.finished or self._is_paused or self._next is None:
             return
         wait_ns = round((self._next[1] - self._position_ns) / self._rate)
         assert self._node.handle.dispatcher is not None
-        self._alarm = self._node.handle.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
+        self._alarm = self._node.handle.dispatcher.call_at(self._reference_ns + max(0, wait_ns), self._run)
 
-    def _anchor(self) -> None:
-        """Make the current moment the origin of the playback time, before the rate changes."""
+    def _set_reference(self) -> None:
+        """Make the current moment the reference of the playback time, before the rate or the state changes."""
         self._position_ns = self.now_ns()
-        self._since_ns = self._steady_ns()
+        self._reference_ns = self._steady_ns()
 
     def _steady_ns(self) -> int:
         return self._node.handle.timebase.steady_ns()
@@ -264,9 +267,9 @@ class Player:
             hidden=True,
             every_service=not options.pattern,
         )
-        named = [topics[name] for name in options.topics or topics]
-        chosen = [topic for topic in named if selection.takes(topic.name, topic.type_name)]
-        return make_publishers(self._node, chosen, options.qos_overrides)
+        named_topics = [topics[name] for name in options.topics or topics]
+        selected_topics = [topic for topic in named_topics if selection.takes(topic.name, topic.type_name)]
+        return make_publishers(self._node, selected_topics, options.qos_overrides)
 
     def _start_clock(self) -> Publisher[Any] | None:
         options = self._options

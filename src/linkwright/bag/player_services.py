@@ -1,4 +1,4 @@
-"""The services that control a player, such as ``/rosbag2_player/pause``, as in rosbag2."""
+"""Services that control a player, such as ``/rosbag2_player/pause``, as in rosbag2."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _SERVICES = (
 
 
 class PlayerServices:
-    """Offers services that control a player, below the name of a node.
+    """Offers the services that control a player, below the name of a node.
 
-    Names, types and error responses follow ``rosbag2_transport::Player``.
+    Names, types and responses to errors follow ``rosbag2_transport::Player``.
 
     Args:
         node: the node.
@@ -35,8 +35,8 @@ class PlayerServices:
     def __init__(self, node: Node, player: Player) -> None:
         self._player = player
         self._logger = node.get_logger()
-        for name, kind in _SERVICES:
-            node.create_service(f"rosbag2_interfaces/srv/{kind}", f"~/{name}", getattr(self, f"_{name}"))
+        for name, type_name in _SERVICES:
+            node.create_service(f"rosbag2_interfaces/srv/{type_name}", f"~/{name}", getattr(self, f"_{name}"))
 
     def _pause(self, _: Any, response: Any) -> Any:
         self._player.pause()
@@ -68,20 +68,20 @@ class PlayerServices:
         return response
 
     def _play(self, _: Any, response: Any) -> Any:
-        """Reject the request to play.
+        """Reject the request, because the recording is already playing.
 
-        rosbag2 rejects the request while it is playing, and its program ends when playback ends.
+        rosbag2 also rejects it during playback, and its program ends when playback ends.
         """
         self._logger.warning("The recording is already playing: the request is ignored")
         response.success = False
         return response
 
     def _play_next(self, _: Any, response: Any) -> Any:
-        response.success = self._is_paused_for("play the next message") and self._player.play_next()
+        response.success = self._require_paused("play the next message") and self._player.play_next()
         return response
 
     def _burst(self, request: Any, response: Any) -> Any:
-        if self._is_paused_for("play a burst"):
+        if self._require_paused("play a burst"):
             response.actually_burst = self._player.burst(request.num_messages)
         return response
 
@@ -94,7 +94,7 @@ class PlayerServices:
         self._player.close()
         return response
 
-    def _is_paused_for(self, what: str) -> bool:
+    def _require_paused(self, action: str) -> bool:
         if not self._player.paused:
-            self._logger.warning(f"Asked to {what} while not paused: the request is ignored")
+            self._logger.warning(f"Asked to {action} while not paused: the request is ignored")
         return self._player.paused

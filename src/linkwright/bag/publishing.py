@@ -1,4 +1,4 @@
-"""Creates the publishers of a recording's topics."""
+"""Create the publishers for a recording's topics."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import TFMessage, Time, get_message
 
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
-_LATCHED = frozenset({STATIC_TRANSFORMS, "/robot_description"})
-"""Topics that subscribers expect to be latched, whatever profile the recording has."""
+_LATCHED_TOPICS = frozenset({STATIC_TRANSFORMS, "/robot_description"})
+"""The topics that subscribers expect to be latched, whatever profile was recorded."""
 _LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def make_publishers(
     node: Node, topics: Iterable[BagTopic], overrides: Mapping[str, QoSProfile] | None = None
 ) -> dict[str, Publisher[Any]]:
-    """Create a publisher for each topic, with the recorded quality of service.
+    """Create a publisher for each topic with its recorded quality of service, and return them by topic.
 
-    A topic of an unknown type is logged and skipped.
+    A topic with an unavailable type is logged and skipped.
 
     Args:
         node: the node that publishes.
         topics: the topics of a recording.
-        overrides: topic -> the QoS profile to publish with.
+        overrides: the QoS profiles that replace recorded ones, by topic.
 
     Returns:
-        The publishers by topic.
+        The publishers by the name of their topic.
     """
-    made: dict[str, Publisher[Any]] = {}
+    publishers: dict[str, Publisher[Any]] = {}
     for topic in topics:
         try:
             message_class = get_message(topic.type_name)
@@ -42,13 +42,13 @@ def make_publishers(
             node.get_logger().warning(f"Topic '{topic.name}' is not played: {error}")
             continue
         qos = (overrides or {}).get(topic.name) or profile_for_playing(topic.offered_qos)
-        made[topic.name] = node.create_publisher(message_class, topic.name, qos)
-    return made
+        publishers[topic.name] = node.create_publisher(message_class, topic.name, qos)
+    return publishers
 
 
 def missing_type_findings(bag: BagReader) -> list[Diagnostic]:
-    """Return the diagnostic BAG114 if topics cannot be played because their types are not known."""
-    names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _is_known(topic.type_name)]
+    """Return the diagnostic BAG114 if topics cannot be played because their types are missing; else no diagnostic."""
+    names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _has_type(topic.type_name)]
     if not names:
         return []
     message = phrase(
@@ -59,7 +59,7 @@ def missing_type_findings(bag: BagReader) -> list[Diagnostic]:
     return [Diagnostic("BAG114", message, severity=Severity.WARNING)]
 
 
-def _is_known(type_name: str) -> bool:
+def _has_type(type_name: str) -> bool:
     try:
         get_message(type_name)
     except LinkwrightError:
@@ -68,26 +68,26 @@ def _is_known(type_name: str) -> bool:
 
 
 class PublishedRecording:
-    """Publishes a recording and its time on ``/clock`` in a graph without other publishers.
+    """Publishes a recording, and its time on ``/clock``, in a graph without other publishers.
 
     Args:
         node: the node that publishes.
-        bag: the recording. The recording's own ``/clock`` is excluded, because the published time is the reception time
+        bag: the recording. Its own ``/clock`` is not published, because the published time is the reception time
             of messages.
-        namespace: the namespace of a robot whose transforms are also published as ``/tf`` and ``/tf_static``; empty for
+        namespace: the namespace of a robot; its transforms are also published as ``/tf`` and ``/tf_static``. Empty for
             none.
     """
 
     def __init__(self, node: Node, bag: BagReader, namespace: str = "") -> None:
         topics = [topic for topic in bag.topics if topic.name != CLOCK_TOPIC]
-        self._publishers = make_publishers(node, topics, dict.fromkeys(_LATCHED, _LATCHED_QOS))
-        doubled = {namespace + name: name for name in (TRANSFORMS, STATIC_TRANSFORMS)} if namespace else {}
-        self._doubles = {
-            topic: node.create_publisher(TFMessage, name, _LATCHED_QOS if name in _LATCHED else TF_QOS)
-            for topic, name in doubled.items()
+        self._publishers = make_publishers(node, topics, dict.fromkeys(_LATCHED_TOPICS, _LATCHED_QOS))
+        remapped = {namespace + name: name for name in (TRANSFORMS, STATIC_TRANSFORMS)} if namespace else {}
+        self._remapped_publishers = {
+            topic: node.create_publisher(TFMessage, name, _LATCHED_QOS if name in _LATCHED_TOPICS else TF_QOS)
+            for topic, name in remapped.items()
             if topic in self._publishers
         }
-        self._clock: Publisher[Any] = node.create_publisher(_CLOCK_TYPE, CLOCK_TOPIC, 10)
+        self._clock_publisher: Publisher[Any] = node.create_publisher(_CLOCK_TYPE, CLOCK_TOPIC, 10)
 
     @property
     def topics(self) -> frozenset[str]:
@@ -95,16 +95,16 @@ class PublishedRecording:
         return frozenset(self._publishers)
 
     def wanted(self) -> frozenset[str]:
-        """Return the topics that have subscriptions."""
-        publishers = [*self._publishers.items(), *self._doubles.items()]
-        return frozenset(name for name, each in publishers if each.get_subscription_count())
+        """Return the topics that have subscribers."""
+        publishers = [*self._publishers.items(), *self._remapped_publishers.items()]
+        return frozenset(name for name, publisher in publishers if publisher.get_subscription_count())
 
     def publish_time(self, stamp_ns: int) -> None:
         """Publish a time on ``/clock``."""
-        self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))
+        self._clock_publisher.publish(self._clock_publisher.msg_type(clock=Time.from_nanoseconds(stamp_ns)))
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
         """Publish a message."""
         self._publishers[topic].publish(data)
-        if topic in self._doubles:
-            self._doubles[topic].publish(data)
+        if topic in self._remapped_publishers:
+            self._remapped_publishers[topic].publish(data)

@@ -1,6 +1,6 @@
-"""Quality of service in recordings: conversion, and the profiles for recording and playing.
+"""Quality of service in recordings: conversion of profiles, and their choice for recording and playing.
 
-The rules for choosing profiles are those of rosbag2 (``rosbag2_transport/qos.cpp``).
+The rules for the choice are those of rosbag2 (``rosbag2_transport/qos.cpp``).
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Qos
 
 _RECORDING_DEPTH = 1000
-"""The depth of recording subscriptions. rosbag2 has 10, and a queue of its own behind it in C++."""
+"""The depth of recording subscriptions. rosbag2 uses 10, but has another queue behind it in C++."""
 
 _PLAYING_DEPTH = 10
-"""The depth of a publisher whose recorded ones are unknown: that of rosbag2's player."""
+"""The depth of a publisher if the recorded publishers are unknown or differ: that of rosbag2's player."""
 
 _POLICIES: Mapping[str, Any] = {
     "history": HistoryPolicy,
@@ -37,7 +37,7 @@ _POLICIES: Mapping[str, Any] = {
 _DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
 
 
-def to_bag(qos: QoSProfile) -> Qos:
+def to_library(qos: QoSProfile) -> Qos:
     """Convert a profile to the library's type."""
     from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
@@ -57,7 +57,7 @@ def to_bag(qos: QoSProfile) -> Qos:
     )
 
 
-def from_bag(qos: Qos) -> QoSProfile:
+def from_library(qos: Qos) -> QoSProfile:
     """Convert a recorded profile from the library's type."""
 
     def policy(kind: Any, value: Any) -> Any:
@@ -85,116 +85,120 @@ def to_text(profiles: Sequence[QoSProfile]) -> str:
     """Format profiles as the string that ``metadata.yaml`` contains up to version 8."""
     from rosbags.rosbag2.metadata import dump_qos_v8
 
-    return dump_qos_v8([to_bag(profile) for profile in profiles])
+    return dump_qos_v8([to_library(profile) for profile in profiles])
 
 
 def from_text(text: Any) -> list[QoSProfile]:
     """Parse the profiles in a ``metadata.yaml``: a string or, from version 9 on, a list."""
     from rosbags.rosbag2.metadata import parse_qos
 
-    return [from_bag(profile) for profile in parse_qos(text)]
+    return [from_library(profile) for profile in parse_qos(text)]
 
 
 def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
-    """Return a QoS profile for a subscription that is compatible with all publishers of a topic.
+    """Return a profile for a subscription that is compatible with all publishers of a topic.
 
     The subscription requests reliable or transient local only if all publishers offer it.
 
     Args:
         offered: the profiles of the publishers.
     """
-    reliable = all(qos.reliability is not ReliabilityPolicy.BEST_EFFORT for qos in offered)
-    latched = bool(offered) and all(qos.durability is DurabilityPolicy.TRANSIENT_LOCAL for qos in offered)
+    is_reliable = all(qos.reliability is not ReliabilityPolicy.BEST_EFFORT for qos in offered)
+    is_latched = bool(offered) and all(qos.durability is DurabilityPolicy.TRANSIENT_LOCAL for qos in offered)
     return QoSProfile(
         depth=_RECORDING_DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE,
     )
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the recorded QoS profile if all publishers offered the same, otherwise the default.
+    """Return the recorded profile if all publishers offered equivalent profiles, else the default profile.
 
-    Publishers may differ in depth and lifespan. The largest depth is then used, because one publisher now represents
+    Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of
     all of them. rosbag2 always uses a depth of 10 messages.
     """
-    if recorded and len({_offered(qos) for qos in recorded}) == 1:
+    if recorded and len({_compatibility_key(qos) for qos in recorded}) == 1:
         return max(recorded, key=lambda qos: (qos.history is HistoryPolicy.KEEP_ALL, qos.depth))
     return QoSProfile(depth=_PLAYING_DEPTH)
 
 
-def _offered(qos: QoSProfile) -> tuple[object, ...]:
-    """Return the part of a profile that determines which subscriptions are compatible."""
-    times = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
-    return (qos.reliability, qos.durability, qos.liveliness, *times)
+def _compatibility_key(qos: QoSProfile) -> tuple[object, ...]:
+    """Return the policies of a profile that determine which subscriptions are compatible."""
+    durations = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
+    return (qos.reliability, qos.durability, qos.liveliness, *durations)
 
 
-def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
-    """Return the QoS profiles by topic in an overrides file.
+def parse_overrides(document: object, source: str) -> dict[str, QoSProfile]:
+    """Return the profiles in a file of QoS overrides, by topic.
 
     Args:
-        document: the parsed YAML file of ``--qos-profile-overrides-path``: topic -> policies by name.
+        document: the parsed YAML file of ``--qos-profile-overrides-path``: policies by name, for each topic.
         source: the name of the file, for errors.
 
     Raises:
         LinkwrightError: BAG106, the structure of the file is invalid.
     """
     if not isinstance(document, Mapping) or not all(isinstance(item, Mapping) for item in document.values()):
-        raise _wrong(
+        raise _overrides_error(
             source,
-            phrase("it does not map topics to policies"),
+            phrase("it must map topics to policies"),
             phrase("write the topic's name, and below it a policy such as `reliability: reliable`"),
         )
-    return {str(topic): _profile(policies, str(topic), source) for topic, policies in document.items()}
+    return {str(topic): _parse_profile(policies, str(topic), source) for topic, policies in document.items()}
 
 
-def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile:
+def _parse_profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile:
     values: dict[str, Any] = {}
     for name, value in policies.items():
         if name in _POLICIES:
-            kind = _POLICIES[name]
-            if str(value).upper() not in kind.__members__:
-                known = kind.short_keys()
-                hint = did_you_mean(str(value).lower(), known) or phrase("choose from {names}", names=joined(known))
-                raise _wrong(
+            policy_class = _POLICIES[name]
+            if str(value).upper() not in policy_class.__members__:
+                policy_names = policy_class.short_keys()
+                hint = did_you_mean(str(value).lower(), policy_names) or phrase(
+                    "choose from {names}", names=joined(policy_names)
+                )
+                raise _overrides_error(
                     source,
-                    phrase("'{value}' is not a valid {name} (topic '{topic}')", value=value, name=name, topic=topic),
+                    phrase(
+                        ("policy '{name}' of topic '{topic}' cannot be '{value}'"), value=value, name=name, topic=topic
+                    ),
                     hint,
                 )
-            values[name] = kind[str(value).upper()]
+            values[name] = policy_class[str(value).upper()]
         elif name in _DURATIONS:
             if not isinstance(value, Mapping) or set(value) - {"sec", "nsec"}:
-                raise _wrong(
+                raise _overrides_error(
                     source,
                     phrase("{name} of topic '{topic}' is not a duration", name=name, topic=topic),
                     phrase("write `sec: 1` and `nsec: 0` below it"),
                 )
             values[name] = Duration(seconds=value.get("sec", 0), nanoseconds=value.get("nsec", 0))
-        elif _is_plain(name, value):
+        elif _is_valid_value(name, value):
             values[name] = value
         else:
-            known = [*_POLICIES, *_DURATIONS, "depth", "avoid_ros_namespace_conventions"]
-            raise _wrong(
+            policy_names = [*_POLICIES, *_DURATIONS, "depth", "avoid_ros_namespace_conventions"]
+            raise _overrides_error(
                 source,
                 phrase("policy '{name}' of topic '{topic}' is not valid", name=name, topic=topic),
-                did_you_mean(str(name), known),
+                did_you_mean(str(name), policy_names),
             )
     if "depth" not in values and values.get("history") is not HistoryPolicy.KEEP_ALL:
         values["depth"] = _PLAYING_DEPTH
     return QoSProfile(**values)
 
 
-def _is_plain(name: str, value: object) -> bool:
+def _is_valid_value(name: str, value: object) -> bool:
     if name == "depth":
         return type(value) is int and value > 0
     return name == "avoid_ros_namespace_conventions" and isinstance(value, bool)
 
 
-def _wrong(source: str, reason: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+def _overrides_error(source: str, reason: Phrase, hint: Phrase | None = None) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "BAG106",
-            phrase("'{source}' cannot be used as QoS overrides: {reason}", source=source, reason=reason),
+            phrase("the QoS overrides in '{source}' cannot be used: {reason}", source=source, reason=reason),
             hint=hint,
         )
     )

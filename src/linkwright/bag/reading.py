@@ -1,4 +1,4 @@
-"""Reads a recording: its topics, and its messages ordered by time."""
+"""Read a recording: its topics, and its messages ordered by time."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.bag.moments import Moments
-from linkwright.bag.names import METADATA, PACKED, Recorded, are_of_one_recording, storage_of
-from linkwright.bag.qos import from_bag
+from linkwright.bag.moments import StateLookup
+from linkwright.bag.names import METADATA, PACKED, Recorded, belong_together, storage_format
+from linkwright.bag.qos import from_library
 from linkwright.bag.scratch import scratch_folder
 from linkwright.bag.unfinished import is_unfinished, make_readable
 from linkwright.bag.unreadable import diagnose
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_OURS = "cdr"
-"""The serialization of ROS 2's messages; topics with another one are left out."""
+_ROS_FORMAT = "cdr"
+"""The serialization format of ROS 2 messages; topics with another format are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,94 +59,96 @@ class BagTopic:
 
 
 class BagReader:
-    """An open recording; close it, or use it in a ``with`` statement.
+    """An open recording. Close it, or use it in a ``with`` statement.
 
     Unknown message types are registered from the definitions in the recording.
 
     Args:
-        path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. If the recorder was killed,
-            there is neither a ``metadata.yaml`` nor an index, and everything that was written is read. A
+        path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. If the recorder was killed, and
+                ``metadata.yaml`` and the index are missing, all complete messages are read. A
             folder can also contain only the numbered files of one recording.
-        called: the name of the recording in messages; None for its path.
-        parts: the files of the recording, with any names, if several files are read as one recording.
+        display_name: the name of the recording in messages to the user; None for its path.
+        files: the files of the recording, with any names, if several files are read as one recording; else empty.
 
     Raises:
         LinkwrightError: BAG101, the path does not exist; BAG102, the path is not a recording, or the recording is
             damaged; BAG107, `rosbags` is not installed.
     """
 
-    def __init__(self, path: str | Path, called: str | None = None, parts: Sequence[Path] = ()) -> None:
+    def __init__(self, path: str | Path, display_name: str | None = None, files: Sequence[Path] = ()) -> None:
         try:
             import rosbags.rosbag2  # noqa: F401  # whether it is installed
         except ModuleNotFoundError as error:
             raise missing_extra("BAG107", error) from None
         self.path = Path(path)
-        self._called = display_path(self.path) if called is None else called
+        self._display_name = display_path(self.path) if display_name is None else display_name
         self._open = ExitStack()
-        self._is_cut_off = False
-        self._targets = list(parts) or _storage_targets(self.path, self._called)
+        self._is_truncated = False
+        self._targets = list(files) or _storage_targets(self.path, self._display_name)
         try:
             self._reader = self._opened(self._targets)
         except BaseException:
             self._open.close()
             raise
-        self.storage = _storage_of(self._targets[0])
-        self._moments = Moments(self._reader)
-        self._make_types_known()
-        self._others = {
-            connection.topic: form or "?"
+        self.storage = _target_storage(self._targets[0])
+        self._state_lookup = StateLookup(self._reader)
+        self._register_types()
+        self._other_formats = {
+            connection.topic: serialization_format or "?"
             for connection in self._reader.connections
-            if (form := _format_of(connection)) != _OURS
+            if (serialization_format := _serialization_format(connection)) != _ROS_FORMAT
         }
         self.topics = [
             BagTopic(
                 name,
                 info.msgtype or "",
                 info.msgcount,
-                _format_of(info.connections[0]),
-                tuple(from_bag(qos) for connection in info.connections for qos in _profiles(connection)),
+                _serialization_format(info.connections[0]),
+                tuple(from_library(qos) for connection in info.connections for qos in _offered_profiles(connection)),
             )
             for name, info in self._reader.topics.items()
-            if name not in self._others
+            if name not in self._other_formats
         ]
-        if self._others and not self.topics:
+        if self._other_formats and not self.topics:
             self.close()
-            message = phrase("'{path}' is not a ROS 2 recording: {topics}", path=self._called, topics=self._left_out())
+            message = phrase(
+                "'{path}' is not a ROS 2 recording: {topics}", path=self._display_name, topics=self._describe_others()
+            )
             raise LinkwrightError(
-                Diagnostic("BAG102", message, hint=phrase("the brackets show the encoding of each topic's messages"))
+                Diagnostic("BAG102", message, hint=phrase("the encoding of each topic's messages is in brackets"))
             )
 
     def _opened(self, targets: Sequence[Path]) -> Reader:
         if len(targets) == 1:
-            return self._opened_one(targets[0], self.path, self._called)
+            return self._open_target(targets[0], self.path, self._display_name)
         from linkwright.bag.several import SeveralReader
 
         # A file is empty if the recorder is killed right after creating it.
-        whole = [target for target in targets if target.stat().st_size] or targets
-        self._is_cut_off = len(whole) < len(targets)
-        return SeveralReader([self._opened_one(path, path, path.name) for path in whole])
+        nonempty = [target for target in targets if target.stat().st_size] or targets
+        self._is_truncated = len(nonempty) < len(targets)
+        return SeveralReader([self._open_target(path, path, path.name) for path in nonempty])
 
-    def _opened_one(self, target: Path, path: Path, called: str) -> Reader:
+    def _open_target(self, target: Path, path: Path, display_name: str) -> Reader:
         from rosbags.rosbag2 import Reader
 
         try:
-            reader = Reader(self._finished(target))
+            reader = Reader(self._readable_target(target))
             reader.open()
             self._open.callback(reader.close)
             if hasattr(reader.storage, "storages"):
                 _ignore_profiles_of_files(reader.storage)
             if target.is_file():
-                from linkwright.bag.packed import unpack_messages
+                from linkwright.bag.packed import decompress_messages
 
-                unpack_messages(reader)
+                decompress_messages(reader)
         except Exception as error:  # a damaged file can make the library raise any exception
-            raise _unreadable(path, called, error) from error
+            raise _unreadable_error(path, display_name, error) from error
         return reader
 
-    def _finished(self, target: Path) -> Any:
-        """Return what to pass to the library: the path, or an in-memory file with the missing parts added.
+    def _readable_target(self, target: Path) -> Any:
+        """Return what the library can open: the path, or a file in memory that has an index.
 
-        Parts that the library would reject are removed from the in-memory file.
+        Data that the library would reject are removed from the file in memory.
         """
         if target.is_file() and target.suffix == PACKED:
             from linkwright.bag.packed import decompress_file
@@ -155,85 +157,91 @@ class BagReader:
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap":
             return target
-        self._is_cut_off = self._is_cut_off or is_unfinished(files[0])
+        self._is_truncated = self._is_truncated or is_unfinished(files[0])
         return make_readable(files[0]) or target
 
-    def _make_types_known(self) -> None:
+    def _register_types(self) -> None:
         from rosbags.interfaces import MessageDefinitionFormat
 
-        origin = self._called
+        origin = self._display_name
         for connection in self._reader.connections:
-            form, text = connection.msgdef
-            if form is not MessageDefinitionFormat.NONE:
-                add_definitions(connection.msgtype, text, origin, idl=form is MessageDefinitionFormat.IDL)
+            definition_format, text = connection.msgdef
+            if definition_format is not MessageDefinitionFormat.NONE:
+                add_definitions(connection.msgtype, text, origin, idl=definition_format is MessageDefinitionFormat.IDL)
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """The diagnostics of the recording.
+        """The diagnostics about the recording.
 
-        They report a recording without an end, because the recorder was killed or the copy is truncated (BAG109),
-        topics that are not ROS 2's (BAG112), and a recording without messages (BAG113).
+        They report a truncated recording, because the recorder was killed or a copy was interrupted (BAG109), topics
+        with messages of other systems (BAG112), and a recording without messages (BAG113).
         """
-        found = []
-        if not self._is_cut_off and not any(topic.count for topic in self.topics):
-            message = phrase("recording '{path}' holds no messages", path=self._called)
+        diagnostics = []
+        if not self._is_truncated and not any(topic.count for topic in self.topics):
+            message = phrase("recording '{path}' contains no messages", path=self._display_name)
             hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` show the published topics")
-            found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
-        if self._is_cut_off:
+            diagnostics.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
+        if self._is_truncated:
             message = phrase(
-                "recording '{path}' is truncated: the recorder was killed, or a copy was interrupted", path=self._called
+                "recording '{path}' is truncated: the recorder was killed, or a copy was interrupted",
+                path=self._display_name,
             )
             hint = phrase("only its complete records are read; the rest is lost")
-            found.append(Diagnostic("BAG109", message, severity=Severity.WARNING, hint=hint))
-        if self._others:
+            diagnostics.append(Diagnostic("BAG109", message, severity=Severity.WARNING, hint=hint))
+        if self._other_formats:
             message = phrase(
                 "topics of '{path}' are left out because their messages are not ROS 2 messages: {topics}",
-                path=self._called,
-                topics=self._left_out(),
+                path=self._display_name,
+                topics=self._describe_others(),
             )
-            found.append(Diagnostic("BAG112", message, severity=Severity.WARNING))
-        return found
+            diagnostics.append(Diagnostic("BAG112", message, severity=Severity.WARNING))
+        return diagnostics
 
-    def _left_out(self) -> str:
-        return ", ".join(f"{name} ({form})" for name, form in sorted(self._others.items()))
+    def _describe_others(self) -> str:
+        return ", ".join(
+            f"{name} ({serialization_format})" for name, serialization_format in sorted(self._other_formats.items())
+        )
 
     @property
     def files(self) -> list[Path]:
         """The files that contain the messages."""
         if self._targets[0].is_file():
             return self._targets
-        return _files_in(self.path)
+        return _recording_files(self.path)
 
     @property
     def compression(self) -> str:
-        """The unit of compression besides chunks: ``file``, ``message``, or an empty string for none."""
+        """The unit of compression besides chunks: ``file``, ``message``, or empty for none."""
         return "file" if self._targets[0].suffix == PACKED else str(self._reader.compression_mode or "")
 
     @property
     def start_ns(self) -> int:
-        """The time of the first message, in nanoseconds since the epoch; 0 if there is none."""
+        """The time of the first message, in nanoseconds since the epoch; 0 without messages."""
         return self._reader.start_time if self._reader.message_count else 0
 
     @property
     def end_ns(self) -> int:
-        """The time of the last message, in nanoseconds since the epoch; 0 if there is none."""
+        """The time of the last message, in nanoseconds since the epoch; 0 without messages."""
         return self._reader.end_time - 1 if self._reader.message_count else 0
 
     @property
     def definitions(self) -> list[tuple[str, str, str, str]]:
-        """The definitions of the topics' types: name, ``ros2msg`` or ``ros2idl``, definition and hash."""
-        found = {
+        """The definitions of the topics' types: type name, ``ros2msg`` or ``ros2idl``, definition, and hash."""
+        connections_by_type = {
             connection.msgtype: connection
             for connection in self._reader.connections
-            if connection.topic not in self._others
+            if connection.topic not in self._other_formats
         }
         encodings = {"NONE": "unknown", "MSG": "ros2msg", "IDL": "ros2idl"}
-        return [(name, encodings[each.msgdef[0].name], each.msgdef[1], each.digest) for name, each in found.items()]
+        return [
+            (name, encodings[connection.msgdef[0].name], connection.msgdef[1], connection.digest)
+            for name, connection in connections_by_type.items()
+        ]
 
     def messages(
         self, topics: Collection[str] = (), start_ns: int | None = None, stop_ns: int | None = None
     ) -> Iterator[Recorded]:
-        """Yield the topic, the time and the CDR bytes of each message, ordered by time.
+        """Yield the topic, the reception time and the serialized data of each message, ordered by time.
 
         Times are in nanoseconds since the epoch.
 
@@ -243,56 +251,56 @@ class BagReader:
             stop_ns: the time at which to stop, exclusive; None for the end.
 
         Raises:
-            LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
+            LinkwrightError: BAG102, further messages cannot be read; BAG103, a topic is not in the recording.
         """
-        known = {topic.name for topic in self.topics}
+        topic_names = {topic.name for topic in self.topics}
         for name in topics:
-            if name not in known:
-                hint = did_you_mean(name, known)
+            if name not in topic_names:
+                hint = did_you_mean(name, topic_names)
                 raise LinkwrightError(
                     Diagnostic(
                         "BAG103",
-                        phrase("there is no topic '{name}' in '{path}'", name=name, path=self._called),
+                        phrase("there is no topic '{name}' in '{path}'", name=name, path=self._display_name),
                         hint=hint,
                     )
                 )
         connections = [
             connection
             for connection in self._reader.connections
-            if connection.topic not in self._others and (not topics or connection.topic in topics)
+            if connection.topic not in self._other_formats and (not topics or connection.topic in topics)
         ]
         return self._read(self._reader.messages(connections, start_ns, stop_ns))
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """Return the state at a time: the last message of each topic, and transforms; see `Moments`.
+        """Return the state at a time: the last message of each topic, and the transforms; see `StateLookup`.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
         """
-        return self._look(lambda: self._moments.state_at(topics, at_ns))
+        return self._look(lambda: self._state_lookup.state_at(topics, at_ns))
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return the reception time of the last message before a time, or None if there is none.
+        """Return the reception time of the last message before a time, or None.
 
         Times are in nanoseconds since the epoch.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
         """
-        return self._look(lambda: self._moments.time_before(topics, at_ns))
+        return self._look(lambda: self._state_lookup.time_before(topics, at_ns))
 
-    def counts(self, parts: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal parts of the recording's duration.
+    def counts(self, intervals: int) -> dict[str, list[int]]:
+        """Return the number of messages of each topic in equal intervals of the recording's duration.
 
-        The result is empty for a file without an index.
+        It is empty for a file without an index.
         """
-        return self._moments.counts(parts) if self._reader.message_count else {}
+        return self._state_lookup.counts(intervals) if self._reader.message_count else {}
 
-    def _look(self, what: Callable[[], T]) -> T:
+    def _look(self, search: Callable[[], T]) -> T:
         try:
-            return what()
+            return search()
         except Exception as error:  # a damaged file can make the library raise any exception
-            raise _unreadable(self.path, self._called, error) from error
+            raise _unreadable_error(self.path, self._display_name, error) from error
 
     def _read(self, stream: Iterator[tuple[Any, int, bytes]]) -> Iterator[Recorded]:
         while True:
@@ -301,7 +309,7 @@ class BagReader:
             except StopIteration:
                 return
             except Exception as error:
-                raise _unreadable(self.path, self._called, error) from error
+                raise _unreadable_error(self.path, self._display_name, error) from error
             yield connection.topic, stamp_ns, data
 
     def close(self) -> None:
@@ -318,7 +326,7 @@ class BagReader:
 
 
 def open_recording(path: str | Path) -> BagReader:
-    """Open a recording of topics, in MCAP or SQLite, to read its messages.
+    """Open a recording in MCAP or SQLite to read its messages.
 
     Args:
         path: see `BagReader`. Close the returned reader, or use it in a ``with`` statement.
@@ -330,78 +338,75 @@ def open_recording(path: str | Path) -> BagReader:
 
 
 def _ignore_profiles_of_files(storage: Any) -> None:
-    """Make the library match the topics of ``metadata.yaml`` and of the files despite other profiles.
+    """Let the library match the topics of ``metadata.yaml`` and of the files, even if their QoS profiles differ.
 
-    Otherwise the library reads no messages from recordings made before rosbag2 stored profiles in files, and from some
-    converted ones.
+    Otherwise it reads no messages from recordings made before rosbag2 stored profiles in files, and from some
+    converted recordings.
     """
-    listed = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
+    listed_connections = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
-        for number, each in enumerate(file.connections):
-            known = listed.get((each.topic, each.msgtype), each)
-            file.connections[number] = each._replace(ext=known.ext, digest=known.digest)
+        for index, each in enumerate(file.connections):
+            known = listed_connections.get((each.topic, each.msgtype), each)
+            file.connections[index] = each._replace(ext=known.ext, digest=known.digest)
 
 
-def _storage_targets(path: Path, called: str) -> list[Path]:
-    """Return the paths to pass to the library: the folder, or its files if the metadata are missing."""
+def _storage_targets(path: Path, display_name: str) -> list[Path]:
+    """Return the paths that the library opens: the folder, or its files if the metadata is missing."""
     if not path.exists():
-        raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
-    if path.is_file() or ((path / METADATA).exists() and not _lacks_ends(path)):
+        raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=display_name)))
+    if path.is_file() or ((path / METADATA).exists() and not _has_unfinished_file(path)):
         return [path]
     if not path.is_dir():
-        message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=called)
+        message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=display_name)
         raise LinkwrightError(Diagnostic("BAG102", message))
-    files = _files_in(path)
-    if len(files) == 1 or are_of_one_recording(files):
+    files = _recording_files(path)
+    if len(files) == 1 or belong_together(files):
         return files
     if not files:
         message = phrase(
-            "'{path}' is not a recording: it contains neither a metadata.yaml nor recording files", path=called
+            "'{path}' is not a recording: it contains neither a metadata.yaml nor recording files", path=display_name
         )
         raise LinkwrightError(Diagnostic("BAG102", message))
-    found = ", ".join(file.name for file in files)
+    file_names = ", ".join(file.name for file in files)
     message = phrase(
-        "the files in '{path}' belong to different recordings according to their names: {found}",
-        path=called,
-        found=found,
+        "the names of the files in '{path}' show that they belong to different recordings: {found}",
+        path=display_name,
+        found=file_names,
     )
-    hint = phrase(
-        "name one of them; files belong to one recording if their names end with _0, _1, _2, or if "
-        "you name them all: linkwright view FILE FILE ..."
-    )
+    hint = phrase("name one of them, or name all files of one recording: linkwright view FILE FILE ...")
     raise LinkwrightError(Diagnostic("BAG102", message, hint=hint))
 
 
-def _lacks_ends(folder: Path) -> bool:
-    """Return whether a recording with metadata consists of several files and one is unfinished."""
+def _has_unfinished_file(folder: Path) -> bool:
+    """Return whether one of several files of a recording with metadata is unfinished."""
     files = sorted(folder.glob("*.mcap"))
-    return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(file) for file in files)
+    return len(files) > 1 and belong_together(files) and any(is_unfinished(file) for file in files)
 
 
-def _storage_of(target: Path) -> str:
+def _target_storage(target: Path) -> str:
     if target.is_file():
-        return storage_of(target) or target.suffix.lstrip(".")
-    return next((name for path in _files_in(target) if (name := storage_of(path)) is not None), "")
+        return storage_format(target) or target.suffix.lstrip(".")
+    return next((name for path in _recording_files(target) if (name := storage_format(path)) is not None), "")
 
 
-def _files_in(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if storage_of(path) is not None)
+def _recording_files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.iterdir() if storage_format(path) is not None)
 
 
-def _format_of(connection: Any) -> str:
-    return str(getattr(connection.ext, "serialization_format", _OURS))
+def _serialization_format(connection: Any) -> str:
+    return str(getattr(connection.ext, "serialization_format", _ROS_FORMAT))
 
 
-def _profiles(connection: Any) -> list[Any]:
+def _offered_profiles(connection: Any) -> list[Any]:
     return list(getattr(connection.ext, "offered_qos_profiles", ()))
 
 
-def _unreadable(path: Path, called: str, error: Exception) -> LinkwrightError:
+def _unreadable_error(path: Path, display_name: str, error: Exception) -> LinkwrightError:
     reason, hint, note = diagnose(path, error)
     return LinkwrightError(
         Diagnostic(
             "BAG102",
-            phrase("'{path}' cannot be read as a recording: {reason}", path=called, reason=reason),
+            phrase("'{path}' cannot be read as a recording: {reason}", path=display_name, reason=reason),
             notes=() if note is None else (Note(note),),
             hint=hint,
         )

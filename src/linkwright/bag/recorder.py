@@ -1,4 +1,4 @@
-"""Records messages: subscribes to topics as they appear, and writes their messages."""
+"""Record messages: subscribe to topics as they appear, and write their messages."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ _POLL_SECONDS = 0.1
 
 
 class Recorder:
-    """Writes the messages of topics to a recording until it is closed.
+    """Writes the messages of topics to a recording until the recorder is closed.
 
-    The recorder passes the received messages to the operating system every second, so that at most one second is
+    It passes the received messages to the operating system every second, so that at most one second is
     missing if the process is killed.
 
     Args:
-        node: the node that subscribes; its log reports events.
+        node: the node that subscribes to the topics and logs events.
         selection: the topics to record.
-        writer: the destination of the messages, which is closed with the recorder.
-        overrides: topic -> the QoS profile to subscribe with, instead of one derived from the publishers.
+        writer: the writer of the recording; it is closed with the recorder.
+        overrides: the QoS profiles to subscribe with, by topic; other profiles are derived from the publishers.
         discover: whether topics that appear later are recorded too.
         polling_seconds: the interval between two searches for new topics.
-        without_publishers: whether topics that have only subscriptions are recorded too.
+        without_publishers: whether topics without a publisher are recorded too.
         without_subscriptions: whether topics without a subscription are recorded too.
-        paused: whether messages are dropped until `toggle_paused` is called.
-        guarded: wraps the node's callbacks, so that the caller can stop when the disk is full; by default the node logs
-            the error.
+        paused: whether recording begins paused, so that messages are dropped until `toggle_paused` is called.
+        wrap_callback: wraps the node's callbacks, so that the caller can handle an error such as a full disk; by
+                default the node logs the error.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Recorder:
         without_publishers: bool = False,
         without_subscriptions: bool = True,
         paused: bool = False,
-        guarded: Callable[[Callable[..., object]], Callable[..., object]] = lambda callback: callback,
+        wrap_callback: Callable[[Callable[..., object]], Callable[..., object]] = lambda callback: callback,
     ) -> None:
         self._node = node
         self._selection = selection
@@ -57,15 +57,15 @@ class Recorder:
         self._overrides = dict(overrides or {})
         self._without_publishers = without_publishers
         self._without_subscriptions = without_subscriptions
-        self._by_clock = bool(node.get_parameter("use_sim_time").value)
+        self._uses_sim_time = bool(node.get_parameter("use_sim_time").value)
         self._logger = node.get_logger()
-        self._receive = guarded(self._write)
-        self._refused: set[str] = set()
+        self._receive = wrap_callback(self._write)
+        self._rejected: set[str] = set()
         self._count = 0
         self.paused = paused
         self._logger.info("Listening for topics...")
-        self._looking = node.create_timer(polling_seconds, guarded(self._look)) if discover else None
-        self._flushing = node.create_timer(_FLUSH_SECONDS, guarded(writer.flush))
+        self._discovery_timer = node.create_timer(polling_seconds, wrap_callback(self._look)) if discover else None
+        self._flush_timer = node.create_timer(_FLUSH_SECONDS, wrap_callback(writer.flush))
         self._look()
 
     @property
@@ -80,29 +80,29 @@ class Recorder:
 
     def close(self) -> None:
         """Write the queued messages, close the recording, and report requested topics without messages."""
-        self._flushing.cancel()
-        if self._looking is not None:
-            self._looking.cancel()
+        self._flush_timer.cancel()
+        if self._discovery_timer is not None:
+            self._discovery_timer.cancel()
         self._writer.close()
         self._logger.info("Recording stopped")
-        missing = sorted(self._refused | (self._selection.named - set(self._writer.topics)))
+        missing = sorted(self._rejected | (self._selection.named - set(self._writer.topics)))
         if missing:
             self._logger.warning(f"Not in the recording: {', '.join(missing)}")
 
     def _look(self) -> None:
-        if self._by_clock and self._looking is not None and self._now() == 0:
-            return  # simulated time is not known yet; a later subscription still receives latched messages
+        if self._uses_sim_time and self._discovery_timer is not None and self._now() == 0:
+            return  # simulated time is still unknown; a later subscription also receives latched messages
         for name, types in self._node.get_topic_names_and_types():
-            if name in self._writer.topics or name in self._refused:
+            if name in self._writer.topics or name in self._rejected:
                 continue
             if len(types) > 1:
                 self._refuse(name, f"Topic '{name}' has several types: {', '.join(types)}. It is not recorded.")
             elif self._selection.takes(name, types[0]):
                 self._subscribe(name, types[0])
-        wanted = self._selection.is_complete_with
-        if self._looking is not None and wanted is not None and wanted <= set(self._writer.topics):
-            self._looking.cancel()
-            self._looking = None
+        requested = self._selection.is_complete_with
+        if self._discovery_timer is not None and requested is not None and requested <= set(self._writer.topics):
+            self._discovery_timer.cancel()
+            self._discovery_timer = None
             self._logger.info("All requested topics are subscribed. Stopping discovery...")
 
     def _subscribe(self, name: str, type_name: str) -> None:
@@ -126,15 +126,15 @@ class Recorder:
         )
         self._logger.info(f"Subscribed to topic '{name}'")
 
-    def _refuse(self, name: str, why: str) -> None:
-        self._refused.add(name)
-        self._logger.warning(why)
+    def _refuse(self, name: str, reason: str) -> None:
+        self._rejected.add(name)
+        self._logger.warning(reason)
 
     def _write(self, name: str, data: Any, info: MessageInfo) -> None:
         if self.paused:
             return
-        stamp = self._now() if self._by_clock else info.received_timestamp
-        if self._by_clock and stamp == 0:
+        stamp = self._now() if self._uses_sim_time else info.received_timestamp
+        if self._uses_sim_time and stamp == 0:
             return  # simulated time is not known yet
         self._writer.write(name, stamp, data)
         self._count += 1

@@ -1,4 +1,4 @@
-"""The services that control a recorder, such as ``/rosbag2_recorder/snapshot``, as in rosbag2."""
+"""Services that control a recorder, such as ``/rosbag2_recorder/snapshot``, as in rosbag2."""
 
 from __future__ import annotations
 
@@ -11,26 +11,33 @@ from linkwright.messages import get_message
 
 
 class RecorderServices:
-    """Offers services that control a recorder, and publishes each split on ``events/write_split``.
+    """Offers the services that control a recorder, and publishes splits on ``events/write_split``.
 
     The services are below the name of the node. Names and types follow ``rosbag2_transport::Recorder``.
 
     Args:
-        node: the node.
+        node: the node that offers the services.
         recorder: the recorder that the services control.
         writer: the writer of the recorder.
-        snapshots: whether to offer the service that takes snapshots.
+        snapshots: whether to offer the service ``snapshot``.
     """
 
     def __init__(self, node: Node, recorder: Recorder, writer: BagWriter, *, snapshots: bool) -> None:
         self._recorder = recorder
         self._writer = writer
-        event = get_message("rosbag2_interfaces/msg/WriteSplitEvent")
-        events = node.create_publisher(event, "events/write_split", 1)
-        writer.on_split = lambda closed, begun: events.publish(event(closed_file=closed, opened_file=begun))
-        kinds = [("split_bagfile", "SplitBagfile"), ("pause", "Pause"), ("resume", "Resume"), ("is_paused", "IsPaused")]
-        for name, kind in [*kinds, *([("snapshot", "Snapshot")] if snapshots else [])]:
-            node.create_service(f"rosbag2_interfaces/srv/{kind}", f"~/{name}", getattr(self, f"_{name}"))
+        event_class = get_message("rosbag2_interfaces/msg/WriteSplitEvent")
+        event_publisher = node.create_publisher(event_class, "events/write_split", 1)
+        writer.on_split = lambda closed_file, opened_file: event_publisher.publish(
+            event_class(closed_file=closed_file, opened_file=opened_file)
+        )
+        services = [
+            ("split_bagfile", "SplitBagfile"),
+            ("pause", "Pause"),
+            ("resume", "Resume"),
+            ("is_paused", "IsPaused"),
+        ]
+        for name, type_name in [*services, *([("snapshot", "Snapshot")] if snapshots else [])]:
+            node.create_service(f"rosbag2_interfaces/srv/{type_name}", f"~/{name}", getattr(self, f"_{name}"))
 
     def _snapshot(self, _: Any, response: Any) -> Any:
         response.success = self._writer.take_snapshot()

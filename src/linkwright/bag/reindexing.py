@@ -1,11 +1,11 @@
-"""Rebuilds the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
+"""Rebuild the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
-from linkwright.bag.names import are_of_one_recording, in_order, storage_of
+from linkwright.bag.names import belong_together, in_order, storage_format
 from linkwright.bag.qos import to_text
 from linkwright.bag.reading import BagReader
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
@@ -13,40 +13,40 @@ from linkwright.messages import type_hash
 
 
 def reindex(folder: Path) -> None:
-    """Write the ``metadata.yaml`` of a recording, and replace an existing one.
+    """Write the ``metadata.yaml`` of a recording; an existing one is replaced.
 
     An unfinished file is listed with its complete messages.
 
     Args:
-        folder: the folder with the files of one recording, whose names end with _0, _1 and so on.
+        folder: the folder with the files of one recording; their names end with _0, _1 and so on.
 
     Raises:
         LinkwrightError: BAG117, the folder has no such files; BAG105, the file cannot be written; see also `BagReader`.
     """
     from linkwright.bag.parts import write_metadata
 
-    files = [path for path in folder.iterdir() if storage_of(path) is not None] if folder.is_dir() else []
-    if len(files) != 1 and not are_of_one_recording(files):
+    files = [path for path in folder.iterdir() if storage_format(path) is not None] if folder.is_dir() else []
+    if len(files) != 1 and not belong_together(files):
         message = phrase("there are no files of a recording in '{path}'", path=display_path(folder))
         hint = phrase("name a folder whose files end with a number and .mcap or .db3, such as drive_0.mcap")
         raise LinkwrightError(Diagnostic("BAG117", message, hint=hint))
-    found = []
+    file_metadata = []
     for file in in_order(files):
         with BagReader(file) as bag:
-            found.append(_metadata_of(bag, file))
+            file_metadata.append(_file_metadata(bag, file))
     try:
-        write_metadata(folder, found)
+        write_metadata(folder, file_metadata)
     except OSError as error:
         reason = foreign(error.strerror or str(error))
         message = phrase("recording '{path}' cannot be created: {reason}", path=display_path(folder), reason=reason)
         raise LinkwrightError(Diagnostic("BAG105", message)) from error
 
 
-def _metadata_of(bag: BagReader, file: Path) -> dict[str, Any]:
-    """Return the metadata of a single file."""
+def _file_metadata(bag: BagReader, file: Path) -> dict[str, Any]:
+    """Return the metadata of one file of a recording."""
     from linkwright.bag.parts import VERSION
 
-    span = {
+    times = {
         "starting_time": {"nanoseconds_since_epoch": bag.start_ns},
         "duration": {"nanoseconds": bag.end_ns - bag.start_ns},
         "message_count": sum(topic.count for topic in bag.topics),
@@ -68,11 +68,11 @@ def _metadata_of(bag: BagReader, file: Path) -> dict[str, Any]:
         "version": VERSION,
         "storage_identifier": bag.storage,
         "relative_file_paths": [file.name],
-        **span,
+        **times,
         "topics_with_message_count": topics,
         "compression_format": "zstd" if bag.compression else "",
         "compression_mode": bag.compression,
-        "files": [{"path": file.name, **span}],
+        "files": [{"path": file.name, **times}],
         "custom_data": None,
         "ros_distro": "rosbags",
     }

@@ -1,6 +1,6 @@
-"""Rewrites recordings with other files, topics or compression, as ``ros2 bag convert`` does.
+"""Rewrite recordings with other files, topics or compression, as ``ros2 bag convert`` does.
 
-The keys of the YAML file with the options are those of rosbag2's ``StorageOptions`` and ``RecordOptions``. Keys that
+The keys of the options file, in YAML, are those of rosbag2's ``StorageOptions`` and ``RecordOptions``. Keys that
 only affect rosbag2's performance are ignored.
 """
 
@@ -18,15 +18,15 @@ from linkwright.bag.writing import COMPRESSIONS, STORAGES, BagWriter
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase, quoted_names
 from linkwright.graph import QoSProfile
 
-_LISTS = ("topics", "topic_types", "services", "exclude_topics", "exclude_topic_types", "exclude_services")
+_LIST_KEYS = ("topics", "topic_types", "services", "exclude_topics", "exclude_topic_types", "exclude_services")
 
 
 def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Path]:
-    """Write recordings with the messages of other recordings, ordered by time.
+    """Write new recordings with the messages of other recordings, ordered by time.
 
     Args:
         sources: the recordings to read.
-        options_file: a YAML file with the key ``output_bags``: a list with the options of each output recording.
+        options_file: a YAML file; its key ``output_bags`` is a list with the options of each new recording.
 
     Returns:
         The paths of the new recordings.
@@ -47,27 +47,27 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
 
 
 class _Output:
-    """A recording to write, from an entry in the options file.
+    """A new recording, from an entry in the options file.
 
     Attributes:
-        begin_ns, end_ns: the time range of the messages to write.
+        begin_ns, end_ns: the first and last time of messages to write, in nanoseconds since the epoch.
     """
 
     def __init__(self, entry: Mapping[str, Any], file: str) -> None:
         self._entry = entry
         self._file = file
-        for name in _LISTS:
+        for name in _LIST_KEYS:
             value = entry.get(name, [])
             if not (isinstance(value, list) and all(isinstance(item, str) for item in value)):
-                raise self._wrong(phrase("'{name}' must be a list of names", name=name))
-        self._storage = self._one_of("storage_id", STORAGES)
+                raise self._options_error(phrase("'{name}' must be a list of names", name=name))
+        self._storage = self._read_choice("storage_id", STORAGES)
         compression = str(entry.get("compression_mode") or "none").lower()
-        self._compression = self._known("compression_mode", compression, COMPRESSIONS)
+        self._compression = self._check_choice("compression_mode", compression, COMPRESSIONS)
         self._max_size = self._number("max_bagfile_size", 0)
         self._max_seconds = self._number("max_bagfile_duration", 0)
-        begin, end = self._number("start_time_ns", -1), self._number("end_time_ns", -1)
-        self.begin_ns = max(begin, 0)
-        self.end_ns = end if end >= 0 else 2**63 - 1
+        start_ns, end_ns = self._number("start_time_ns", -1), self._number("end_time_ns", -1)
+        self.begin_ns = max(start_ns, 0)
+        self.end_ns = end_ns if end_ns >= 0 else 2**63 - 1
         everything = bool(entry.get("all"))
         self._selection = TopicSelection(
             everything=everything or bool(entry.get("all_topics")),
@@ -86,7 +86,7 @@ class _Output:
     def opened(self, bags: Sequence[BagReader]) -> BagWriter:
         """Create the recording with its topics, and return its writer.
 
-        A topic with different types in the sources is omitted, as in rosbag2.
+        A topic with different types in the source recordings is left out, as in rosbag2.
         """
         writer = BagWriter(
             str(self._entry["uri"]),
@@ -101,29 +101,31 @@ class _Output:
         for topic in (topic for bag in bags for topic in bag.topics):
             types.setdefault(topic.name, set()).add(topic.type_name)
             profiles.setdefault(topic.name, []).extend(topic.offered_qos)
-        for name, found in types.items():
-            (type_name, *others) = found
-            if not others and self._selection.takes(name, type_name):
+        for name, type_names in types.items():
+            (type_name, *other_types) = type_names
+            if not other_types and self._selection.takes(name, type_name):
                 writer.add_topic(name, type_name, profiles[name])
         return writer
 
-    def _number(self, name: str, otherwise: int) -> int:
-        value = self._entry.get(name, otherwise)
+    def _number(self, name: str, default: int) -> int:
+        value = self._entry.get(name, default)
         if type(value) is not int:
-            raise self._wrong(phrase("'{name}' must be an integer", name=name))
+            raise self._options_error(phrase("'{name}' must be an integer", name=name))
         return value
 
-    def _one_of(self, name: str, known: Sequence[str]) -> str:
-        return self._known(name, str(self._entry.get(name) or known[0]), known)
+    def _read_choice(self, name: str, choices: Sequence[str]) -> str:
+        return self._check_choice(name, str(self._entry.get(name) or choices[0]), choices)
 
-    def _known(self, name: str, value: str, known: Sequence[str]) -> str:
-        if value not in known:
-            names = quoted_names(known, " or ")
-            raise self._wrong(phrase("'{name}' must be {names}, not '{value}'", name=name, names=names, value=value))
+    def _check_choice(self, name: str, value: str, choices: Sequence[str]) -> str:
+        if value not in choices:
+            names = quoted_names(choices, " or ")
+            raise self._options_error(
+                phrase("'{name}' must be {names}, not '{value}'", name=name, names=names, value=value)
+            )
         return value
 
-    def _wrong(self, reason: Phrase) -> LinkwrightError:
-        return _unusable(self._file, reason)
+    def _options_error(self, reason: Phrase) -> LinkwrightError:
+        return _unusable_options(self._file, reason)
 
 
 def _entries(path: str | Path) -> list[Mapping[str, Any]]:
@@ -135,18 +137,20 @@ def _entries(path: str | Path) -> list[Mapping[str, Any]]:
         document = yaml.safe_load(read_text(path))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise _unusable(str(path), foreign(reason or str(error))) from error
+        raise _unusable_options(str(path), foreign(reason or str(error))) from error
     entries = document.get("output_bags") if isinstance(document, dict) else None
     if not isinstance(entries, list) or not entries:
-        raise _unusable(str(path), phrase("it needs the key 'output_bags' with a list of the recordings to write"))
+        raise _unusable_options(
+            str(path), phrase("it must have the key 'output_bags' with a list of the recordings to write")
+        )
     for entry in entries:
         if not isinstance(entry, dict) or not isinstance(entry.get("uri"), str):
-            raise _unusable(
-                str(path), phrase("each entry of 'output_bags' needs the key 'uri' with the folder to create")
+            raise _unusable_options(
+                str(path), phrase("each entry of 'output_bags' must have the key 'uri' with the folder to create")
             )
     return entries
 
 
-def _unusable(path: str, reason: Phrase) -> LinkwrightError:
-    message = phrase("'{path}' cannot be used as options of recordings: {reason}", path=path, reason=reason)
+def _unusable_options(path: str, reason: Phrase) -> LinkwrightError:
+    message = phrase("the recording options in '{path}' cannot be used: {reason}", path=path, reason=reason)
     return LinkwrightError(Diagnostic("BAG115", message))

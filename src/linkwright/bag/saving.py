@@ -1,4 +1,4 @@
-"""Saves messages that are in memory as a recording."""
+"""Save messages from memory as a recording."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.messages import deserialize, get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _PROGRESS_STEP = 1000
-"""Messages between two reports of progress."""
+"""The number of messages between two reports of progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,48 +39,48 @@ def save_messages(
     Args:
         path: the folder to create.
         topics: the topics of all messages.
-        messages: the messages ordered by time, compressed or not.
-        on_progress: called repeatedly with the fraction of messages written, from 0 to 1.
+        messages: the messages ordered by time; their data may be compressed.
+        on_progress: called repeatedly with the share of messages that are written, from 0 to 1.
 
     Raises:
         LinkwrightError: BAG105, BAG107, BAG108; see `BagWriter`.
     """
     with BagWriter(path) as writer:
-        for number, (name, stamp_ns, data) in enumerate(messages):
+        for index, (name, stamp_ns, data) in enumerate(messages):
             if name not in writer.topics:
                 writer.add_topic(name, topics[name].type_name, topics[name].offered)
             writer.write(name, stamp_ns, uncompressed_bytes(data))
-            if number % _PROGRESS_STEP == 0:
-                on_progress(number / len(messages))
+            if index % _PROGRESS_STEP == 0:
+                on_progress(index / len(messages))
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
-    """Return the time at which ``/clock`` last went back, or None if it never did."""
-    found, now = None, None
+    """Return the time of the message with which ``/clock`` last went back; None if it never did."""
+    reset_ns, clock_ns = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:
             stamp = _clock_ns(data)
-            if now is not None and stamp < now:
-                found = stamp_ns
-            now = stamp
-    return found
+            if clock_ns is not None and stamp < clock_ns:
+                reset_ns = stamp_ns
+            clock_ns = stamp
+    return reset_ns
 
 
-def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
-    """Return messages whose times are the simulated times of ``/clock`` instead of the system's times.
+def to_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
+    """Return messages with the simulated times of ``/clock`` instead of their reception times.
 
     Messages before the first clock message get the time of that message. Without ``/clock``, all messages keep their
     times.
     """
-    now = next((_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
-    if now is None:
+    clock_ns = next((_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
+    if clock_ns is None:
         return list(messages)
-    found = []
+    converted = []
     for name, _, data in messages:
         if name == CLOCK_TOPIC:
-            now = _clock_ns(data)
-        found.append((name, now, data))
-    return found
+            clock_ns = _clock_ns(data)
+        converted.append((name, clock_ns, data))
+    return converted
 
 
 def _clock_ns(data: bytes) -> int:

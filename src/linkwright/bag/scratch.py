@@ -1,4 +1,4 @@
-"""Temporary folders for copies of recordings, which can be larger than the main memory."""
+"""Temporary folders for copies of recordings, which can be larger than the memory."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder below it gets an unpredic
 
 
 def scratch_folder() -> ScratchFolder:
-    """Create a temporary folder, in TMPDIR if it is set, otherwise in a folder on disk."""
-    chosen = None if os.environ.get("TMPDIR") or not os.access(_ON_DISK, os.W_OK) else _ON_DISK
-    return ScratchFolder("bag", chosen)
+    """Create a temporary folder: in TMPDIR if it is set, or else in a system folder on disk."""
+    parent = None if os.environ.get("TMPDIR") or not os.access(_ON_DISK, os.W_OK) else _ON_DISK
+    return ScratchFolder("bag", parent)

@@ -1,4 +1,4 @@
-"""Selects the topics to record."""
+"""Select the topics of a recording."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
 
 @dataclass(frozen=True)
 class TopicSelection:
-    """The options of ``bag record`` that select topics.
+    """The options of ``bag record`` and ``bag play`` that select topics.
 
     Attributes:
         everything: whether to select all topics that are not hidden.
@@ -21,8 +21,9 @@ class TopicSelection:
         pattern: a regular expression; topics and services whose names contain a match are selected.
         without_names: the absolute names of topics to exclude, even if another option selects them.
         without_types: the types whose topics are excluded.
-        without_pattern: a regular expression; topics whose names contain a match are excluded.
-        hidden: whether to treat hidden topics, whose names begin with an underscore, like other topics.
+        without_pattern: a regular expression; topics and services whose names contain a match are excluded.
+        hidden: whether to treat hidden topics, whose names have a part that begins with an underscore, like other
+            topics.
         every_service: whether to select the events of all services that publish them (service introspection).
         services: the absolute names of services whose events are selected.
         without_services: the absolute names of services to exclude.
@@ -51,12 +52,12 @@ class TopicSelection:
 
     @property
     def is_empty(self) -> bool:
-        """Whether the options select nothing."""
+        """Whether the options do not select any topic."""
         return not (self._accepts_unnamed or self.names or self.services)
 
     @property
     def is_complete_with(self) -> frozenset[str] | None:
-        """The topics after whose discovery the search can stop; None if any new topic may match."""
+        """The topics whose discovery completes the search; None if any new topic may be selected."""
         return None if self._accepts_unnamed else self.named
 
     @property

@@ -1,4 +1,4 @@
-"""Reads the files of a recording without ``metadata.yaml`` as one recording, ordered by time."""
+"""Read the files of a recording without ``metadata.yaml`` as one recording, ordered by time."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from rosbags.interfaces import Connection
 from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.metadata import ReaderMetadata
 
-_NEVER_NS = 2**63 - 1
+_MAX_NS = 2**63 - 1
 
 _Message = tuple[Connection, int, bytes]
 
 
 class SeveralReader(Reader):
-    """Reads several files as if they were one.
+    """Reads several files as one recording.
 
     Args:
-        readers: the open readers of the files; the caller closes them.
+        readers: the open readers of the files; the caller must close them.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:  # the constructor of the library's class expects a path
@@ -29,34 +29,36 @@ class SeveralReader(Reader):
 
 
 class _Storages:
-    """A storage of several files, with the interface that the library expects.
+    """The combined storage of several files, with the interface that the library expects.
 
     Attributes:
         storages: the storages of the files.
-        connections: one connection for each topic and type.
+        connections: one connection for each pair of topic and type.
         metadata: the combined metadata of all files.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:
         self.storages: list[Any] = [reader.storage for reader in readers]
         self._readers = readers
-        found: dict[tuple[str, str], Connection] = {}
+        merged_connections: dict[tuple[str, str], Connection] = {}
         for entry in (connection for reader in readers for connection in reader.connections):
-            known = found.get(_key(entry))
-            count = entry.msgcount if known is None else known.msgcount + entry.msgcount
-            found[_key(entry)] = (known or entry)._replace(id=known.id if known else len(found) + 1, msgcount=count)
-        self.connections = list(found.values())
+            merged = merged_connections.get(_key(entry))
+            count = entry.msgcount if merged is None else merged.msgcount + entry.msgcount
+            merged_connections[_key(entry)] = (merged or entry)._replace(
+                id=merged.id if merged else len(merged_connections) + 1, msgcount=count
+            )
+        self.connections = list(merged_connections.values())
         count = sum(reader.message_count for reader in readers)
         start = min(reader.start_time for reader in readers)
         end = max(reader.end_time for reader in readers)
-        packed = [reader.storage.metadata for reader in readers if reader.compression_mode]
+        compressed_metadata = [reader.storage.metadata for reader in readers if reader.compression_mode]
         self.metadata = ReaderMetadata(
             duration=end - start if count else 0,
             start_time=start,
             end_time=end,
             message_count=count,
-            compression_format=packed[0].compression_format if packed else None,
-            compression_mode=packed[0].compression_mode if packed else None,
+            compression_format=compressed_metadata[0].compression_format if compressed_metadata else None,
+            compression_mode=compressed_metadata[0].compression_mode if compressed_metadata else None,
             ros_distro=readers[0].ros_distro,
             custom=None,
         )
@@ -70,33 +72,33 @@ class _Storages:
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
     ) -> Generator[_Message, None, None]:
-        """Yield the messages of all files ordered by time; a file is opened when its first message is next."""
-        wanted = {_key(connection): connection for connection in connections}
-        waiting = [
+        """Yield the messages of all files ordered by time. A file is only read from when its first message is next."""
+        connection_by_key = {_key(connection): connection for connection in connections}
+        unopened = [
             reader for reader in self._readers if reader.message_count and (start is None or reader.end_time > start)
         ]
-        waiting.reverse()
+        unopened.reverse()
         streams: list[tuple[int, int, _Message, Iterator[_Message]]] = []
-        number = 0
-        while streams or waiting:
-            next_ns = streams[0][0] if streams else _NEVER_NS
-            if waiting and (not streams or waiting[-1].start_time <= next_ns):
-                stream = self._stream(waiting.pop(), wanted, start, stop)
+        sequence = 0
+        while streams or unopened:
+            next_ns = streams[0][0] if streams else _MAX_NS
+            if unopened and (not streams or unopened[-1].start_time <= next_ns):
+                stream = self._stream(unopened.pop(), connection_by_key, start, stop)
             else:
                 _, _, message, stream = heapq.heappop(streams)
                 yield message
             first = next(stream, None)
             if first is not None:
-                number += 1
-                heapq.heappush(streams, (first[1], number, first, stream))
+                sequence += 1
+                heapq.heappush(streams, (first[1], sequence, first, stream))
 
     @staticmethod
     def _stream(
-        reader: Reader, wanted: dict[tuple[str, str], Connection], start: int | None, stop: int | None
+        reader: Reader, connection_by_key: dict[tuple[str, str], Connection], start: int | None, stop: int | None
     ) -> Iterator[_Message]:
-        own = [connection for connection in reader.connections if _key(connection) in wanted]
-        for connection, stamp_ns, data in reader.messages(own, start, stop) if own else ():
-            yield wanted[_key(connection)], stamp_ns, data
+        file_connections = [connection for connection in reader.connections if _key(connection) in connection_by_key]
+        for connection, stamp_ns, data in reader.messages(file_connections, start, stop) if file_connections else ():
+            yield connection_by_key[_key(connection)], stamp_ns, data
 
 
 def _key(connection: Connection) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""Extracts the content of messages without their stamps, to detect streams that repeat themselves."""
+"""Extract the content of messages without their stamps, to detect streams that repeat themselves."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _TRANSFORMS = "tf2_msgs/msg/TFMessage"
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TIME = struct.Struct("<iI")
-_SAME_PLACE = 1e-9
-"""m, and the same for the numbers of a quaternion: a simulated robot at rest moves by 1e-12 in each step."""
+_TOLERANCE = 1e-9
+"""The tolerance in m, and for the numbers of a quaternion: a simulated robot at rest moves by 1e-12 in each step."""
 
-_CAPSULE = 4
-"""Bytes before the message: its encoding, from whose end places are counted."""
-_STAMP = 8
-_NUMBERS = 56
-_LITTLE = 1
+_ENCAPSULATION_SIZE = 4
+"""The bytes of the encapsulation header before the message; alignment counts from its end."""
+_STAMP_SIZE = 8
+_POSE_SIZE = 56
+_LITTLE_ENDIAN = 1
 
 
 class Content(NamedTuple):
     """The content of a message without its stamps.
 
     Attributes:
-        what: the child frames of transforms, because many nodes publish on the same topic; empty for other messages.
+        what: the child frames of transforms, because many nodes publish on one topic; empty for other messages.
         state: the serialized values without stamps, and for transforms also without poses.
-        poses: the numbers of the poses, float64: positions in m and quaternions.
+        poses: the bytes of the poses' numbers, float64: positions in m, and quaternions.
         clock_ns: the simulated time of a clock message; None for any other message.
     """
 
@@ -40,20 +40,20 @@ class Content(NamedTuple):
     clock_ns: int | None = None
 
     def is_repeated_by(self, newer: Content) -> bool:
-        """Return whether a newer message has the same content, with a tolerance of 1 nm for positions."""
+        """Return whether a newer message has the same content; positions may differ by 1 nm."""
         if self.state != newer.state or len(self.poses) != len(newer.poses):
             return False
         if self.poses == newer.poses:
             return True
-        with np.errstate(invalid="ignore"):  # infinite values are compared by their bits
-            moved = np.abs(np.frombuffer(self.poses) - np.frombuffer(newer.poses))
-        return bool((moved <= _SAME_PLACE).all())
+        with np.errstate(invalid="ignore"):  # infinite values are compared by their bytes above
+            differences = np.abs(np.frombuffer(self.poses) - np.frombuffer(newer.poses))
+        return bool((differences <= _TOLERANCE).all())
 
 
 def content_of(type_name: str, data: bytes) -> Content | None:
-    """Return the content of a message with a header, of transforms or of a clock; otherwise None.
+    """Return the content of a message with a header, of transforms or of a clock; None for other messages.
 
-    A message without a stamp reports an event, so two equal messages still report two events.
+    A message without a stamp reports an event: two equal messages report two events.
     """
     if type_name == _TRANSFORMS:
         return _content_of_transforms(data)
@@ -61,25 +61,27 @@ def content_of(type_name: str, data: bytes) -> Content | None:
         return _content_of_clock(data)
     if not _begins_with_header(type_name):
         return None
-    return Content("", data[:_CAPSULE] + data[_CAPSULE + _STAMP :])
+    return Content("", data[:_ENCAPSULATION_SIZE] + data[_ENCAPSULATION_SIZE + _STAMP_SIZE :])
 
 
-def clock_between(earlier: bytes, later: bytes, share: float) -> bytes:
-    """Return a clock message between two others, with a linearly interpolated time.
+def clock_between(earlier: bytes, later: bytes, fraction: float) -> bytes:
+    """Return a clock message with a time that is interpolated linearly between two clock messages.
 
     Args:
-        earlier: the first message.
-        later: the second message.
-        share: the position between the two messages, from 0 to 1.
+        earlier: the data of the first message.
+        later: the data of the second message.
+        fraction: the position between the messages, from 0 for the first to 1 for the second.
     """
-    (first, last) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
-    return earlier[:_CAPSULE] + _TIME.pack(*divmod(first + round(share * (last - first)), NANOSECONDS_PER_SECOND))
+    (first_ns, last_ns) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
+    return earlier[:_ENCAPSULATION_SIZE] + _TIME.pack(
+        *divmod(first_ns + round(fraction * (last_ns - first_ns)), NANOSECONDS_PER_SECOND)
+    )
 
 
 def _content_of_clock(data: bytes) -> Content | None:
-    if len(data) < _CAPSULE + _TIME.size or data[1] != _LITTLE:
+    if len(data) < _ENCAPSULATION_SIZE + _TIME.size or data[1] != _LITTLE_ENDIAN:
         return None
-    seconds, nanoseconds = _TIME.unpack_from(data, _CAPSULE)
+    seconds, nanoseconds = _TIME.unpack_from(data, _ENCAPSULATION_SIZE)
     return Content("", b"", clock_ns=seconds * NANOSECONDS_PER_SECOND + nanoseconds)
 
 
@@ -92,13 +94,13 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 class _Layout(NamedTuple):
-    """The offsets of stamps and poses, which are equal in all messages with the same frames.
+    """The offsets of stamps and poses, which are the same in all messages with the same frames.
 
     Attributes:
-        what: the frames.
-        state: the bytes behind the encapsulation header, without stamps and poses.
-        numbers: the offsets of the bytes of poses.
-        blank: the offsets of the bytes of stamps and poses.
+        what: the child frames, one per line.
+        state: the bytes after the encapsulation header, with zeros for stamps and poses.
+        numbers: the offsets of the bytes that belong to poses.
+        blank: the offsets of the bytes that belong to stamps or poses.
     """
 
     what: str
@@ -107,58 +109,58 @@ class _Layout(NamedTuple):
     blank: NDArray[np.intp]
 
 
-_MOST_LAYOUTS = 64
+_MAX_LAYOUTS = 64
 _layouts: dict[int, _Layout] = {}
-"""The last layout of messages of a size: following the names of 500 frames takes longer than all the rest."""
+"""The last layout for each message size, because parsing the names of 500 frames takes longer than the rest."""
 
 
 def _content_of_transforms(data: bytes) -> Content | None:
-    """Return the content of transforms, or None if the bytes are big-endian or truncated."""
-    if len(data) < 2 * _CAPSULE or data[1] != _LITTLE:
+    """Return the content of transforms; None if the data is big-endian or truncated."""
+    if len(data) < 2 * _ENCAPSULATION_SIZE or data[1] != _LITTLE_ENDIAN:
         return None
     layout = _layouts.get(len(data))
-    state = np.frombuffer(data, np.uint8, offset=_CAPSULE).copy()
+    state = np.frombuffer(data, np.uint8, offset=_ENCAPSULATION_SIZE).copy()
     if layout is not None:
         poses = state[layout.numbers].tobytes()
         state[layout.blank] = 0
         if state.tobytes() == layout.state:
             return Content(layout.what, layout.state, poses)
-    layout = _layout_of(data)
+    layout = _parse_layout(data)
     if layout is None:
         return None
-    if len(_layouts) >= _MOST_LAYOUTS:
+    if len(_layouts) >= _MAX_LAYOUTS:
         _layouts.clear()
     _layouts[len(data)] = layout
-    numbers = np.frombuffer(data, np.uint8, offset=_CAPSULE)[layout.numbers]
+    numbers = np.frombuffer(data, np.uint8, offset=_ENCAPSULATION_SIZE)[layout.numbers]
     return Content(layout.what, layout.state, numbers.tobytes())
 
 
-def _layout_of(data: bytes) -> _Layout | None:
-    state = bytearray(data[_CAPSULE:])
+def _parse_layout(data: bytes) -> _Layout | None:
+    state = bytearray(data[_ENCAPSULATION_SIZE:])
     children: list[str] = []
     stamps: list[int] = []
     poses: list[int] = []
-    at = 4
+    offset = 4
     try:
         for _ in range(struct.unpack_from("<I", state)[0]):
-            at += -at % 4
-            stamps.append(at)
-            at += _STAMP
+            offset += -offset % 4
+            stamps.append(offset)
+            offset += _STAMP_SIZE
             for _ in range(2):
-                at += -at % 4
-                (length,) = struct.unpack_from("<I", state, at)
-                text = state[at + 4 : at + 4 + length]
-                at += 4 + length
+                offset += -offset % 4
+                (length,) = struct.unpack_from("<I", state, offset)
+                text = state[offset + 4 : offset + 4 + length]
+                offset += 4 + length
             children.append(text.decode(errors="replace"))
-            at += -at % 8
-            poses.append(at)
-            at += _NUMBERS
+            offset += -offset % 8
+            poses.append(offset)
+            offset += _POSE_SIZE
     except struct.error:
         return None
-    if at > len(state):
+    if offset > len(state):
         return None
-    numbers = (np.array(poses, np.intp)[:, None] + np.arange(_NUMBERS)).ravel()
-    blank = np.concatenate(((np.array(stamps, np.intp)[:, None] + np.arange(_STAMP)).ravel(), numbers))
-    bare = np.frombuffer(bytes(state), np.uint8).copy()
-    bare[blank] = 0
-    return _Layout("\n".join(children), bare.tobytes(), numbers, blank)
+    numbers = (np.array(poses, np.intp)[:, None] + np.arange(_POSE_SIZE)).ravel()
+    blank = np.concatenate(((np.array(stamps, np.intp)[:, None] + np.arange(_STAMP_SIZE)).ravel(), numbers))
+    masked = np.frombuffer(bytes(state), np.uint8).copy()
+    masked[blank] = 0
+    return _Layout("\n".join(children), masked.tobytes(), numbers, blank)

@@ -1,4 +1,4 @@
-"""The summary that ``bag info`` prints."""
+"""The summary of a recording that ``bag info`` prints."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
-    """Return the files, times and topics of a recording in the format of ``ros2 bag info``.
+    """Return the summary of a recording: files, times and topics in the format of ``ros2 bag info``.
 
     Args:
         bag: the recording.
@@ -23,7 +23,7 @@ def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
 
 
 def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, int], topics: Sequence[BagTopic]) -> str:
-    """Return the summary of a recording as text.
+    """Return a recording's summary as text.
 
     Args:
         files: the names of the files.
@@ -40,11 +40,11 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
     ]
     rows = [
         ("Files:", "\n".join(files)),
-        ("Bag size:", _size(size)),
+        ("Bag size:", _format_size(size)),
         ("Storage id:", storage),
-        ("Duration:", f"{_seconds(end - start)}s"),
-        ("Start:", _moment(start)),
-        ("End:", _moment(end)),
+        ("Duration:", f"{_format_duration(end - start)}s"),
+        ("Start:", _format_time(start)),
+        ("End:", _format_time(end)),
         ("Messages:", str(sum(topic.count for topic in topics))),
         ("Topic information:", "\n".join(lines)),
     ]
@@ -52,18 +52,18 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
     return "\n" + "".join(f"{name:19}{text.replace(chr(10), chr(10) + blank)}".rstrip() + "\n" for name, text in rows)
 
 
-def _moment(stamp_ns: int) -> str:
-    seconds, rest = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
+def _format_time(stamp_ns: int) -> str:
+    seconds, nanoseconds = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
     day = datetime.fromtimestamp(seconds).astimezone()
-    return f"{day:%b} {day.day:2} {day:%Y %H:%M:%S}.{rest:09d} ({seconds}.{rest:09d})"
+    return f"{day:%b} {day.day:2} {day:%Y %H:%M:%S}.{nanoseconds:09d} ({seconds}.{nanoseconds:09d})"
 
 
-def _seconds(duration_ns: int) -> str:
-    seconds, rest = divmod(duration_ns, NANOSECONDS_PER_SECOND)
-    return f"{seconds}.{rest:09d}"
+def _format_duration(duration_ns: int) -> str:
+    seconds, nanoseconds = divmod(duration_ns, NANOSECONDS_PER_SECOND)
+    return f"{seconds}.{nanoseconds:09d}"
 
 
-def _size(size: float) -> str:
+def _format_size(size: float) -> str:
     for unit in ("B", "KiB", "MiB", "GiB"):
         if size < 1024 or unit == "GiB":
             return f"{size:.0f} B" if unit == "B" else f"{size:.1f} {unit}"

@@ -1,9 +1,9 @@
-"""Reads MCAP files without an end or an index.
+"""Read MCAP files without an end or an index.
 
-Such files come from a recorder that was killed, from a truncated copy or from a stream. A file is a sequence of
-records, each with a kind and a length (the MCAP specification), and all complete records are usable. The missing
+Such files come from a recorder that was killed, from a truncated copy, or from a stream. A file is a sequence of
+records, each with a type and a length (the MCAP specification), and all complete records are usable. The missing
 summary, which lists the chunks, is created in memory and appended to the bytes of the file for readers. The file is
-therefore not copied, and seeking is as fast as in other files. Records that do not belong to ROS 2 are replaced in the
+file is not copied, and seeking is as fast as in other files. Records that do not belong to ROS 2 are replaced in the
 same way.
 """
 
@@ -18,26 +18,31 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, cast
 
-from linkwright.bag.foreign import FOOTER_BODY, HEAD, MAGIC, header_patch, known_schema, patches_of, schema_patch
+from linkwright.bag.foreign import FOOTER_BODY, HEAD, MAGIC, find_patches, header_patch, readable_schema, schema_patch
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer
 
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(0x01, 0x09)
 _STATISTICS, _DATA_END = 0x0B, 0x0F
-_SUMMARY_KINDS = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DATA_END})
-"""Records that only the end of a file has; a damaged end is left out and made again."""
+_SUMMARY_TYPES = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DATA_END})
+"""The types of records that only occur at the end of a file; a damaged end is left out and created again."""
 
 _CHUNK_HEAD = struct.Struct("<QQQII")
-"""The head of a chunk: times of first and last message, unpacked size, checksum, length of the compression's name."""
-_NUMBER, _PAIR, _ENTRY, _WORD = struct.Struct("<H"), struct.Struct("<HQ"), struct.Struct("<QQ"), struct.Struct("<I")
-_LONG = struct.Struct("<Q")
+"""The head of a chunk: first and last time, decompressed size, checksum, length of the compression's name."""
+_UINT16, _UINT16_UINT64, _ENTRY, _UINT32 = (
+    struct.Struct("<H"),
+    struct.Struct("<HQ"),
+    struct.Struct("<QQ"),
+    struct.Struct("<I"),
+)
+_UINT64 = struct.Struct("<Q")
 _MESSAGE_HEAD = struct.Struct("<HIQ")
-_COUNTS = struct.Struct("<QHIIIIQQ")
+_STATISTICS_HEAD = struct.Struct("<QHIIIIQQ")
 
 
 def is_unfinished(path: Path) -> bool:
-    """Return whether a file begins like an MCAP file but does not end like an MCAP file."""
+    """Return whether a file begins like an MCAP file, but does not end like one."""
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             return False
@@ -60,24 +65,24 @@ def has_index(path: Path) -> bool:
 
 
 def make_readable(path: Path) -> ReadableFile | None:
-    """Return a view of a file that the library can read, or None if the library can read the file itself."""
+    """Return a view of a file that the library can read; None if it can read the file itself."""
     if not is_unfinished(path) and has_index(path):
-        patches = patches_of(path)
+        patches = find_patches(path)
         return ReadableFile(path, path.stat().st_size, b"", patches) if patches else None
     with path.open("rb") as file:
         scan = _scan(file, path.stat().st_size)
-        tail = _summary_of(scan, file)
+        tail = _make_summary(scan, file)
         return ReadableFile(path, scan.end, tail, header_patch(file) | scan.patches)
 
 
 class ReadableFile:
-    """The complete records of an MCAP file and a summary, which the library accepts in place of a path.
+    """The complete records of an MCAP file with a summary; the library accepts it in place of a path.
 
     Args:
-        path: the file, which is not modified.
+        path: the file; it is not modified.
         size: the number of bytes of the file that are visible.
         tail: the bytes that follow the visible bytes.
-        patches: the bytes to replace, as offset -> bytes.
+        patches: the bytes that replace those of the file, by offset.
 
     Attributes:
         name: the name of the file.
@@ -104,10 +109,12 @@ class ReadableFile:
     def open(self, mode: str = "rb") -> BinaryIO:
         """Open a stream of the visible bytes of the file followed by the summary."""
         assert mode == "rb"
-        return cast("BinaryIO", io.BufferedReader(_Patched(self._path, self._size, self._tail, self._patches), 1 << 16))
+        return cast(
+            "BinaryIO", io.BufferedReader(_PatchedStream(self._path, self._size, self._tail, self._patches), 1 << 16)
+        )
 
 
-class _Patched(io.RawIOBase):
+class _PatchedStream(io.RawIOBase):
     """A stream of the beginning of a file with some bytes replaced, followed by other bytes."""
 
     def __init__(self, path: Path, size: int, tail: bytes, patches: Mapping[int, bytes]) -> None:
@@ -115,7 +122,7 @@ class _Patched(io.RawIOBase):
         self._size = size
         self._tail = tail
         self._patches = patches
-        self._at = 0
+        self._position = 0
 
     def readable(self) -> bool:
         return True
@@ -124,24 +131,24 @@ class _Patched(io.RawIOBase):
         return True
 
     def seek(self, offset: int, whence: int = 0) -> int:
-        begin = (0, self._at, self._size + len(self._tail))[whence]
-        self._at = max(0, begin + offset)
-        return self._at
+        origin = (0, self._position, self._size + len(self._tail))[whence]
+        self._position = max(0, origin + offset)
+        return self._position
 
     def readinto(self, buffer: Buffer) -> int:
-        into = memoryview(buffer)
-        if self._at < self._size:
-            self._file.seek(self._at)
-            count = self._file.readinto(into[: self._size - self._at]) or 0
+        view = memoryview(buffer)
+        if self._position < self._size:
+            self._file.seek(self._position)
+            count = self._file.readinto(view[: self._size - self._position]) or 0
             for offset, patch in self._patches.items():
-                begin, end = max(offset, self._at), min(offset + len(patch), self._at + count)
-                if begin < end:
-                    into[begin - self._at : end - self._at] = patch[begin - offset : end - offset]
+                start, end = max(offset, self._position), min(offset + len(patch), self._position + count)
+                if start < end:
+                    view[start - self._position : end - self._position] = patch[start - offset : end - offset]
         else:
-            part = self._tail[self._at - self._size :][: len(into)]
-            into[: len(part)] = part
-            count = len(part)
-        self._at += count
+            chunk = self._tail[self._position - self._size :][: len(view)]
+            view[: len(chunk)] = chunk
+            count = len(chunk)
+        self._position += count
         return count
 
     def close(self) -> None:
@@ -151,7 +158,7 @@ class _Patched(io.RawIOBase):
 
 @dataclass(slots=True)
 class _Chunk:
-    """The position of a chunk in the file, its record, and the positions of its message indexes."""
+    """A chunk: its position in the file, the values of its head, and the positions of its message indexes."""
 
     offset: int
     length: int
@@ -174,25 +181,25 @@ class _Scan:
     schemas: dict[int, bytes] = field(default_factory=dict)
     channels: dict[int, bytes] = field(default_factory=dict)
     patches: dict[int, bytes] = field(default_factory=dict)
-    has_loose_messages: bool = False
+    has_messages_outside_chunks: bool = False
 
-    def declare(self, kind: int, body: bytes) -> None:
-        """Register a schema or channel."""
-        into = self.schemas if kind == _SCHEMA else self.channels
-        known = known_schema(body) if kind == _SCHEMA else body
-        into.setdefault(_NUMBER.unpack_from(body)[0], _record(kind, known))
+    def declare(self, kind: int, content: bytes) -> None:
+        """Add a schema or channel, unless its number is already in use."""
+        records = self.schemas if kind == _SCHEMA else self.channels
+        readable = readable_schema(content) if kind == _SCHEMA else content
+        records.setdefault(_UINT16.unpack_from(content)[0], _record(kind, readable))
 
 
-def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
+def _make_summary(scan: _Scan, file: BinaryIO) -> bytes:
     """Return the bytes that must follow the complete records of a file."""
-    if scan.has_loose_messages or not scan.chunks:
+    if scan.has_messages_outside_chunks or not scan.chunks:
         # The library reads such a file sequentially, with or without a summary.
         return _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
-    made = bytearray()
+    message_indexes = bytearray()
     for chunk in scan.chunks:
         if not chunk.indexes or not scan.channels.keys() >= chunk.indexes.keys():
-            _scan_chunk(file, chunk, scan, made)
-    return _tail(scan, bytes(made))
+            _scan_chunk(file, chunk, scan, message_indexes)
+    return _make_tail(scan, bytes(message_indexes))
 
 
 def _scan(file: BinaryIO, size: int) -> _Scan:
@@ -200,78 +207,78 @@ def _scan(file: BinaryIO, size: int) -> _Scan:
     scan = _Scan()
     while True:
         file.seek(scan.end)
-        head = file.read(HEAD.size)
-        if len(head) < HEAD.size:
+        header = file.read(HEAD.size)
+        if len(header) < HEAD.size:
             return scan
-        kind, length = HEAD.unpack(head)
-        if kind == 0 or kind in _SUMMARY_KINDS or scan.end + HEAD.size + length > size:
+        record_type, length = HEAD.unpack(header)
+        if record_type == 0 or record_type in _SUMMARY_TYPES or scan.end + HEAD.size + length > size:
             return scan
-        if kind == _CHUNK and length >= _CHUNK_HEAD.size:
-            scan.chunks.append(_chunk(file, scan.end, HEAD.size + length))
-        elif kind == _MESSAGE_INDEX and scan.chunks:
-            channel, entries = _NUMBER.unpack(file.read(2))[0], _WORD.unpack(file.read(4))[0]
+        if record_type == _CHUNK and length >= _CHUNK_HEAD.size:
+            scan.chunks.append(_read_chunk_head(file, scan.end, HEAD.size + length))
+        elif record_type == _MESSAGE_INDEX and scan.chunks:
+            channel, entries = _UINT16.unpack(file.read(2))[0], _UINT32.unpack(file.read(4))[0]
             chunk = scan.chunks[-1]
             if entries:
                 chunk.indexes[channel], chunk.counts[channel] = scan.end, entries // _ENTRY.size
             chunk.indexes_end = scan.end + HEAD.size + length
-        elif kind in (_SCHEMA, _CHANNEL):
-            body = file.read(length)
-            scan.declare(kind, body)
-            if kind == _SCHEMA:
-                scan.patches |= schema_patch(scan.end + HEAD.size, body)
-        elif kind == _MESSAGE:
-            scan.has_loose_messages = True
+        elif record_type in (_SCHEMA, _CHANNEL):
+            content = file.read(length)
+            scan.declare(record_type, content)
+            if record_type == _SCHEMA:
+                scan.patches |= schema_patch(scan.end + HEAD.size, content)
+        elif record_type == _MESSAGE:
+            scan.has_messages_outside_chunks = True
         scan.end += HEAD.size + length
 
 
-def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
-    start_ns, end_ns, size, _, named = _CHUNK_HEAD.unpack(file.read(_CHUNK_HEAD.size))
-    compression = file.read(named)
-    (compressed,) = _LONG.unpack(file.read(8))
-    return _Chunk(offset, length, start_ns, end_ns, compression, compressed, size, indexes_end=offset + length)
+def _read_chunk_head(file: BinaryIO, offset: int, length: int) -> _Chunk:
+    start_ns, end_ns, size, _, name_length = _CHUNK_HEAD.unpack(file.read(_CHUNK_HEAD.size))
+    compression = file.read(name_length)
+    (compressed_size,) = _UINT64.unpack(file.read(8))
+    return _Chunk(offset, length, start_ns, end_ns, compression, compressed_size, size, indexes_end=offset + length)
 
 
-def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
-    """Read the schemas and channels in a chunk, and create missing message indexes."""
+def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: bytearray) -> None:
+    """Read the schemas and channels in a chunk, and append its message indexes if they are missing."""
     from rosbags.rosbag2.storage_mcap import decompress
 
     file.seek(chunk.offset + chunk.length - chunk.compressed_size)
     data = decompress(file.read(chunk.compressed_size), chunk.compression.decode(), chunk.size, 0)
     entries: dict[int, list[bytes]] = defaultdict(list)
-    for kind, place, length in _records(data):
-        body = data[place + HEAD.size : place + HEAD.size + length]
-        if kind in (_SCHEMA, _CHANNEL):
-            scan.declare(kind, body)
-        elif kind == _MESSAGE:
-            channel, _, stamp_ns = _MESSAGE_HEAD.unpack_from(body)
-            entries[channel].append(_ENTRY.pack(stamp_ns, place))
+    for record_type, offset, length in _records(data):
+        content = data[offset + HEAD.size : offset + HEAD.size + length]
+        if record_type in (_SCHEMA, _CHANNEL):
+            scan.declare(record_type, content)
+        elif record_type == _MESSAGE:
+            channel, _, stamp_ns = _MESSAGE_HEAD.unpack_from(content)
+            entries[channel].append(_ENTRY.pack(stamp_ns, offset))
     if chunk.indexes:
         return
     for channel, packed in entries.items():
-        chunk.indexes[channel], chunk.counts[channel] = scan.end + len(made), len(packed)
-        joined = b"".join(packed)
-        made += _record(_MESSAGE_INDEX, _NUMBER.pack(channel) + _WORD.pack(len(joined)) + joined)
-    chunk.indexes_end = scan.end + len(made)
+        chunk.indexes[channel], chunk.counts[channel] = scan.end + len(message_indexes), len(packed)
+        index = b"".join(packed)
+        message_indexes += _record(_MESSAGE_INDEX, _UINT16.pack(channel) + _UINT32.pack(len(index)) + index)
+    chunk.indexes_end = scan.end + len(message_indexes)
 
 
 def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Yield the kind, the position and the content length of each record in an uncompressed chunk."""
-    place = 0
-    while place + HEAD.size <= len(data):
-        kind, length = HEAD.unpack_from(data, place)
-        yield kind, place, length
-        place += HEAD.size + length
+    """Yield the type, the position and the content length of each record in a decompressed chunk."""
+    offset = 0
+    while offset + HEAD.size <= len(data):
+        record_type, length = HEAD.unpack_from(data, offset)
+        yield record_type, offset, length
+        offset += HEAD.size + length
 
 
-def _tail(scan: _Scan, made: bytes) -> bytes:
-    """Return the missing message indexes, the end of the data section, and the summary."""
-    before = made + _record(_DATA_END, bytes(4))
+def _make_tail(scan: _Scan, message_indexes: bytes) -> bytes:
+    """Return the created message indexes, the end of the data section, and the summary."""
+    data_end = message_indexes + _record(_DATA_END, bytes(4))
     chunks = [chunk for chunk in scan.chunks if chunk.indexes]
     totals: dict[int, int] = defaultdict(int)
     for channel, count in chain.from_iterable(chunk.counts.items() for chunk in chunks):
         totals[channel] += count
-    counts = b"".join(_PAIR.pack(*item) for item in totals.items())
-    statistics = _COUNTS.pack(
+    counts = b"".join(_UINT16_UINT64.pack(*item) for item in totals.items())
+    statistics = _STATISTICS_HEAD.pack(
         sum(totals.values()),
         len(scan.schemas),
         len(scan.channels),
@@ -286,28 +293,28 @@ def _tail(scan: _Scan, made: bytes) -> bytes:
             *scan.schemas.values(),
             *scan.channels.values(),
             *(_record(_CHUNK_INDEX, _chunk_index(chunk)) for chunk in chunks),
-            _record(_STATISTICS, statistics + _WORD.pack(len(counts)) + counts),
+            _record(_STATISTICS, statistics + _UINT32.pack(len(counts)) + counts),
         )
     )
-    footer = _record(_FOOTER, FOOTER_BODY.pack(scan.end + len(before), 0, 0))
-    return before + summary + footer + MAGIC
+    footer = _record(_FOOTER, FOOTER_BODY.pack(scan.end + len(data_end), 0, 0))
+    return data_end + summary + footer + MAGIC
 
 
 def _chunk_index(chunk: _Chunk) -> bytes:
-    offsets = b"".join(_PAIR.pack(*item) for item in chunk.indexes.items())
+    offsets = b"".join(_UINT16_UINT64.pack(*item) for item in chunk.indexes.items())
     return b"".join(
         (
             struct.pack("<QQQQ", chunk.start_ns, chunk.end_ns, chunk.offset, chunk.length),
-            _WORD.pack(len(offsets)),
+            _UINT32.pack(len(offsets)),
             offsets,
-            _LONG.pack(chunk.indexes_end - chunk.offset - chunk.length),
-            _WORD.pack(len(chunk.compression)),
+            _UINT64.pack(chunk.indexes_end - chunk.offset - chunk.length),
+            _UINT32.pack(len(chunk.compression)),
             chunk.compression,
-            _LONG.pack(chunk.compressed_size),
-            _LONG.pack(chunk.size),
+            _UINT64.pack(chunk.compressed_size),
+            _UINT64.pack(chunk.size),
         )
     )
 
 
-def _record(kind: int, body: bytes) -> bytes:
-    return HEAD.pack(kind, len(body)) + body
+def _record(kind: int, content: bytes) -> bytes:
+    return HEAD.pack(kind, len(content)) + content

@@ -1,4 +1,4 @@
-"""Determines from the first bytes of a file why it cannot be read as a recording."""
+"""Explain, from the first bytes of a file, why it cannot be read as a recording."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import yaml
 
-from linkwright.bag.names import METADATA, PACKED, ROS1
+from linkwright.bag.names import METADATA, PACKED, ROS1_SUFFIX
 from linkwright.diagnostics import Phrase, foreign, phrase
 
 _MCAP, _SQLITE, _ZSTD = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"\x28\xb5\x2f\xfd"
-_HEAD = 64
+_HEAD_BYTES = 64
 
 
 class Verdict(NamedTuple):
-    """The reason why a file is not a readable recording, a hint, and notes."""
+    """Why a file cannot be read as a recording, with a hint and a note, each of which may be None."""
 
     reason: Phrase
     hint: Phrase | None
@@ -24,66 +24,66 @@ class Verdict(NamedTuple):
 
 
 def diagnose(path: Path, error: Exception) -> Verdict:
-    """Determine why a recording cannot be read.
+    """Return why a recording cannot be read.
 
     Args:
         path: the path of the recording's file or folder.
-        error: the library's error, which is the reason if the file itself shows none.
+        error: the error of the library, which is the reason if the file itself does not show any.
     """
-    if path.suffix == ROS1:
-        return _ros1()
+    if path.suffix == ROS1_SUFFIX:
+        return _ros1_failure()
     if missing := _missing_files(path):
         names = ", ".join(missing)
         hint = phrase("copy the missing files, or open an existing file by its name")
-        return Verdict(phrase("files that its metadata.yaml names are missing: {names}", names=names), hint)
+        return Verdict(phrase("files that its metadata.yaml lists are missing: {names}", names=names), hint)
     try:
         with path.open("rb") as file:
-            head = file.read(_HEAD)
+            first_bytes = file.read(_HEAD_BYTES)
     except OSError:
-        head = None
+        first_bytes = None
     reason = foreign(str(error).strip().rstrip(".") or type(error).__name__)
-    if head is not None and (found := _by_its_beginning(path, head)) is not None:
-        is_mcap = head.startswith(_MCAP)  # the error of the library explains what is wrong with an MCAP file
-        return found._replace(note=phrase("the reader reports: {words}", words=reason)) if is_mcap else found
+    if first_bytes is not None and (failure := _diagnose_first_bytes(path, first_bytes)) is not None:
+        is_mcap = first_bytes.startswith(_MCAP)  # the error of the library explains what is wrong with an MCAP file
+        return failure._replace(note=phrase("the library reports: {words}", words=reason)) if is_mcap else failure
     return Verdict(reason, None)
 
 
-def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
-    if not head:
+def _diagnose_first_bytes(path: Path, first_bytes: bytes) -> Verdict | None:
+    if not first_bytes:
         return Verdict(phrase("the file is empty"), phrase("copy or record it again"))
-    if head.startswith(b"#ROSBAG V"):
-        return _ros1()
-    if head.startswith(_SQLITE):
+    if first_bytes.startswith(b"#ROSBAG V"):
+        return _ros1_failure()
+    if first_bytes.startswith(_SQLITE):
         if _has_tables(path):
             return None
         hint = phrase("use the .db3 file that 'ros2 bag record' wrote, with its metadata.yaml")
-        return Verdict(phrase("it is a database without the tables of a recording"), hint)
-    if head.startswith(_MCAP):
+        return Verdict(phrase("it is an SQLite database without the tables of a recording"), hint)
+    if first_bytes.startswith(_MCAP):
         hint = phrase("copy it again; 'mcap recover FILE -o OUT.mcap' recovers its complete records")
         return Verdict(phrase("it is a damaged or truncated MCAP file"), hint)
-    if head.lstrip().lower().startswith((b"<!doctype html", b"<html")):
+    if first_bytes.lstrip().lower().startswith((b"<!doctype html", b"<html")):
         hint = phrase("the download failed: open the file in a browser to see the server's answer")
         return Verdict(phrase("it is a web page"), hint)
-    if head.startswith(b"version https://git-lfs"):
+    if first_bytes.startswith(b"version https://git-lfs"):
         return Verdict(
             phrase("it is a Git LFS pointer, not the file itself"), phrase("fetch the file with 'git lfs pull'")
         )
-    if path.suffix == PACKED and head.startswith(_ZSTD):
+    if path.suffix == PACKED and first_bytes.startswith(_ZSTD):
         hint = phrase("copy it again; 'unzstd -t' checks whether it is complete")
         return Verdict(phrase("its content is damaged or truncated"), hint)
-    for begin, kind in ((_ZSTD, "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
-        if head.startswith(begin):
-            return Verdict(phrase("it is compressed with {kind}", kind=foreign(kind)), phrase("unpack it first"))
-    by_name = {".mcap": "MCAP", ".db3": "SQLite", PACKED: "zstd"}
-    if path.suffix not in by_name:
+    for magic, format_name in ((_ZSTD, "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
+        if first_bytes.startswith(magic):
+            return Verdict(phrase("it is compressed with {kind}", kind=foreign(format_name)), phrase("unpack it first"))
+    format_by_suffix = {".mcap": "MCAP", ".db3": "SQLite", PACKED: "zstd"}
+    if path.suffix not in format_by_suffix:
         return None
     hint = phrase("the file has the extension {ending} but not its format; copy or record it again", ending=path.suffix)
-    reason = phrase("it does not begin with the {kind} header", kind=foreign(by_name[path.suffix]))
+    reason = phrase("it does not begin with a {kind} header", kind=foreign(format_by_suffix[path.suffix]))
     return Verdict(reason, hint)
 
 
 def _missing_files(folder: Path) -> list[str]:
-    """Return the names of files that a recording's metadata lists but that do not exist."""
+    """Return the names of files that the metadata of a recording lists but that do not exist."""
     try:
         metadata = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]
@@ -94,7 +94,7 @@ def _missing_files(folder: Path) -> list[str]:
 
 
 def _has_tables(path: Path) -> bool:
-    """Return whether a database has the tables of recordings, or is too damaged to determine that."""
+    """Return whether a database has the tables of a recording; True if it is too damaged to tell."""
     import sqlite3
 
     try:
@@ -105,6 +105,6 @@ def _has_tables(path: Path) -> bool:
     return {"topics", "messages"} <= names
 
 
-def _ros1() -> Verdict:
+def _ros1_failure() -> Verdict:
     hint = phrase("convert it to ROS 2 with 'rosbags-convert --src X.bag --dst X'")
     return Verdict(phrase("it is a ROS 1 recording"), hint)

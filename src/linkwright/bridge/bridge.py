@@ -17,19 +17,19 @@ from linkwright.bridge.networks import Network
 from linkwright.bridge.side import Side
 from linkwright.graph.log.logger import LogLevel, LogRecord, LogSink
 
-_TOGETHER = 0.02
-"""Seconds for which news are collected before they are looked at."""
+_COLLECTION_S = 0.02
+"""Seconds for which changes are collected before they are processed."""
 
-_SOON = 0.02
-"""Seconds after which waiting work is checked again."""
+_BUSY_INTERVAL_S = 0.02
+"""Seconds between two checks while work is pending."""
 
-_SELDOM = 0.25
-"""The same when nothing waits."""
+_IDLE_INTERVAL_S = 0.25
+"""The same, if no work is pending."""
 
-_UNSETTLED = 3.0
-"""Seconds after news for which the bridge checks as if something waited: listeners are known a moment later."""
+_UNSETTLED_S = 3.0
+"""Seconds after a change for which the bridge checks as if work were pending, because matching takes a moment."""
 
-_OF_THE_BRIDGE = ("wire", "dds", "zenoh", "bridge")
+_BRIDGE_LOGGERS = ("wire", "dds", "zenoh", "bridge")
 
 
 def new_bridge_id() -> str:
@@ -38,7 +38,7 @@ def new_bridge_id() -> str:
 
 
 async def run_bridge(
-    networks: tuple[Network, Network], names: NameFilter, bridge_id: str, log: LogSink, ready: Callable[[], object]
+    networks: tuple[Network, Network], names: NameFilter, bridge_id: str, log: LogSink, on_ready: Callable[[], object]
 ) -> None:
     """Carry the traffic with permitted names between two networks, in both directions, until cancelled.
 
@@ -47,7 +47,7 @@ async def run_bridge(
         names: selects the topics and services to carry.
         bridge_id: the ID of the bridge.
         log: receives log records.
-        ready: called once both networks are joined.
+        on_ready: called once both networks are joined.
 
     Raises:
         LinkwrightError: a network cannot be joined.
@@ -58,7 +58,7 @@ async def run_bridge(
         second = await networks[1].join(bridge_id, sink)
         try:
             logger = first.graph.get_logger("bridge")
-            ready()
+            on_ready()
             directions = (Direction(first, second, names, logger), Direction(second, first, names, logger))
             try:
                 await _carry(first, second, directions)
@@ -73,37 +73,36 @@ async def run_bridge(
 
 async def _carry(first: Side, second: Side, directions: tuple[Direction, Direction]) -> None:
     loop = asyncio.get_running_loop()
-    news = asyncio.Event()
+    change_event = asyncio.Event()
 
     def changed() -> None:
-        loop.call_soon_threadsafe(news.set)
+        loop.call_soon_threadsafe(change_event.set)
 
     first.watch(changed)
     second.watch(changed)
-    news.set()
+    change_event.set()
     unsettled_until = 0.0
     while True:
-        if news.is_set():
-            await asyncio.sleep(_TOGETHER)
-            news.clear()
+        if change_event.is_set():
+            await asyncio.sleep(_COLLECTION_S)
+            change_event.clear()
             first.update()
             second.update()
             # Withdraw first in both directions: a service that both sides offer must not be carried in either
-            # direction, so that no
-            # request travels in a circle.
+            # direction, so that no request travels in a circle.
             for direction in directions:
                 direction.withdraw()
             for direction in directions:
                 direction.add()
-            unsettled_until = loop.time() + _UNSETTLED
+            unsettled_until = loop.time() + _UNSETTLED_S
         settled = [direction.settle() for direction in directions]
         settled += [directions[0].show(directions[1]), directions[1].show(directions[0])]
-        pause = _SELDOM if all(settled) and loop.time() > unsettled_until else _SOON
-        waiting = asyncio.ensure_future(news.wait())
+        pause_s = _IDLE_INTERVAL_S if all(settled) and loop.time() > unsettled_until else _BUSY_INTERVAL_S
+        wait_task = asyncio.ensure_future(change_event.wait())
         try:
-            await asyncio.wait((waiting,), timeout=pause)  # `wait_for` may miss Ctrl-C before Python 3.12
+            await asyncio.wait((wait_task,), timeout=pause_s)  # `wait_for` may miss Ctrl-C before Python 3.12
         finally:
-            waiting.cancel()
+            wait_task.cancel()
 
 
 def _without_mirrored_nodes(log: LogSink) -> LogSink:
@@ -113,7 +112,7 @@ def _without_mirrored_nodes(log: LogSink) -> LogSink:
     """
 
     def take(record: LogRecord) -> None:
-        if record.node in _OF_THE_BRIDGE or record.level >= LogLevel.ERROR:
+        if record.node in _BRIDGE_LOGGERS or record.level >= LogLevel.ERROR:
             log(record)
 
     return take

@@ -27,8 +27,8 @@ class NameFilter:
     """
 
     def __init__(self, allowed: Iterable[str] = (), denied: Iterable[str] = ()) -> None:
-        self._allowed = [_compiled(pattern) for pattern in allowed]
-        self._denied = [_compiled(pattern) for pattern in denied]
+        self._allowed = [_compile_pattern(pattern) for pattern in allowed]
+        self._denied = [_compile_pattern(pattern) for pattern in denied]
 
     def passes(self, name: str) -> bool:
         """Return whether a topic or service, given by its absolute name, is carried.
@@ -41,14 +41,14 @@ class NameFilter:
         return not self._allowed or any(pattern.match(name) for pattern in self._allowed)
 
 
-def _compiled(pattern: str) -> re.Pattern[str]:
+def _compile_pattern(pattern: str) -> re.Pattern[str]:
     if not _PATTERN.fullmatch(pattern):
         raise LinkwrightError(
             Diagnostic(
                 "CLI453",
-                phrase("'{pattern}' is not a pattern for names of topics and services", pattern=pattern),
+                phrase("'{pattern}' is not a valid pattern for topic and service names", pattern=pattern),
                 hint=phrase("write an absolute name, such as /robot1 for all names below it, or /*/scan"),
             )
         )
-    parts = "[^/]*".join(re.escape(part) for part in pattern.rstrip("/").split("*"))
-    return re.compile(f"{parts}(/.*)?$")
+    expression = "[^/]*".join(re.escape(literal) for literal in pattern.rstrip("/").split("*"))
+    return re.compile(f"{expression}(/.*)?$")

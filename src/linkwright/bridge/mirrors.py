@@ -18,14 +18,14 @@ from linkwright.graph.log.logger import log_failure
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 
-MATCHED_WITHIN = 10.0
-"""Seconds within which publishers and subscriptions that know of each other match, on a machine that is very busy."""
+MATCH_TIMEOUT_S = 10.0
+"""Seconds within which publishers and subscriptions that discovered each other match, even on a busy machine."""
 
-_KNOWN_WITHIN = 1.0
-"""Seconds for which messages of a new publisher wait though no subscription is known that can hear it."""
+_DISCOVERY_TIMEOUT_S = 1.0
+"""Seconds for which messages of a new publisher wait if no subscription that can receive them is known."""
 
-_QUEUE = 100
-"""Messages that wait for their turn on a topic without history; requests of a service, ten times as many."""
+_QUEUE_LENGTH = 100
+"""The queue length of a topic without history. The queue of a service holds ten times as many requests."""
 
 
 class Tap:
@@ -34,19 +34,19 @@ class Tap:
     Args:
         node: the bridge's own node in the network of the stream.
         stream: the stream to subscribe to.
-        take: called with the tap, each message as bytes, and the message's info.
+        on_message: called with the tap, each message as bytes, and the message's info.
     """
 
-    def __init__(self, node: NodeHandle, stream: Stream, take: Callable[[Tap, bytes, MessageInfo], None]) -> None:
+    def __init__(self, node: NodeHandle, stream: Stream, on_message: Callable[[Tap, bytes, MessageInfo], None]) -> None:
         qos = QoSProfile(
-            depth=KEPT if stream.lasts else _QUEUE,
+            depth=KEPT if stream.has_history else _QUEUE_LENGTH,
             history=stream.history,
             reliability=stream.reliability,
             durability=stream.durability,
         )
 
         def receive(data: bytes, info: MessageInfo) -> None:
-            take(self, data, info)
+            on_message(self, data, info)
 
         subscription: Subscription[Any] = Subscription(node, stream.type_name, stream.name, qos, receive, raw=True)
         subscription.type_hash = stream.type_hash
@@ -88,8 +88,8 @@ class MirroredPublisher:
         self._made = time.monotonic()
         self.expects_listeners = False
         self._publisher = node.add(publisher)
-        failed = partial(log_failure, node.logger, f"publisher of topic '{info.name}'")
-        self._outlet = Outlet(publisher.publish, failed) if stream.history is HistoryPolicy.KEEP_ALL else None
+        on_failure = partial(log_failure, node.logger, f"publisher of topic '{info.name}'")
+        self._outlet = Outlet(publisher.publish, on_failure) if stream.history is HistoryPolicy.KEEP_ALL else None
 
     @property
     def gid(self) -> bytes:
@@ -116,11 +116,11 @@ class MirroredPublisher:
     def settle(self) -> bool:
         """Publish the queued messages once a subscription is matched, or after a while.
 
-        Return whether the queue is empty. Messages with history are published immediately.
+        Returns whether the queue is empty. Messages with history are published immediately.
         """
-        if self._waiting is not None and (self.stream.lasts or self.listeners() or self._has_waited()):
-            waiting, self._waiting = self._waiting, None
-            for data in waiting:
+        if self._waiting is not None and (self.stream.has_history or self.listeners() or self._has_waited()):
+            queued_messages, self._waiting = self._waiting, None
+            for data in queued_messages:
                 self._publish(data)
         return self._waiting is None
 
@@ -135,8 +135,8 @@ class MirroredPublisher:
         return self._outlet is not None and self._outlet.has_more()
 
     def _has_waited(self) -> bool:
-        patience = MATCHED_WITHIN if self.expects_listeners else _KNOWN_WITHIN
-        return time.monotonic() >= self._made + patience
+        timeout = MATCH_TIMEOUT_S if self.expects_listeners else _DISCOVERY_TIMEOUT_S
+        return time.monotonic() >= self._made + timeout
 
     def _publish(self, data: bytes) -> None:
         if self._outlet is None:
@@ -157,7 +157,7 @@ class MirroredService:
     def __init__(self, node: NodeHandle, home: NodeHandle, info: EndpointInfo) -> None:
         self.info = info
         self._node = node
-        self._qos = QoSProfile(10 * _QUEUE)
+        self._qos = QoSProfile(10 * _QUEUE_LENGTH)
         client: Client[Any, Any] = Client(home, info.type_name, info.name, self._qos, raw=True)
         client.type_hash = info.type_hash
         client.is_listed = False
@@ -168,7 +168,13 @@ class MirroredService:
         """Offer the service once it can be called; return whether it is offered."""
         if self._service is None and self._client.service_is_ready():
             service: Service[Any, Any] = Service(
-                self._node, self.info.type_name, self.info.name, self._qos, self._ask, replying=True, raw=True
+                self._node,
+                self.info.type_name,
+                self.info.name,
+                self._qos,
+                self._forward_request,
+                replying=True,
+                raw=True,
             )
             service.type_hash = self.info.type_hash
             self._service = self._node.add(service)
@@ -180,11 +186,11 @@ class MirroredService:
             self._service.destroy()
         self._client.destroy()
 
-    def _ask(self, request: Any, reply: Callable[[Any], None]) -> None:
-        self._client.call_async(request).add_done_callback(partial(_answer, reply))
+    def _forward_request(self, request: Any, reply: Callable[[Any], None]) -> None:
+        self._client.call_async(request).add_done_callback(partial(_forward_response, reply))
 
 
-def _answer(reply: Callable[[Any], None], future: Any) -> None:
+def _forward_response(reply: Callable[[Any], None], future: Any) -> None:
     response = future.result()
     if response is not None:
         reply(response)

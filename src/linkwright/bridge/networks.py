@@ -21,19 +21,19 @@ _JOINED_WITHIN = 10.0
 
 
 @dataclass(frozen=True)
-class _Kind:
+class _NetworkKind:
     """A kind of network.
 
     Attributes:
         label: the name in messages.
-        why_not: returns the reason why this kind is not available, or an empty string if it is.
-        open: creates the transport for a domain and a bridge.
+        unavailable_reason: returns the reason why this kind is not available, or an empty string if it is.
+        open_transport: creates the transport for a domain and a bridge.
         needs_hashes: see `Side`.
     """
 
     label: str
-    why_not: Callable[[], Phrase]
-    open: Callable[[int | None, str, Logger], BackgroundTransport]
+    unavailable_reason: Callable[[], Phrase]
+    open_transport: Callable[[int | None, str, Logger], BackgroundTransport]
     needs_hashes: bool
 
 
@@ -47,8 +47,8 @@ def _open_zenoh(domain_id: int | None, _bridge_id: str, logger: Logger) -> Backg
 
 
 _KINDS = {
-    "dds": _Kind("DDS", dds.unavailable_reason, _open_dds, needs_hashes=False),
-    "zenoh": _Kind("Zenoh", zenoh.unavailable_reason, _open_zenoh, needs_hashes=True),
+    "dds": _NetworkKind("DDS", dds.unavailable_reason, _open_dds, needs_hashes=False),
+    "zenoh": _NetworkKind("Zenoh", zenoh.unavailable_reason, _open_zenoh, needs_hashes=True),
 }
 
 
@@ -77,12 +77,12 @@ class Network:
                 be joined.
         """
         kind = _KINDS[self.kind]
-        reason = kind.why_not()
+        reason = kind.unavailable_reason()
         if reason:
             message = phrase("{network} cannot be joined", network=self.label)
             raise LinkwrightError(Diagnostic("CLI454", message, notes=(Note(reason),)))
         graph = Graph(on_log=log, on_namesakes=_ignore_names)
-        transport = kind.open(self.domain_id, bridge_id, graph.get_logger(self.kind))
+        transport = kind.open_transport(self.domain_id, bridge_id, graph.get_logger(self.kind))
         graph.attach(transport)
         side = Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
         try:

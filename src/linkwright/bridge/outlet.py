@@ -15,17 +15,17 @@ from linkwright.wire.living_threads import guarded
 class Outlet:
     """Publishes messages in order, in a separate thread.
 
-    A publisher with the history policy keep all blocks, for seconds, if a subscriber has stopped reading. Meanwhile the
+    A publisher with KEEP_ALL blocks for seconds if a subscriber has stopped reading. Meanwhile the
     rest of the bridge's traffic continues.
 
     Args:
         publish: publishes a message.
-        failed: called with the error if publishing fails.
+        on_failure: called with the error if publishing fails.
     """
 
-    def __init__(self, publish: Callable[[bytes], object], failed: Callable[[Exception], object]) -> None:
+    def __init__(self, publish: Callable[[bytes], object], on_failure: Callable[[Exception], object]) -> None:
         self._publish = publish
-        self._failed = failed
+        self._failed = on_failure
         self._queue: Queue[bytes | None] = Queue()
         self._thread: threading.Thread | None = None
 

@@ -13,8 +13,10 @@ from linkwright.graph.names.rules import NodeIdentity, Remappings
 from linkwright.wire.background import BackgroundTransport
 
 ENCLAVE = "/linkwright_bridge"
-"""Nodes that a bridge has in a network are in the enclave ``/linkwright_bridge/<id of the bridge>``, by which other
-bridges distinguish them from the network's own. Only security uses a node's enclave."""
+"""The nodes of a bridge are in the enclave ``/linkwright_bridge/<id of the bridge>``.
+
+Other bridges use the enclave to distinguish these nodes from the network's own nodes. Otherwise only security uses it.
+"""
 
 Provision = tuple[str, EndpointKind, str, str]
 """Node, kind, name and type of a publisher or service."""
@@ -27,20 +29,20 @@ class Snapshot:
     Attributes:
         nodes: the nodes.
         endpoints: the endpoints whose node is known.
-        demanded: the subscriptions, by topic.
+        subscriptions: the subscriptions, by topic.
         served: the names of services that have a server.
         carried: the endpoints that bridges with precedence carry to this network, so that this bridge does not.
         carried_nodes: the full names of the nodes that those bridges mirror in this network.
-        by_bridges: the GIDs of publishers of other bridges.
+        bridge_gids: the GIDs of publishers of other bridges.
     """
 
     nodes: list[NodeIdentity] = field(default_factory=list)
     endpoints: list[EndpointInfo] = field(default_factory=list)
-    demanded: dict[str, list[EndpointInfo]] = field(default_factory=dict)
+    subscriptions: dict[str, list[EndpointInfo]] = field(default_factory=dict)
     served: set[str] = field(default_factory=set)
     carried: set[Provision] = field(default_factory=set)
     carried_nodes: set[str] = field(default_factory=set)
-    by_bridges: set[bytes] = field(default_factory=set)
+    bridge_gids: set[bytes] = field(default_factory=set)
 
 
 class Side:
@@ -85,48 +87,48 @@ class Side:
         """Create a node of the bridge that has a name but no endpoints."""
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
-    def watch(self, changed: Callable[[], None]) -> None:
+    def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for every change of the graph, including processes that were killed.
 
         The callback is called from any thread.
         """
-        self._transport.watch(changed)
-        self._transport.watch_lost(lambda _publisher: changed())
+        self._transport.watch(callback)
+        self._transport.watch_lost(lambda _publisher: callback())
         self._transport.look_around()
 
     def update(self) -> None:
-        """Update the snapshot `seen`."""
-        seen = Snapshot()
+        """Update `snapshot` to the nodes and endpoints that are known now."""
+        snapshot = Snapshot()
         for node in self._transport.remote_nodes():
-            other = _bridge_of(node)
-            if not other:
-                seen.nodes.append(node)
-            elif other < self._bridge_id:
-                seen.carried_nodes.add(node.full_name)
+            other_bridge_id = _owning_bridge(node)
+            if not other_bridge_id:
+                snapshot.nodes.append(node)
+            elif other_bridge_id < self._bridge_id:
+                snapshot.carried_nodes.add(node.full_name)
         for endpoint in self._transport.remote_endpoints():
             if endpoint.node is None:
                 continue
-            other = _bridge_of(endpoint.node)
-            if other:
-                seen.by_bridges.add(endpoint.gid)
-                if other < self._bridge_id:
-                    seen.carried.add(provision_of(endpoint))
+            other_bridge_id = _owning_bridge(endpoint.node)
+            if other_bridge_id:
+                snapshot.bridge_gids.add(endpoint.gid)
+                if other_bridge_id < self._bridge_id:
+                    snapshot.carried.add(endpoint_provision(endpoint))
                 continue
-            seen.endpoints.append(endpoint)
+            snapshot.endpoints.append(endpoint)
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
-                seen.demanded.setdefault(endpoint.name, []).append(endpoint)
+                snapshot.subscriptions.setdefault(endpoint.name, []).append(endpoint)
             elif endpoint.kind is EndpointKind.SERVICE:
-                seen.served.add(endpoint.name)
-        self.seen = seen
+                snapshot.served.add(endpoint.name)
+        self.seen = snapshot
 
 
-def provision_of(endpoint: EndpointInfo) -> Provision:
+def endpoint_provision(endpoint: EndpointInfo) -> Provision:
     """Return an identity of an endpoint that does not depend on its GID."""
     assert endpoint.node is not None
     return endpoint.node.full_name, endpoint.kind, endpoint.name, endpoint.type_name
 
 
-def _bridge_of(node: NodeIdentity) -> str:
+def _owning_bridge(node: NodeIdentity) -> str:
     """Return the ID of the bridge that a node belongs to, or an empty string for any other node."""
     root, slash, bridge_id = node.enclave.rpartition("/")
     return bridge_id if slash and root == ENCLAVE else ""

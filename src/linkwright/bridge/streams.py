@@ -16,10 +16,10 @@ from linkwright.graph.qos.profile import (
 from linkwright.messages import InterfaceNotFoundError, type_hash
 
 KEPT = 1000
-"""Messages that are queued where none may be lost: the history for late joiners, and those of a new publisher."""
+"""The queue length where no message may be lost: for late joiners, and for the messages of a new publisher."""
 
 _ASSUMED_DEPTH = 10
-"""The history of a publisher that does not announce it, as one of Fast DDS does not."""
+"""The depth of a publisher that does not announce its history, such as a publisher of Fast DDS."""
 
 
 class Stream(NamedTuple):
@@ -42,12 +42,12 @@ class Stream(NamedTuple):
     history: HistoryPolicy
 
     @property
-    def lasts(self) -> bool:
+    def has_history(self) -> bool:
         """Whether late joiners receive earlier messages."""
         return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
 
 
-def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
+def publisher_stream(publisher: EndpointInfo, *, keyed: bool) -> Stream:
     """Return the stream that a publisher is part of.
 
     Args:
@@ -67,16 +67,16 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
 
     Args:
         subscription: the subscription.
-        keyed: see `stream_of`; if false, few subscriptions announce their history.
+        keyed: see `publisher_stream`; if false, few subscriptions announce their history.
     """
-    volatile, last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
+    volatile, keep_last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
-    found = {_stream(subscription, reliable, volatile, last, keyed=keyed)}
+    streams = {_stream(subscription, reliable, volatile, keep_last, keyed=keyed)}
     if keyed or subscription.qos.history is HistoryPolicy.KEEP_ALL:
-        found.add(_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, keyed=keyed))
+        streams.add(_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, keyed=keyed))
     if not keyed and subscription.qos.reliability is not reliable:
-        found.add(_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, last, keyed=keyed))
-    return found
+        streams.add(_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, keep_last, keyed=keyed))
+    return streams
 
 
 def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
@@ -85,16 +85,16 @@ def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: b
     Args:
         subscription: the subscription, in the target network.
         publisher: the publisher in the source network, whose offered profile the mirror has.
-        keyed: see `stream_of`, for the target network.
+        keyed: see `publisher_stream`, for the target network.
     """
     if subscription.type_name != publisher.type_name:
         return False
     if keyed:
-        return len({hash_of(subscription), hash_of(publisher)} - {""}) <= 1
+        return len({endpoint_hash(subscription), endpoint_hash(publisher)} - {""}) <= 1
     return not incompatible_policies(offered_profile(publisher.qos), subscription.qos)
 
 
-def hash_of(endpoint: EndpointInfo) -> str:
+def endpoint_hash(endpoint: EndpointInfo) -> str:
     """Return the hash of an endpoint's type, or an empty string if it is unknown.
 
     The hash is the announced one, or that of the type's package here.
@@ -118,24 +118,24 @@ def _stream(
     keyed: bool,
 ) -> Stream:
     # An endpoint whose type is unknown here may not announce the hash, but still receives from publishers of its type.
-    hashed = hash_of(endpoint) if keyed and _known_hash(endpoint) else ""
-    return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
+    stream_hash = endpoint_hash(endpoint) if keyed and _known_hash(endpoint) else ""
+    return Stream(endpoint.name, endpoint.type_name, stream_hash, reliability, durability, history)
 
 
 def offered_profile(qos: QoSProfile) -> QoSProfile:
     """Return the profile that a publisher offers, with ROS's defaults for values that discovery does not provide."""
-    lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    is_transient_local = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     is_announced = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)
-    best_effort = qos.reliability is ReliabilityPolicy.BEST_EFFORT
-    manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+    is_best_effort = qos.reliability is ReliabilityPolicy.BEST_EFFORT
+    is_manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
     return QoSProfile(
-        depth=qos.depth if is_announced else KEPT if lasts else _ASSUMED_DEPTH,
+        depth=qos.depth if is_announced else KEPT if is_transient_local else _ASSUMED_DEPTH,
         history=HistoryPolicy.KEEP_ALL if keeps_all else HistoryPolicy.KEEP_LAST,
-        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if lasts else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.BEST_EFFORT if is_best_effort else ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_transient_local else DurabilityPolicy.VOLATILE,
         deadline=qos.deadline,
         lifespan=qos.lifespan,
-        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC if manual else LivelinessPolicy.AUTOMATIC,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC if is_manual else LivelinessPolicy.AUTOMATIC,
         liveliness_lease_duration=qos.liveliness_lease_duration,
     )

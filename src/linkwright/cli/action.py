@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 _STATUS = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
-_LONGEST_CANCEL = 3.0
+_CANCEL_TIMEOUT = 3.0
 """Seconds to wait for the server's response when Ctrl-C cancels a goal."""
 
 
@@ -40,7 +40,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         print_names_and_types(session.node.get_action_names_and_types(), arguments)
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
@@ -59,22 +59,22 @@ def run_info(arguments: argparse.Namespace) -> int:
         clients: list[tuple[str, Sequence[str]]] = []
         servers: list[tuple[str, Sequence[str]]] = []
         graph = session.graph
-        for full in dict.fromkeys(node_names(session, hidden=True)):
-            namespace, _, bare = full.rpartition("/")
-            who = (bare, namespace or "/")
-            for found, of_node in (
-                (clients, graph.get_action_client_names_and_types_by_node(*who)),
-                (servers, graph.get_action_server_names_and_types_by_node(*who)),
+        for full_name in dict.fromkeys(node_names(session, hidden=True)):
+            namespace, _, base_name = full_name.rpartition("/")
+            node_key = (base_name, namespace or "/")
+            for endpoints, node_actions in (
+                (clients, graph.get_action_client_names_and_types_by_node(*node_key)),
+                (servers, graph.get_action_server_names_and_types_by_node(*node_key)),
             ):
-                found += [(full, types) for action, types in of_node if action == name]
+                endpoints += [(full_name, types) for action, types in node_actions if action == name]
         print(f"Action: {arguments.action_name}")
         for title, nodes in (("clients", clients), ("servers", servers)):
             print(f"Action {title}: {len(nodes)}")
-            for full, types in [] if arguments.count else nodes:
-                print(f"    {full} [{', '.join(types)}]" if arguments.show_types else f"    {full}")
+            for full_name, types in [] if arguments.count else nodes:
+                print(f"    {full_name} [{', '.join(types)}]" if arguments.show_types else f"    {full_name}")
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
@@ -88,8 +88,8 @@ def run_type(arguments: argparse.Namespace) -> int:
     actions = Kind(
         lambda session: session.node.get_action_names_and_types(),
         "CLI429",
-        lambda given: phrase("Unknown action '{action_name}'", action_name=given),
-        phrase("`linkwright action list` lists them"),
+        lambda action_name: phrase("Unknown action '{action_name}'", action_name=action_name),
+        phrase("`linkwright action list` lists the actions"),
     )
     return actions.print_types(arguments, arguments.action_name)
 
@@ -117,15 +117,15 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
     from linkwright.messages import get_action, to_yaml
 
     name = absolute(arguments.action_name)
-    kind = get_action(arguments.action_type)
+    action_class = get_action(arguments.action_type)
     text = read_values(arguments)
-    goal = kind.Goal()
+    goal = action_class.Goal()
     fill(goal, parse_values(text)[0], text)
 
     async def job(session: Session) -> int:
         from linkwright.graph import ActionClient
 
-        client = ActionClient(session.node, kind, name)
+        client = ActionClient(session.node, action_class, name)
         print("Waiting for an action server to become available...")
         if not await session.wait_until(client.server_is_ready, arguments.timeout):
             raise LinkwrightError(
@@ -141,8 +141,8 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         def feedback(message: Any) -> None:
             print(f"Feedback:\n    {to_yaml(message.feedback)}")
 
-        sent = client.send_goal_async(goal, session.guarded(feedback) if arguments.feedback else None)
-        handle = await session.wait_for_result(sent)
+        goal_future = client.send_goal_async(goal, session.guarded(feedback) if arguments.feedback else None)
+        handle = await session.wait_for_result(goal_future)
         if handle is None or not handle.accepted:
             print("Goal was rejected.")
             return 1
@@ -163,7 +163,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
 
 async def _cancel(session: Session, handle: Any) -> None:
     print("Canceling goal...")
-    response = await session.wait_for_result(handle.cancel_goal_async(), _LONGEST_CANCEL)
+    response = await session.wait_for_result(handle.cancel_goal_async(), _CANCEL_TIMEOUT)
     if response is None:
         print("The server does not respond; the goal may still be active")
     elif not response.goals_canceling:

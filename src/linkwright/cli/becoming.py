@@ -1,4 +1,4 @@
-"""Replaces this process by another program, which then receives the signals and sets the exit status."""
+"""Replace this process by another program, which then receives the signals and sets the exit status."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from linkwright.cli.session import SigtermExits
+from linkwright.cli.session import ExitOnSigterm
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.process.event_loop import run_coroutine
 from linkwright.process.interruption import raise_interrupts
@@ -68,5 +68,5 @@ def run(arguments: argparse.Namespace) -> int:
         await run_bridge((first, second), names, new_bridge_id(), print_to_console, report)
         return 0
 
-    with SigtermExits():
+    with ExitOnSigterm():
         return run_coroutine(main, raise_interrupts)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 APPEARS_WITHIN = 5.0
-"""Seconds within which a service that a node should have must appear, as in ros2cli."""
+"""Seconds to wait for a service that a node should have, as in ros2cli."""
 
 
 class NoAnswerError(LinkwrightError):
@@ -84,8 +84,8 @@ def node_names(session: Session, *, hidden: bool = False) -> list[str]:
     """Return the sorted full names of the nodes; a name that several nodes share is repeated."""
     from linkwright.graph.names.rules import is_hidden, join
 
-    found = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())
-    return sorted(name for name in found if hidden or not is_hidden(name))
+    full_names = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())
+    return sorted(name for name in full_names if hidden or not is_hidden(name))
 
 
 async def find_node(session: Session, name: str, *, hidden: bool = False, timeout: float = 1.0) -> str:
@@ -100,13 +100,15 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
     Raises:
         LinkwrightError: CLI423, there is no such node.
     """
-    full = absolute_or_given(name)
-    if not await session.wait_until(lambda: full in node_names(session, hidden=hidden), timeout):
-        known = node_names(session, hidden=hidden)
-        nothing = (
-            phrase("running nodes: {known}", known=joined(dict.fromkeys(known)))
-            if known
+    full_name = absolute_or_given(name)
+    if not await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), timeout):
+        existing_names = node_names(session, hidden=hidden)
+        hint = (
+            phrase("running nodes: {known}", known=joined(dict.fromkeys(existing_names)))
+            if existing_names
             else phrase("no nodes are running")
         )
-        raise unknown_name_error("CLI423", phrase("Node not found: '{full}'", full=full), full, known, nothing)
-    return full
+        raise unknown_name_error(
+            "CLI423", phrase("Node not found: '{full}'", full=full_name), full_name, existing_names, hint
+        )
+    return full_name

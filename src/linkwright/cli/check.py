@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from linkwright.lint.engine import Checked
 
 
-_USAGE = 2
+_USAGE_ERROR = 2
 _DEFAULTS: dict[str, Any] = {
     "all": False,
     "config": None,
@@ -48,7 +48,7 @@ _DEFAULTS: dict[str, Any] = {
     "strict": False,
     "unsafe_fixes": False,
 }
-"""The values of options that are not given."""
+"""The values of options that the user does not pass."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -95,11 +95,11 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:
         return _usage("name a file or folder to check")
-    select = None if arguments.select is None else _listed(arguments.select)
-    ignore = _listed(arguments.ignore or ())
-    unknown = _unknown_selector((*(select or ()), *ignore))
-    if unknown:
-        return _usage(unknown)
+    select = None if arguments.select is None else _split_selectors(arguments.select)
+    ignore = _split_selectors(arguments.ignore or ())
+    usage_error = _unknown_selector((*(select or ()), *ignore))
+    if usage_error:
+        return _usage(usage_error)
     if arguments.config is not None and not Path(arguments.config).is_file():
         return _usage(phrase("no such file: '{config}'", config=arguments.config))
 
@@ -112,9 +112,9 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         None if arguments.config is None else Path(arguments.config),
         tuple(path.absolute() for path in paths if path.is_dir()),
     )
-    fixed: list[FixResult] = []
+    fix_results: list[FixResult] = []
     if arguments.diff or arguments.fix or arguments.unsafe_fixes:
-        fixed = _fix(
+        fix_results = _fix(
             paths,
             checker,
             around=arguments.package,
@@ -122,31 +122,31 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
             write=not arguments.diff,
         )
     if arguments.diff:
-        return _print_diff(fixed)
-    found, checked = _check(paths, checker, around=arguments.package)
-    _print(found, arguments.format, everything=arguments.all)
+        return _print_diff(fix_results)
+    diagnostics, checked_file = _check(paths, checker, around=arguments.package)
+    _print(diagnostics, arguments.format, everything=arguments.all)
     if arguments.format == "text":
-        if checked is not None:
-            sys.stdout.write(_contents(checked))
-        _summarise(found, fixed)
+        if checked_file is not None:
+            sys.stdout.write(_contents_text(checked_file))
+        _summarise(diagnostics, fix_results)
     if arguments.statistics:
-        _print_statistics(found)
-    failed = has_errors(found) or (
-        arguments.strict and any(diagnostic.severity is Severity.WARNING for diagnostic in found)
+        _print_statistics(diagnostics)
+    failed = has_errors(diagnostics) or (
+        arguments.strict and any(diagnostic.severity is Severity.WARNING for diagnostic in diagnostics)
     )
     return 1 if failed else 0
 
 
-def _contents(checked: Checked) -> str:
+def _contents_text(checked_file: Checked) -> str:
     """Return the tree of a robot's links or the list of a world's models; empty if neither was read."""
-    if checked.robot is not None:
+    if checked_file.robot is not None:
         from linkwright.urdf import tree_text
 
-        return tree_text(checked.robot)
-    if checked.sdf is not None:
+        return tree_text(checked_file.robot)
+    if checked_file.sdf is not None:
         from linkwright.sdf.listing import list_contents
 
-        return list_contents(checked.sdf)
+        return list_contents(checked_file.sdf)
     return ""
 
 
@@ -158,27 +158,27 @@ def _check(paths: Sequence[Path], checker: Checker, *, around: bool) -> tuple[li
     """
     from linkwright.lint.targets import find_targets
 
-    targets = find_targets(paths, around=around)
+    targets = find_targets(paths, with_packages=around)
     if not targets.files and not targets.packages:
-        named = ", ".join(f"'{path}'" for path in paths)
+        path_list = ", ".join(f"'{path}'" for path in paths)
         hint = phrase(
             "descriptions are .urdf, .sdf and .world files, and .xacro files with <robot name=...> that no other file"
             " includes"
         )
         raise LinkwrightError(
-            Diagnostic("CLI302", phrase("there is nothing to check in {named}", named=named), hint=hint)
+            Diagnostic("CLI302", phrase("there is nothing to check in {named}", named=path_list), hint=hint)
         )
-    found, checked = checker.check(targets, paths)
-    return found, checked if len(paths) == 1 and not paths[0].is_dir() else None
+    diagnostics, checked_file = checker.check(targets, paths)
+    return diagnostics, checked_file if len(paths) == 1 and not paths[0].is_dir() else None
 
 
 def _unknown_selector(words: Iterable[str]) -> str | None:
     """Return the usage error for the first selector that matches no rule, or None."""
     from linkwright.lint.selector_words import is_selector, selector_hint
 
-    for word in words:
-        if not is_selector(word):
-            return f"there is no rule '{word}'; {selector_hint(word)}"
+    for selector in words:
+        if not is_selector(selector):
+            return f"there is no rule '{selector}'; {selector_hint(selector)}"
     return None
 
 
@@ -196,41 +196,41 @@ def _fix(paths: Sequence[Path], checker: Checker, *, around: bool, unsafe: bool,
         overlay = None if text is None else Overlay({folder / MANIFEST: text})
         return checker.check_package(folder, overlay)[0]
 
-    targets = find_targets(paths, around=around)
+    targets = find_targets(paths, with_packages=around)
     checks = [(file, partial(file_again, file)) for file in targets.files]
     checks += [(folder / MANIFEST, partial(package_again, folder)) for folder in targets.packages]
     return [fix_file(path, check, unsafe=unsafe, write=write) for path, check in checks]
 
 
-def _print_diff(fixed: Sequence[FixResult]) -> int:
-    seen: set[str] = set()
-    for fixes in fixed:
-        fixes.texts = {file: text for file, text in fixes.texts.items() if file not in seen}
-        seen.update(fixes.texts)
-        sys.stdout.write(fixes.diff())
-    return 1 if seen else 0
+def _print_diff(fix_results: Sequence[FixResult]) -> int:
+    printed_files: set[str] = set()
+    for result in fix_results:
+        result.texts = {file: text for file, text in result.texts.items() if file not in printed_files}
+        printed_files.update(result.texts)
+        sys.stdout.write(result.diff())
+    return 1 if printed_files else 0
 
 
-def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
+def _print(diagnostics: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
         with suppress(OSError):  # a failure to write must not change the exit status, as in `print_message`
-            print_diagnostics(found if everything else group_similar(found), sys.stderr)
+            print_diagnostics(diagnostics if everything else group_similar(diagnostics), sys.stderr)
     else:
-        sys.stdout.write(format_diagnostics(found, form))
+        sys.stdout.write(format_diagnostics(diagnostics, form))
 
 
-def _summarise(found: Sequence[Diagnostic], fixed: Sequence[FixResult]) -> None:
-    if fixed:
-        count = sum(sum(fix_result.counts.values()) for fix_result in fixed)
-        files = len({file for fix_result in fixed for file in fix_result.texts})
+def _summarise(diagnostics: Sequence[Diagnostic], fix_results: Sequence[FixResult]) -> None:
+    if fix_results:
+        count = sum(sum(fix_result.counts.values()) for fix_result in fix_results)
+        files = len({file for fix_result in fix_results for file in fix_result.texts})
         line = phrase(
             "fixed {findings} in {files}",
             findings=counted("{count} finding", "{count} findings", count),
             files=counted("{count} file", "{count} files", files),
         )
         print_message(localized(line))
-    errors = sum(diagnostic.severity is Severity.ERROR for diagnostic in found)
-    warnings = sum(diagnostic.severity is Severity.WARNING for diagnostic in found)
+    errors = sum(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
+    warnings = sum(diagnostic.severity is Severity.WARNING for diagnostic in diagnostics)
     line = phrase(
         "{errors}, {warnings}",
         errors=counted("{count} error", "{count} errors", errors),
@@ -239,20 +239,20 @@ def _summarise(found: Sequence[Diagnostic], fixed: Sequence[FixResult]) -> None:
     print_message(localized(line))
 
 
-def _print_statistics(found: Iterable[Diagnostic]) -> None:
+def _print_statistics(diagnostics: Iterable[Diagnostic]) -> None:
     from linkwright.lint.explain import find_page
 
     for code, count in sorted(
-        Counter(diagnostic.code for diagnostic in found).items(), key=lambda item: (-item[1], item[0])
+        Counter(diagnostic.code for diagnostic in diagnostics).items(), key=lambda item: (-item[1], item[0])
     ):
         page = find_page(code)
         print(f"{count:6}  {code:<9} {page.name or localized(page.title) if page else ''}".rstrip(), file=sys.stderr)
 
 
-def _listed(words: Iterable[str]) -> tuple[str, ...]:
+def _split_selectors(words: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for word in words for name in word.replace(",", " ").split())
 
 
 def _usage(message: str) -> int:
     print(f"linkwright check: {message}", file=sys.stderr)
-    return _USAGE
+    return _USAGE_ERROR

@@ -1,6 +1,7 @@
 """The ``linkwright`` command: finds and runs the subcommand, and reports errors.
 
-Exit statuses: 0 success, 1 findings or an error in the user's input, 2 wrong usage, 3 a bug of ours, 130 interrupted.
+Exit statuses: 0 success, 1 findings or an error in the user's input, 2 wrong usage, 3 a bug in Linkwright,
+130 interrupted.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from linkwright.cli.language import LANGUAGE_HELP, take_language, translate_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol, cast
-from linkwright.process.interruption import end_at_once, raise_interrupts
+from linkwright.process.interruption import end_on_interrupt, raise_interrupts
 
 if TYPE_CHECKING:
     import argparse
@@ -34,7 +35,7 @@ COMMANDS = {
 }
 """The commands of linkwright-core, with their help texts; `linkwright.cli.workbench` has the other ones.
 
-Each is a module of this package, which is loaded only when it is run.
+Each command is a module of this package, which is loaded only when the command runs.
 """
 
 _ENGINE_GROUP = "robot descriptions"
@@ -53,11 +54,11 @@ MORE_HELP = "`linkwright COMMAND --help` describes a command. `linkwright --vers
 _OPTIONS = ("--help", "--lang", "--version")
 """The options that precede or replace a command."""
 
-_COLLECT_AFTER = 50_000
+_GC_THRESHOLD = 50_000
 """The number of new objects that starts a garbage collection; Python's 700 would cost a short command a tenth of its
 time."""
 
-_COLLECT_FIRST_AFTER = 200_000
+_FIRST_GC_THRESHOLD = 200_000
 """The number for the first collection: imports create more objects, and none of them is garbage."""
 
 
@@ -78,33 +79,36 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
         words: the arguments after the program's name; None for the arguments of this process.
         program: the program's name in usage lines, such as ``ros2``; empty if the subcommand is itself a program.
     """
-    whole_process = words is None
-    if whole_process:
-        _collect_seldom()
+    is_program = words is None
+    if is_program:
+        _reduce_garbage_collection()
     try:
         return status_of(lambda: _dispatch(take_language(sys.argv[1:] if words is None else words), program))
     finally:
         set_language(None)
-        if whole_process:
-            end_at_once()
+        if is_program:
+            end_on_interrupt()
             gc.freeze()  # freeze all objects, so that Python skips its last garbage collection at exit
 
 
-def _collect_seldom() -> None:
+def _reduce_garbage_collection() -> None:
     def looked(phase: str, _: object) -> None:
         if phase == "stop":
-            gc.set_threshold(_COLLECT_AFTER)
+            gc.set_threshold(_GC_THRESHOLD)
 
-    gc.set_threshold(_COLLECT_FIRST_AFTER)
+    gc.set_threshold(_FIRST_GC_THRESHOLD)
     gc.callbacks.append(looked)
 
 
 def groups() -> dict[str, dict[str, str]]:
     """Return the installed commands by group, each with its help text, in the order of the help."""
     workbench = _workbench()
-    others: dict[str, dict[str, str]] = {} if workbench is None else workbench.GROUPS
-    engine = {**others.get(_ENGINE_GROUP, {}), **COMMANDS}
-    return {_ENGINE_GROUP: engine, **{title: verbs for title, verbs in others.items() if title != _ENGINE_GROUP}}
+    workbench_groups: dict[str, dict[str, str]] = {} if workbench is None else workbench.GROUPS
+    engine_commands = {**workbench_groups.get(_ENGINE_GROUP, {}), **COMMANDS}
+    return {
+        _ENGINE_GROUP: engine_commands,
+        **{title: verbs for title, verbs in workbench_groups.items() if title != _ENGINE_GROUP},
+    }
 
 
 def help_texts() -> dict[str, str]:
@@ -157,58 +161,58 @@ def _dispatch(words: list[str], program: str) -> int:
     if workbench is not None:
         name = workbench.OTHER_NAMES.get(name, name)
     if name not in COMMANDS and name not in help_texts():
-        return _unknown(name, _OPTIONS if name.startswith("-") else help_texts(), program or PROGRAM)
+        return _report_unknown(name, _OPTIONS if name.startswith("-") else help_texts(), program or PROGRAM)
     module = verb(name)
-    in_order = workbench is not None and name in workbench.IN_ORDER
-    arguments = _without_options(module, words[1:]) or _parsed(name, module, words, program, in_order=in_order)
-    if isinstance(arguments, int):
-        return arguments
-    if workbench is None or name not in workbench.WITH_A_LOOP:
+    in_order = workbench is not None and name in workbench.ORDERED_COMMANDS
+    parsed = _parse_without_options(module, words[1:]) or _parse(name, module, words, program, in_order=in_order)
+    if isinstance(parsed, int):
+        return parsed
+    if workbench is None or name not in workbench.EVENT_LOOP_COMMANDS:
         raise_interrupts()
-    return module.run(arguments)
+    return module.run(parsed)
 
 
-def _without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
+def _parse_without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
     """Parse a command line without creating an argparse parser, which is slow.
 
     Returns:
         The arguments, or None if the line contains options or the command needs argparse.
     """
-    known: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
-    return None if known is None or any(word.startswith("-") for word in words) else known(words)
+    parse_fast: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
+    return None if parse_fast is None or any(word.startswith("-") for word in words) else parse_fast(words)
 
 
-def _parsed(name: str, module: Verb, words: list[str], program: str, *, in_order: bool) -> argparse.Namespace | int:
+def _parse(name: str, module: Verb, words: list[str], program: str, *, in_order: bool) -> argparse.Namespace | int:
     """Parse a command line with argparse, and return the arguments.
 
     If the subcommand is unknown, report it and return the exit status instead.
     """
     parser = parser_for(name, program=program)
-    below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
-    if below:
-        asked = next(iter(words[1:]), "-")
-        if not asked.startswith("-") and asked not in below:
-            return _unknown(asked, below, parser.prog)
-    mixed = not below and not in_order and any(word.startswith("-") for word in words)
-    parse = parser.parse_intermixed_args if mixed else parser.parse_args
+    sub_verbs: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
+    if sub_verbs:
+        sub_verb_name = next(iter(words[1:]), "-")
+        if not sub_verb_name.startswith("-") and sub_verb_name not in sub_verbs:
+            return _report_unknown(sub_verb_name, sub_verbs, parser.prog)
+    is_intermixed = not sub_verbs and not in_order and any(word.startswith("-") for word in words)
+    parse = parser.parse_intermixed_args if is_intermixed else parser.parse_args
     return parse(words[1:])
 
 
-def _unknown(name: str, known: Iterable[str], prog: str) -> int:
+def _report_unknown(name: str, names: Iterable[str], prog: str) -> int:
     """Report an unknown command or option, and return the exit status for wrong usage."""
-    hint = did_you_mean(name, known) or f"`{prog} --help` lists the commands"
+    hint = did_you_mean(name, names) or f"`{prog} --help` lists the commands"
     if _workbench() is None:
         hint += "; linkwright-core is installed alone, and linkwright has more commands"
-    what = "option" if name.startswith("-") else "command"
-    print(f"{prog}: there is no {what} '{name}'; {hint}", file=sys.stderr)
+    noun = "option" if name.startswith("-") else "command"
+    print(f"{prog}: there is no {noun} '{name}'; {hint}", file=sys.stderr)
     return USAGE
 
 
 def _overview() -> str:
-    shown = groups()
-    width = max(len(name) for verbs in shown.values() for name in verbs)
+    command_groups = groups()
+    width = max(len(name) for verbs in command_groups.values() for name in verbs)
     lines = ["usage: linkwright COMMAND ...", "", translate_help(SUMMARY_HELP)]
-    for title, verbs in shown.items():
+    for title, verbs in command_groups.items():
         lines += ["", f"{translate_help(title)}:"]
         lines += [f"  {name:{width}}  {translate_help(text)}" for name, text in verbs.items()]
     lines += [

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.cli.calls import call, node_names
 from linkwright.cli.lookup import absolute_or_given, unknown_name_error
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
-from linkwright.cli.remote_parameters import parameter_of
+from linkwright.cli.remote_parameters import parse_parameter
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, joined, phrase
 from linkwright.process.interruption import interrupt
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_STARTS_WITHIN = 10.0
+_START_TIMEOUT = 10.0
 _ENDS_WITHIN = 5.0
 _SERVICES = {"load_node": "LoadNode", "unload_node": "UnloadNode", "list_nodes": "ListNodes"}
-_APPEARS_WITHIN = 1.0
+_DISCOVERY_TIMEOUT = 1.0
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -46,12 +46,12 @@ def run_list(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         if arguments.container_node_name is not None:
             container = await find_container(session, arguments.container_node_name)
-            for uid, name in [] if arguments.containers_only else await held_nodes(session, container):
+            for uid, name in [] if arguments.containers_only else await loaded_nodes(session, container):
                 print(f"{uid}  {name}")
             return 0
         for container in containers(session):
             print(container)
-            for uid, name in [] if arguments.containers_only else await held_nodes(session, container):
+            for uid, name in [] if arguments.containers_only else await loaded_nodes(session, container):
                 print(f"  {uid}  {name}")
         return 0
 
@@ -70,19 +70,21 @@ def run_types(arguments: argparse.Namespace) -> int:
     by_package: dict[str, list[str]] = {}
     for package, plugin in sorted(COMPONENTS):
         by_package.setdefault(package, []).append(plugin)
-    wanted = arguments.package_name
-    if wanted is None:
+    package_name = arguments.package_name
+    if package_name is None:
         for package, plugins in by_package.items():
             print("\n  ".join([package, *plugins]))
         return 0
-    if wanted not in by_package:
-        hint = did_you_mean(wanted, by_package) or phrase(
+    if package_name not in by_package:
+        hint = did_you_mean(package_name, by_package) or phrase(
             "packages with components: {by_package}", by_package=joined(by_package)
         )
         raise LinkwrightError(
-            Diagnostic("CLI436", phrase("No component types found in package '{wanted}'", wanted=wanted), hint=hint)
+            Diagnostic(
+                "CLI436", phrase("No component types found in package '{wanted}'", wanted=package_name), hint=hint
+            )
         )
-    print("\n".join(by_package[wanted]))
+    print("\n".join(by_package[package_name]))
     return 0
 
 
@@ -142,7 +144,7 @@ def configure_standalone(parser: argparse.ArgumentParser) -> None:
 
 
 def run_standalone(arguments: argparse.Namespace) -> int:
-    """Run a component in a container of its own until the user interrupts the command.
+    """Run a component in a separate container until the user interrupts the command.
 
     Returns:
         The container's exit status.
@@ -151,7 +153,7 @@ def run_standalone(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         async with _container_process(name) as process:
-            container = await find_container(session, name, _STARTS_WITHIN)
+            container = await find_container(session, name, _START_TIMEOUT)
             await _load_component(session, container, arguments)
             return await process.wait()
 
@@ -161,14 +163,16 @@ def run_standalone(arguments: argparse.Namespace) -> int:
 @asynccontextmanager
 async def _container_process(name: str) -> AsyncIterator[Process]:
     """Run a process with an empty container for the duration of the context."""
-    words = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
-    process = await asyncio.create_subprocess_exec(sys.executable, *words, "--ros-args", "-r", f"__node:={name}")
+    program_arguments = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, *program_arguments, "--ros-args", "-r", f"__node:={name}"
+    )
     try:
         yield process
     finally:
-        for ask in (interrupt, type(process).terminate):
+        for request_end in (interrupt, type(process).terminate):
             if process.returncode is None:
-                ask(process)
+                request_end(process)
                 try:
                     await asyncio.wait_for(process.wait(), _ENDS_WITHIN)
                 except asyncio.TimeoutError:
@@ -194,23 +198,27 @@ def containers(session: Session) -> list[str]:
     ]
 
 
-async def find_container(session: Session, name: str, timeout: float = _APPEARS_WITHIN) -> str:
+async def find_container(session: Session, name: str, timeout: float = _DISCOVERY_TIMEOUT) -> str:
     """Return the full name of a running container.
 
     Raises:
         LinkwrightError: CLI432, there is no container with that name.
     """
-    full = absolute_or_given(name)
-    if not await session.wait_until(lambda: full in containers(session), timeout):
-        known = containers(session)
-        nothing = phrase("running nodes: {known}", known=joined(known)) if known else phrase("no container is running")
-        raise unknown_name_error(
-            "CLI432", phrase("Unable to find container node '{name}'", name=name), full, known, nothing
+    full_name = absolute_or_given(name)
+    if not await session.wait_until(lambda: full_name in containers(session), timeout):
+        container_names = containers(session)
+        hint = (
+            phrase("running nodes: {known}", known=joined(container_names))
+            if container_names
+            else phrase("no container is running")
         )
-    return full
+        raise unknown_name_error(
+            "CLI432", phrase("Unable to find container node '{name}'", name=name), full_name, container_names, hint
+        )
+    return full_name
 
 
-async def held_nodes(session: Session, container: str) -> list[tuple[int, str]]:
+async def loaded_nodes(session: Session, container: str) -> list[tuple[int, str]]:
     """Return the unique ID and the full name of each node in a container."""
     response = await _call(session, container, "list_nodes")
     return [(int(uid), str(name)) for uid, name in zip(response.unique_ids, response.full_node_names, strict=True)]
@@ -232,8 +240,8 @@ async def _load_component(session: Session, container: str, arguments: argparse.
         node_namespace=arguments.node_namespace or "",
         log_level=_log_level(arguments.log_level),
         remap_rules=arguments.remap_rules or [],
-        parameters=_assigned(arguments.parameters or []),
-        extra_arguments=_assigned(arguments.extra_arguments or []),
+        parameters=_parse_parameters(arguments.parameters or []),
+        extra_arguments=_parse_parameters(arguments.extra_arguments or []),
     )
     if not response.success:
         error_message = response.error_message
@@ -259,7 +267,7 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
             container=container,
             error_message=foreign(response.error_message),
         )
-        nodes = ", ".join(f"{number} {name}" for number, name in await held_nodes(session, container))
+        nodes = ", ".join(f"{number} {name}" for number, name in await loaded_nodes(session, container))
         raise LinkwrightError(
             Diagnostic(
                 "CLI434",
@@ -294,10 +302,10 @@ def add_component_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _assigned(words: Sequence[str]) -> list[Any]:
+def _parse_parameters(words: Sequence[str]) -> list[Any]:
     from linkwright.process.assignments import parse_assignments
 
-    return [parameter_of(name, value) for name, value in parse_assignments(words).items()]
+    return [parse_parameter(name, value) for name, value in parse_assignments(words).items()]
 
 
 def _log_level(text: str | None) -> int:
@@ -323,8 +331,10 @@ def _log_level(text: str | None) -> int:
 async def _call(session: Session, container: str, service: str, **fields: Any) -> Any:
     from linkwright.messages import get_service
 
-    kind = f"composition_interfaces/srv/{_SERVICES[service]}"
-    return await call(session, kind, f"{container}/_container/{service}", get_service(kind).Request(**fields))
+    service_type = f"composition_interfaces/srv/{_SERVICES[service]}"
+    return await call(
+        session, service_type, f"{container}/_container/{service}", get_service(service_type).Request(**fields)
+    )
 
 
 VERBS = {

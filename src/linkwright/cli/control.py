@@ -25,7 +25,7 @@ Ask = Callable[..., Coroutine[Any, Any, Any]]
 
 MANAGER_WITHIN = 55.0
 """Seconds to wait for the manager beyond the time for other services: a simulated robot starts its own manager."""
-_LOGS = "check controller_manager logs"
+_LOGS_HINT = "check controller_manager logs"
 _SECTIONS = {
     "claimed_interfaces": "claimed interfaces",
     "required_command_interfaces": "required command interfaces",
@@ -59,9 +59,9 @@ def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arg
         manager = f"/{arguments.controller_manager.strip('/')}"
 
         async def ask(service: str, **fields: Any) -> Any:
-            kind = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
-            name, request = f"{manager}/{service}", get_service(kind).Request(**fields)
-            return await call(session, kind, name, request, longer=MANAGER_WITHIN)
+            service_type = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
+            name, request = f"{manager}/{service}", get_service(service_type).Request(**fields)
+            return await call(session, service_type, name, request, longer=MANAGER_WITHIN)
 
         return await job(arguments, ask)
 
@@ -84,15 +84,15 @@ def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
 
 
 async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
-    found = (await ask("list_controllers")).controller
-    if not found:
+    controllers = (await ask("list_controllers")).controller
+    if not controllers:
         print("No controllers are currently loaded!")
         return 0
-    names, types, states = (
-        max(len(getattr(controller, part)) for controller in found) for part in ("name", "type", "state")
+    name_width, type_width, state_width = (
+        max(len(getattr(controller, field)) for controller in controllers) for field in ("name", "type", "state")
     )
-    for controller in found:
-        print(f"{controller.name:<{names}} {controller.type:<{types}}  {controller.state:<{states}}")
+    for controller in controllers:
+        print(f"{controller.name:<{name_width}} {controller.type:<{type_width}}  {controller.state:<{state_width}}")
         for section, title in _SECTIONS.items():
             if arguments.verbose or getattr(arguments, section):
                 print(f"\t{title}:")
@@ -109,8 +109,8 @@ def _interfaces(controller: Any, section: str) -> Sequence[str]:
 
 
 async def _list_types(_: argparse.Namespace, ask: Ask) -> int:
-    found = await ask("list_controller_types")
-    for name, base in zip(found.types, found.base_classes, strict=True):
+    response = await ask("list_controller_types")
+    for name, base in zip(response.types, response.base_classes, strict=True):
         print(f"{name:70s} {base}")
     return 0
 
@@ -135,12 +135,12 @@ async def _list_components(arguments: argparse.Namespace, ask: Ask) -> int:
 
 
 async def _list_interfaces(arguments: argparse.Namespace, ask: Ask) -> int:
-    found = await ask("list_hardware_interfaces")
+    response = await ask("list_hardware_interfaces")
     print("command interfaces")
-    for command in sorted(found.command_interfaces, key=lambda interface: interface.name):
+    for command in sorted(response.command_interfaces, key=lambda interface: interface.name):
         print(f"\t{command.name}{_data_type(command, arguments)} {_availability(command)} {_claim(command)}")
     print("state interfaces")
-    for state in sorted(found.state_interfaces, key=lambda interface: interface.name):
+    for state in sorted(response.state_interfaces, key=lambda interface: interface.name):
         print(f"\t{state.name}{_data_type(state, arguments)}")
     return 0
 
@@ -200,18 +200,18 @@ def _diagram(controllers: Sequence[Any]) -> str:
 
 
 _OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}
-"""The states' names in launch files from before Humble."""
+"""The current names of states that launch files from before Humble name differently."""
 
 
-def _state(word: str) -> str:
-    return _OLD_STATES.get(word, word)
+def _current_state_name(state: str) -> str:
+    return _OLD_STATES.get(state, state)
 
 
 def _configure_load(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
     parser.add_argument(
         "--set-state",
-        type=_state,
+        type=_current_state_name,
         choices=("unconfigured", "inactive", "active", "configured"),
         help="the state to switch the controller to after loading",
     )
@@ -221,14 +221,14 @@ def _configure_load(parser: argparse.ArgumentParser) -> None:
 async def _load(arguments: argparse.Namespace, ask: Ask) -> int:
     name, state = arguments.controller_name, arguments.set_state
     if not (await ask("load_controller", name=name)).ok:
-        return _fail(f"Error loading controller, {_LOGS}")
+        return _fail(f"Error loading controller, {_LOGS_HINT}")
     if state in (None, "unconfigured"):
         print(f"Successfully loaded controller {name}")
         return 0
     if not (await ask("configure_controller", name=name)).ok:
         return _fail("Error configuring controller")
     if state == "active" and not (await _switch(ask, [name], [])).ok:
-        return _fail(f"Error activating controller, {_LOGS}")
+        return _fail(f"Error activating controller, {_LOGS_HINT}")
     print(f"Successfully loaded controller {name} into state {'active' if state == 'active' else 'inactive'}")
     return 0
 
@@ -246,23 +246,25 @@ async def _switch(ask: Ask, activate: Sequence[str], deactivate: Sequence[str], 
 async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
     name = arguments.controller_name
     if not (await ask("unload_controller", name=name)).ok:
-        return _fail(f"Error unloading controller {name}, {_LOGS}")
+        return _fail(f"Error unloading controller {name}, {_LOGS_HINT}")
     print(f"Successfully unloaded controller {name}")
     return 0
 
 
 def _configure_set_state(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
-    parser.add_argument("state", type=_state, choices=("unconfigured", "inactive", "active"), help="the target state")
+    parser.add_argument(
+        "state", type=_current_state_name, choices=("unconfigured", "inactive", "active"), help="the target state"
+    )
     _common(parser)
 
 
 async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
-    name, wanted = arguments.controller_name, arguments.state
-    found = next(
+    name, target_state = arguments.controller_name, arguments.state
+    loaded_controller = next(
         (controller for controller in (await ask("list_controllers")).controller if controller.name == name), None
     )
-    if found is None:
+    if loaded_controller is None:
         return _fail(f"controller {name} does not seem to be loaded")
     steps: dict[tuple[str, str], tuple[str, str, Callable[[], Coroutine[Any, Any, Any]]]] = {
         ("inactive", "unconfigured"): ("cleaning up", "cleaned up", lambda: ask("cleanup_controller", name=name)),
@@ -270,15 +272,15 @@ async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
         ("active", "inactive"): ("stopping", "deactivated", lambda: _switch(ask, [], [name])),
         ("inactive", "active"): ("activating", "activated", lambda: _switch(ask, [name], [])),
     }
-    step = steps.get((found.state, wanted))
+    step = steps.get((loaded_controller.state, target_state))
     if step is None:
-        verb = {"active": "activate", "unconfigured": "cleanup"}.get(wanted)
-        action = f"cannot {verb} {name}" if verb else f"cannot put {name} in '{wanted}' state"
-        return _fail(f"{action} from its current state {found.state}")
-    doing, done, work = step
-    if not (await work()).ok:
-        return _fail(f"Error {doing} controller, {_LOGS}")
-    print(f"Successfully {done} {name}")
+        verb = {"active": "activate", "unconfigured": "cleanup"}.get(target_state)
+        action = f"cannot {verb} {name}" if verb else f"cannot put {name} in '{target_state}' state"
+        return _fail(f"{action} from its current state {loaded_controller.state}")
+    progress_text, success_text, send_request = step
+    if not (await send_request()).ok:
+        return _fail(f"Error {progress_text} controller, {_LOGS_HINT}")
+    print(f"Successfully {success_text} {name}")
     return 0
 
 
@@ -300,7 +302,7 @@ def _configure_switch(parser: argparse.ArgumentParser) -> None:
 async def _switch_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
     answer = await _switch(ask, arguments.activate, arguments.deactivate, 2 if arguments.strict else 1)
     if not answer.ok:
-        return _fail(f"Error switching controllers, {_LOGS}")
+        return _fail(f"Error switching controllers, {_LOGS_HINT}")
     print("Successfully switched controllers")
     return 0
 
@@ -312,7 +314,7 @@ def _configure_reload(parser: argparse.ArgumentParser) -> None:
 
 async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
     if not (await ask("reload_controller_libraries", force_kill=arguments.force_kill)).ok:
-        return _fail(f"Error reloading libraries, {_LOGS}")
+        return _fail(f"Error reloading libraries, {_LOGS_HINT}")
     print("Reload successful")
     return 0
 
@@ -329,10 +331,10 @@ async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
     name = arguments.hardware_component_name
     if name not in [component.name for component in (await ask("list_hardware_components")).component]:
         return _fail(f"component {name} does not seem to be loaded")
-    wanted = get_message("lifecycle_msgs/msg/State")(label=arguments.state)
-    answer = await ask("set_hardware_component_state", name=name, target_state=wanted)
+    target_state = get_message("lifecycle_msgs/msg/State")(label=arguments.state)
+    answer = await ask("set_hardware_component_state", name=name, target_state=target_state)
     if not answer.ok:
-        return _fail(f"Error setting hardware component to {arguments.state}, {_LOGS}")
+        return _fail(f"Error setting hardware component to {arguments.state}, {_LOGS_HINT}")
     print(f"Successfully set {name} to state {answer.state}")
     return 0
 
@@ -340,7 +342,7 @@ async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
 VERBS = {
     "cleanup_controller": SubVerb(
         _controller,
-        partial(_run, lambda arguments, ask: _set_state(_to(arguments, "unconfigured"), ask)),
+        partial(_run, lambda arguments, ask: _set_state(_with_state(arguments, "unconfigured"), ask)),
         help="clean up an inactive controller, so that it is unconfigured",
     ),
     "list_controller_types": SubVerb(_common, partial(_run, _list_types), help="list the available controller types"),
@@ -373,7 +375,7 @@ VERBS = {
 }
 
 
-def _to(arguments: argparse.Namespace, state: str) -> argparse.Namespace:
+def _with_state(arguments: argparse.Namespace, state: str) -> argparse.Namespace:
     arguments.state = state
     return arguments
 

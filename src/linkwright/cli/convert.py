@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _FORMATS = ("sdf", "urdf", "mjcf")
 _GROUP = "linkwright.model_formats"
-"""The group of the entry points that bring formats: name -> `Writer`."""
+"""The group of entry points that provide file formats; each entry point is a `Writer`."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,14 +37,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "robot of an SDF model, as sdformat_urdf converts it; mjcf: a model for MuJoCo with embedded "
         "meshes",
     )
-    fixed = parser.add_mutually_exclusive_group()
-    fixed.add_argument(
+    fixed_joints_group = parser.add_mutually_exclusive_group()
+    fixed_joints_group.add_argument(
         "--lump-fixed-joints",
         action="store_true",
         default=True,
         help="merge links of a URDF that fixed joints connect, as gz does (default)",
     )
-    fixed.add_argument(
+    fixed_joints_group.add_argument(
         "--keep-fixed-joints",
         action="store_false",
         dest="lump_fixed_joints",
@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.descriptions.service import is_world
     from linkwright.packages import PackageFinder
 
-    write = _writer(arguments.to)
+    write_format = _find_writer(arguments.to)
     path = Path(arguments.file).absolute()
     if arguments.to == "urdf" and not is_world(path.name):
         hint = phrase("to expand a xacro file, run `linkwright xacro`")
@@ -69,36 +69,36 @@ def run(arguments: argparse.Namespace) -> int:
             Diagnostic("CLI322", phrase("'{file}' is not an SDF file", file=arguments.file), hint=hint)
         )
     finder = PackageFinder(start=[path.parent, Path.cwd()])
-    out = None if arguments.output is None else Path(arguments.output)
+    output_path = None if arguments.output is None else Path(arguments.output)
     converted = as_sdf(
         path,
         finder,
         arguments=parse_assignments(arguments.values),
         lump_fixed_joints=arguments.lump_fixed_joints,
-        folder=None if out is None else out.absolute().parent,
+        folder=None if output_path is None else output_path.absolute().parent,
     )
     print_diagnostics(converted.diagnostics, sys.stderr)
     if converted.sdf is None or (arguments.to != "sdf" and has_errors(converted.diagnostics)):
         return 1  # a URDF or MJCF file must be complete, so write nothing if there are errors
-    text, remarks = write(converted.sdf, finder)
-    print_diagnostics(remarks, sys.stderr)
+    text, diagnostics = write_format(converted.sdf, finder)
+    print_diagnostics(diagnostics, sys.stderr)
     if text is None:
         return 1
-    if out is None:
+    if output_path is None:
         sys.stdout.write(text)
     else:
-        write_output(out, text)
-        print(f"Created file {out}")
-    return 1 if has_errors((*converted.diagnostics, *remarks)) else 0
+        write_output(output_path, text)
+        print(f"Created file {output_path}")
+    return 1 if has_errors((*converted.diagnostics, *diagnostics)) else 0
 
 
-def _sdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
+def _write_sdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
     from linkwright.sdf.writer import save
 
     return save(sdf), ()
 
 
-def _urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[Diagnostic]]:
+def _write_urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[Diagnostic]]:
     from linkwright.sdf.to_urdf import robot_from_sdf
     from linkwright.urdf import save
     from linkwright.xmltree import Element
@@ -108,7 +108,7 @@ def _urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[Diagno
     return None if reading.robot is None else save(reading.robot), reading.diagnostics
 
 
-def _writer(form: str) -> Writer:
+def _find_writer(form: str) -> Writer:
     """Return the function that writes a file format.
 
     Raises:
@@ -118,12 +118,12 @@ def _writer(form: str) -> Writer:
         return _WRITERS[form]
     from linkwright.loading.extensions import extensions
 
-    found = extensions(_GROUP).get(form)
-    if found is None:
+    entry_point = extensions(_GROUP).get(form)
+    if entry_point is None:
         message = phrase("cannot write '{format}': linkwright-core is installed without linkwright", format=form)
         raise LinkwrightError(Diagnostic("CLI323", message, hint=phrase("install linkwright")))
-    writer: Writer = found.load()
+    writer: Writer = entry_point.load()
     return writer
 
 
-_WRITERS: dict[str, Writer] = {"sdf": _sdf, "urdf": _urdf}
+_WRITERS: dict[str, Writer] = {"sdf": _write_sdf, "urdf": _write_urdf}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 
-_ANSWERS = {
+_RESPONSES = {
     "start": "The daemon is not needed: each command finds the nodes itself",
     "status": "The daemon is not running",
     "stop": "The daemon is not running",
@@ -19,12 +19,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "verb",
         metavar="{start,status,stop}",
-        choices=_ANSWERS,
+        choices=_RESPONSES,
         help="accepted for compatibility with ros2; has no effect",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Report that there is no daemon."""
-    print(_ANSWERS[arguments.verb])
+    print(_RESPONSES[arguments.verb])
     return 0

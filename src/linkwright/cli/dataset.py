@@ -18,8 +18,8 @@ from linkwright.vision.datasets.options import FORMATS
 if TYPE_CHECKING:
     from linkwright.vision.datasets.making import Studio
 
-_SMALLEST, _LARGEST = 32, 4096
-_KEPT = ("lights", "colours", "lens")
+_MIN_SIDE, _MAX_SIDE = 32, 4096
+_FIXABLE_PROPERTIES = ("lights", "colours", "lens")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -32,14 +32,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=positive_int,
         default=1000,
-        help="the number of images to make (default: 1000)",
+        help="the number of images to render (default: 1000)",
     )
     parser.add_argument("--seed", metavar="N", type=unsigned_int, default=0, help="the random seed (default: 0)")
     parser.add_argument(
-        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(640, 480), help="the size of images (default: 640x480)"
+        "--size",
+        metavar="WIDTHxHEIGHT",
+        type=_parse_size,
+        default=(640, 480),
+        help="the size of images (default: 640x480)",
     )
     parser.add_argument(
-        "--format", metavar="FORMATS", type=_formats, default=FORMATS, help="coco, yolo or both (default: coco,yolo)"
+        "--format",
+        metavar="FORMATS",
+        type=_parse_formats,
+        default=FORMATS,
+        help="coco, yolo or both (default: coco,yolo)",
     )
     parser.add_argument(
         "--image-format", choices=("jpg", "png"), default="jpg", help="the file format of images (default: %(default)s)"
@@ -57,7 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--splits",
         metavar="TRAIN,VAL,TEST",
-        type=_splits,
+        type=_parse_splits,
         default=(0.8, 0.1, 0.1),
         help="the fractions of images for training, validation and testing (default: 0.8,0.1,0.1)",
     )
@@ -85,7 +93,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep",
         metavar="WHAT",
-        type=_kept,
+        type=_parse_fixed_properties,
         default=(),
         help="properties not to randomize: lights, colours, lens (no blur, no noise), separated by commas",
     )
@@ -99,16 +107,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--min-visible",
         metavar="SHARE",
-        type=_share,
+        type=_parse_fraction,
         default=0.5,
-        help="ignore objects that are visible by less than this fraction (default: 0.5)",
+        help="ignore objects of which less than this fraction is visible (default: 0.5)",
     )
     parser.add_argument(
         "--workers", metavar="N", type=positive_int, help="the number of processes (default: one for each processor)"
     )
-    what_is_there = parser.add_mutually_exclusive_group()
-    what_is_there.add_argument("--append", action="store_true", help="add images to the existing dataset")
-    what_is_there.add_argument("--force", action="store_true", help="replace the existing dataset")
+    existing_group = parser.add_mutually_exclusive_group()
+    existing_group.add_argument("--append", action="store_true", help="add images to the existing dataset")
+    existing_group.add_argument("--force", action="store_true", help="replace the existing dataset")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -133,7 +141,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     path = Path(arguments.output)
     progress = _Progress(arguments.images)
-    made = make_dataset(
+    result = make_dataset(
         arguments.worlds,
         path,
         arguments.images,
@@ -148,13 +156,13 @@ def run(arguments: argparse.Namespace) -> int:
         begin=progress.begin,
     )
     progress.end()
-    print(as_table(made.folder.statistics()), end="")
-    images = counted("{count} image", "{count} images", made.folder.count)
+    print(as_table(result.folder.statistics()), end="")
+    images = counted("{count} image", "{count} images", result.folder.count)
     print(localized(phrase("{images} in {folder}", images=images, folder=display_path(path))))
-    if made.interrupted:
+    if result.interrupted:
         message = phrase(
-            "{done} of {count} images were made; the dataset can be used, and `--append` adds more images",
-            done=made.added,
+            "{done} of {count} images were rendered; the dataset can be used, and `--append` adds more images",
+            done=result.added,
             count=arguments.images,
         )
         print_message(localized(message))
@@ -167,8 +175,8 @@ class _Progress:
 
     def __init__(self, count: int) -> None:
         self._count = count
-        self._began = 0.0
-        self._shown = sys.stderr.isatty()
+        self._start_time = 0.0
+        self._is_terminal = sys.stderr.isatty()
 
     def begin(self, studio: Studio) -> None:
         """Print the classes and the rendering method."""
@@ -178,48 +186,48 @@ class _Progress:
             print_message(
                 localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused)))
             )
-        self._began = time.monotonic()
+        self._start_time = time.monotonic()
 
-    def update(self, done: int) -> None:
+    def update(self, finished_count: int) -> None:
         """Show the number of finished images."""
-        if self._shown:
-            rate = done / max(time.monotonic() - self._began, 1e-9)
-            words = localized(phrase("{done} of {count} images, {rate} a second", done=done, count=self._count,
+        if self._is_terminal:
+            rate = finished_count / max(time.monotonic() - self._start_time, 1e-9)
+            text = localized(phrase("{done} of {count} images, {rate} a second", done=finished_count, count=self._count,
                                      rate=f"{rate:.1f}"))  # fmt: skip
-            print(f"\r{words}\x1b[K", end="", file=sys.stderr, flush=True)
+            print(f"\r{text}\x1b[K", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
         """End the progress line."""
-        if self._shown:
+        if self._is_terminal:
             print(file=sys.stderr)
 
 
-def _size(text: str) -> tuple[int, int]:
+def _parse_size(text: str) -> tuple[int, int]:
     width, mark, height = text.partition("x")
     sides = [int(side) if side.isascii() and side.isdigit() and len(side) < 6 else 0 for side in (width, height)]
-    if not mark or not all(_SMALLEST <= side <= _LARGEST for side in sides):
+    if not mark or not all(_MIN_SIDE <= side <= _MAX_SIDE for side in sides):
         raise argparse.ArgumentTypeError(
-            f"'{text}' is not WIDTHxHEIGHT with sides from {_SMALLEST} to {_LARGEST} pixels"
+            f"'{text}' is not WIDTHxHEIGHT with sides from {_MIN_SIDE} to {_MAX_SIDE} pixels"
         )
     return sides[0], sides[1]
 
 
-def _formats(text: str) -> tuple[str, ...]:
-    return _some_of(text, FORMATS)
+def _parse_formats(text: str) -> tuple[str, ...]:
+    return _parse_choices(text, FORMATS)
 
 
-def _kept(text: str) -> tuple[str, ...]:
-    return _some_of(text, _KEPT)
+def _parse_fixed_properties(text: str) -> tuple[str, ...]:
+    return _parse_choices(text, _FIXABLE_PROPERTIES)
 
 
-def _some_of(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    words = text.split(",")
-    if not set(words) <= set(known):
-        raise argparse.ArgumentTypeError(f"'{text}' is not made of {', '.join(known)}, with commas between them")
-    return tuple(word for word in known if word in words)
+def _parse_choices(text: str, choices: tuple[str, ...]) -> tuple[str, ...]:
+    names = text.split(",")
+    if not set(names) <= set(choices):
+        raise argparse.ArgumentTypeError(f"'{text}' is not made of {', '.join(choices)}, with commas between them")
+    return tuple(name for name in choices if name in names)
 
 
-def _share(text: str) -> float:
+def _parse_fraction(text: str) -> float:
     try:
         share = float(text)
     except ValueError:
@@ -229,7 +237,7 @@ def _share(text: str) -> float:
     return share
 
 
-def _splits(text: str) -> tuple[float, float, float]:
+def _parse_splits(text: str) -> tuple[float, float, float]:
     try:
         shares = [float(word) for word in text.split(",")]
     except ValueError:

@@ -43,16 +43,16 @@ def run(arguments: argparse.Namespace) -> int:
     robot = reading.robot
     if robot is None:
         return 1
-    base = Path(*names or [robot.name or "robot"])
-    ending = ".pdf"
-    if base.suffix.lower() in (*_FORMATS, ".gv"):
-        ending = base.suffix.lower() if base.suffix.lower() in _FORMATS else ending
-        base = base.with_suffix("")
+    base_path = Path(*names or [robot.name or "robot"])
+    extension = ".pdf"
+    if base_path.suffix.lower() in (*_FORMATS, ".gv"):
+        extension = base_path.suffix.lower() if base_path.suffix.lower() in _FORMATS else extension
+        base_path = base_path.with_suffix("")
     text = to_gv(robot)
-    gv = base.with_name(base.name + ".gv")
+    gv = base_path.with_name(base_path.name + ".gv")
     write_output(gv, text)
     print(f"Created file {gv}")
-    diagram = base.with_name(base.name + ending)
+    diagram = base_path.with_name(base_path.name + extension)
     render(text, diagram)
     print(f"Created file {diagram}")
     return 0

@@ -7,10 +7,10 @@ import json
 import sys
 from contextlib import ExitStack
 
-from linkwright.cli.model_arguments import add_against, add_values, asked_pair
+from linkwright.cli.model_arguments import add_against, add_values, requested_pair
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 
-SAME, DIFFERENT, TROUBLE = 0, 1, 2
+SAME, DIFFERENT, FAILURE = 0, 1, 2
 """The exit statuses of ``diff``."""
 
 
@@ -35,14 +35,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     with ExitStack() as stack:
         try:
-            pair = asked_pair(arguments, stack)
+            pair = requested_pair(arguments, stack)
             if pair is None:
                 print("linkwright diff: give two files, or one and --against COMMIT", file=sys.stderr)
-                return TROUBLE
-            comparison = pair.compared()
+                return FAILURE
+            comparison = pair.read_and_compare()
         except LinkwrightError as error:
             print_diagnostics(error.diagnostics, sys.stderr)
-            return TROUBLE
+            return FAILURE
         if arguments.format == "json":
             data = {"old": pair.old.label(), "new": pair.new.label(), "differences": as_data(comparison, pair.label)}
             print(json.dumps(data, indent=2, ensure_ascii=False))

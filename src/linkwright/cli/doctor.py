@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.doctor import FixedFrame, Observation
 
 
-_SECONDS = 3.0
+_DEFAULT_SECONDS = 3.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--seconds",
         metavar="SECONDS",
         type=positive_float,
-        default=_SECONDS,
+        default=_DEFAULT_SECONDS,
         help="how long to observe the graph (default: %(default)g)",
     )
     parser.add_argument(
@@ -82,16 +82,16 @@ def run(arguments: argparse.Namespace) -> int:
                 localized(phrase("observing the running graph for {seconds:g} s ...", seconds=arguments.seconds)),
                 file=sys.stderr,
             )
-        seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
-        found = [*settings, *examine(seen), *examine_parameter_files(seen, arguments.params_file)]
-        failed = any(diagnostic.severity is not Severity.INFO for diagnostic in found)
+        observation = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
+        diagnostics = [*settings, *examine(observation), *examine_parameter_files(observation, arguments.params_file)]
+        failed = any(diagnostic.severity is not Severity.INFO for diagnostic in diagnostics)
         if arguments.report or (arguments.report_failed and failed):
-            print(report(seen))
+            print(report(observation))
         if arguments.format == "text":
-            print_diagnostics(found, sys.stderr)
-            print(_summary(seen, len(found)))
+            print_diagnostics(diagnostics, sys.stderr)
+            print(_summary(observation, len(diagnostics)))
         else:
-            sys.stdout.write(format_diagnostics(found, arguments.format))
+            sys.stdout.write(format_diagnostics(diagnostics, arguments.format))
         return 1 if failed else 0
 
     return run_in_graph(arguments, job)
@@ -111,20 +111,22 @@ def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
     return frames
 
 
-def _summary(seen: Observation, findings: int) -> str:
-    frames = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
-    topics = {endpoint.name for endpoint in seen.endpoints if endpoint.kind.value in ("publisher", "subscription")}
+def _summary(observation: Observation, finding_count: int) -> str:
+    frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
+    topics = {
+        endpoint.name for endpoint in observation.endpoints if endpoint.kind.value in ("publisher", "subscription")
+    }
     counts = joined(
         [
-            counted("{count} node", "{count} nodes", len(seen.nodes)),
+            counted("{count} node", "{count} nodes", len(observation.nodes)),
             counted("{count} topic", "{count} topics", len(topics)),
             counted("{count} frame", "{count} frames", len(frames)),
         ]
     )
-    if not findings:
+    if not finding_count:
         return localized(phrase("No problems found: {counts}", counts=counts))
-    found = counted("{count} finding", "{count} findings", findings)
-    return localized(phrase("{findings}; {counts}", findings=found, counts=counts))
+    findings_text = counted("{count} finding", "{count} findings", finding_count)
+    return localized(phrase("{findings}; {counts}", findings=findings_text, counts=counts))
 
 
 VERBS = {

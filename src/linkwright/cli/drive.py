@@ -90,24 +90,24 @@ def run(arguments: argparse.Namespace) -> int:
     def inferred(robot: Robot) -> Inference:
         return infer(robot, MeshLibrary(finder, path.parent), kind=arguments.drive, wheels=wheels)
 
-    found = inferred(robot)
+    inference = inferred(robot)
     if arguments.show:
-        sys.stdout.write(_listed(found))
+        sys.stdout.write(_inference_list(inference))
         return 0
     if arguments.write:
-        written = write_inference(robot, found)
-        for file in written.files:
+        result = write_inference(robot, inference)
+        for file in result.files:
             print(localized(phrase("Changed file {file}", file=display_path(file))))
-        print_diagnostics(written.refused, sys.stderr)
-        return 1 if written.refused else 0
+        print_diagnostics(result.refused, sys.stderr)
+        return 1 if result.refused else 0
     load_mujoco()
     load_world(arguments.world)  # report a missing world before the simulation starts to log
     print_diagnostics(
-        [diagnostic for diagnostic in found.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
+        [diagnostic for diagnostic in inference.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
     )
-    print_message(localized(_summary(robot, found)))
+    print_message(localized(_summary(robot, inference)))
     world = replace(
-        SimulatedWorld.of(arguments.world, description, found, inferred),
+        SimulatedWorld.of(arguments.world, description, inference, inferred),
         arguments=tuple(values.items()),
         seconds=arguments.seconds,
         headless=arguments.headless,
@@ -119,14 +119,14 @@ def run(arguments: argparse.Namespace) -> int:
     return status or int(has_errors(description.diagnostics))
 
 
-def _summary(robot: Robot, found: Inference) -> Phrase:
+def _summary(robot: Robot, inference: Inference) -> Phrase:
     """Return a one-line summary of the inferred elements."""
-    drive = found.drive
+    drive = inference.drive
     parts: list[Phrase] = []
     if drive is not None and drive.left:
-        names = [joined([wheel.joint for wheel in side]) for side in (drive.left, drive.right)]
+        names = [joined([wheel.joint for wheel in wheels]) for wheels in (drive.left, drive.right)]
         parts.append(phrase("{kind} drive, {left} and {right}", kind=drive.kind, left=names[0], right=names[1]))
-    codes = [diagnostic.code for diagnostic in found.diagnostics]
+    codes = [diagnostic.code for diagnostic in inference.diagnostics]
     collisions, masses = codes.count("DRIVE101"), codes.count("DRIVE102") + codes.count("DRIVE103")
     if collisions:
         parts.append(counted("collisions of {count} link", "collisions of {count} links", collisions))
@@ -141,14 +141,14 @@ def _summary(robot: Robot, found: Inference) -> Phrase:
     )
 
 
-def _listed(found: Inference) -> str:
+def _inference_list(inference: Inference) -> str:
     """Return a text that lists each inference with its file, line, message and added elements."""
     from linkwright.xmltree.patches import block
 
     lines: list[str] = []
-    for finding in found.findings:
+    for finding in inference.findings:
         diagnostic = finding.diagnostic
-        place = f"{diagnostic.span.file}:{diagnostic.span.line}: " if diagnostic.span else ""
-        lines.append(f"{place}{diagnostic.code} {localized(diagnostic.message)}")
+        location = f"{diagnostic.span.file}:{diagnostic.span.line}: " if diagnostic.span else ""
+        lines.append(f"{location}{diagnostic.code} {localized(diagnostic.message)}")
         lines += [f"    {line}" for element in finding.added for line in block(element).splitlines()]
     return "".join(f"{line}\n" for line in lines)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 SEPARATOR = "---\n"
 """The line between messages."""
-_TRUNCATE = 128
+_DEFAULT_TRUNCATE_LENGTH = 128
 
 
 def add_format_arguments(parser: argparse.ArgumentParser, *, flow_help: str) -> None:
@@ -32,7 +32,7 @@ def add_format_arguments(parser: argparse.ArgumentParser, *, flow_help: str) -> 
         "--truncate-length",
         metavar="N",
         type=unsigned_int,
-        default=_TRUNCATE,
+        default=_DEFAULT_TRUNCATE_LENGTH,
         help="truncate arrays and strings after this many elements (default: %(default)s)",
     )
     parser.add_argument("--no-arr", action="store_true", help="do not print the elements of arrays")
@@ -56,7 +56,7 @@ class EchoFormat:
 
     field: tuple[str, ...] = ()
     csv: bool = False
-    truncate_length: int | None = _TRUNCATE
+    truncate_length: int | None = _DEFAULT_TRUNCATE_LENGTH
     no_arr: bool = False
     no_str: bool = False
     flow_style: bool = False
@@ -89,25 +89,25 @@ class EchoFormat:
         Raises:
             LinkwrightError: CLI414, the message has no such field.
         """
-        part = select(message, self.field)
-        if not hasattr(part, "get_fields_and_field_types"):
-            return f"{self._info(info)}{part}\n{SEPARATOR}"
+        value = select(message, self.field)
+        if not hasattr(value, "get_fields_and_field_types"):
+            return f"{self._info_text(info)}{value}\n{SEPARATOR}"
         from linkwright.messages import to_csv, to_yaml
 
         if self.csv:
-            before = f"{info.source_timestamp},{info.received_timestamp}," if self.message_info and info else ""
-            shown = to_csv(part, truncate_length=self.truncate_length, no_arr=self.no_arr, no_str=self.no_str)
-            return f"{before}{shown}\n"
-        shown = to_yaml(
-            part,
+            times = f"{info.source_timestamp},{info.received_timestamp}," if self.message_info and info else ""
+            text = to_csv(value, truncate_length=self.truncate_length, no_arr=self.no_arr, no_str=self.no_str)
+            return f"{times}{text}\n"
+        text = to_yaml(
+            value,
             truncate_length=self.truncate_length,
             no_arr=self.no_arr,
             no_str=self.no_str,
             flow_style=self.flow_style,
         )
-        return f"{self._info(info)}{shown}{SEPARATOR}"
+        return f"{self._info_text(info)}{text}{SEPARATOR}"
 
-    def _info(self, info: MessageInfo | None) -> str:
+    def _info_text(self, info: MessageInfo | None) -> str:
         if not self.message_info or info is None:
             return ""
         return f"received_timestamp: {info.received_timestamp}\nsource_timestamp: {info.source_timestamp}\n{SEPARATOR}"
@@ -132,28 +132,31 @@ def field_path(text: str | None) -> tuple[str, ...]:
 
 
 def select(message: Any, path: Sequence[str]) -> Any:
-    """Return the value of the field that a path of names denotes.
+    """Return the value of a field by its path of names.
 
     Raises:
         LinkwrightError: CLI414, there is no such field.
     """
-    part = message
+    value = message
     for name in path:
-        fields: dict[str, str] = getattr(part, "get_fields_and_field_types", dict)()
+        fields: dict[str, str] = getattr(value, "get_fields_and_field_types", dict)()
         if name not in fields:
             full_path = ".".join(path)
-            what = getattr(part, "TYPE_NAME", type(part).__name__)
-            nothing = (
+            type_name = getattr(value, "TYPE_NAME", type(value).__name__)
+            fallback_hint = (
                 phrase("its fields are {fields}", fields=", ".join(fields)) if fields else phrase("it has no fields")
             )
             raise LinkwrightError(
                 Diagnostic(
                     "CLI414",
                     phrase(
-                        "Invalid field '{whole}': {what} has no field '{name}'", whole=full_path, what=what, name=name
+                        "Invalid field '{whole}': {what} has no field '{name}'",
+                        whole=full_path,
+                        what=type_name,
+                        name=name,
                     ),
-                    hint=did_you_mean(name, fields) or nothing,
+                    hint=did_you_mean(name, fields) or fallback_hint,
                 )
             )
-        part = getattr(part, name)
-    return part
+        value = getattr(value, name)
+    return value

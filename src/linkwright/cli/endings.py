@@ -1,4 +1,4 @@
-"""The last step of every command, which turns an error into a message and an exit status."""
+"""Convert the error of a command, if any, to a message and an exit status."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from collections.abc import Callable, Iterable
 from linkwright._version import __version__
 from linkwright.cli.language import UnknownLanguageError
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase, print_diagnostics
-from linkwright.files.whole_files import NO_SPACE
+from linkwright.files.whole_files import DISK_ERRORS
 from linkwright.process.interruption import INTERRUPTED
 from linkwright.process.standard_streams import accept_any_text
 
 FINE, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
-_OF_OUTPUT = NO_SPACE | {errno.EBADF}
+_OUTPUT_ERRORS = DISK_ERRORS | {errno.EBADF}
 
-_OF_THE_SYSTEM = _OF_OUTPUT | {
+_SYSTEM_ERRORS = _OUTPUT_ERRORS | {
     errno.EACCES,
     errno.EMFILE,
     errno.ENFILE,
@@ -26,7 +26,7 @@ _OF_THE_SYSTEM = _OF_OUTPUT | {
     errno.EPERM,
     errno.EROFS,
 }
-"""Errors of the operating system that are not bugs of the program."""
+"""Numbers of operating-system errors that are not bugs in the program."""
 
 
 def status_of(command: Callable[[], int]) -> int:
@@ -52,17 +52,17 @@ def status_of(command: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:  # the program that reads the output has exited, such as `head`
-        _leave_output()
+        _discard_output()
         return FINE
     except MemoryError:
         _print([Diagnostic("CLI204", phrase("there is not enough memory"))])
         return FINDINGS
     except Exception as error:  # noqa: BLE001 - the last resort: a bug of ours must not print a traceback
-        trouble = _trouble_of_the_system(error) if isinstance(error, OSError) else None
-        if trouble is None:
+        diagnostic = _system_error_diagnostic(error) if isinstance(error, OSError) else None
+        if diagnostic is None:
             _report_bug(error)
             return BUG
-        _print([trouble])
+        _print([diagnostic])
         return FINDINGS
     return status
 
@@ -70,38 +70,38 @@ def status_of(command: Callable[[], int]) -> int:
 def open_closed_streams() -> None:
     """Open null devices for standard streams that were closed when the process was started.
 
-    Otherwise files that are opened later would get the file descriptors of these streams. Standard input is then empty,
-    messages are discarded, and writing to standard output fails.
+    Without null devices, files that are opened later would get the file descriptors of these streams. With null
+    devices, standard input is empty, messages are discarded, and writing to standard output fails.
     """
     if sys.stdin is None:
-        sys.stdin = _open_as(0, os.O_RDONLY, "r")
+        sys.stdin = _open_null_device(0, os.O_RDONLY, "r")
     if sys.stdout is None:
-        sys.stdout = _open_as(1, os.O_RDONLY, "w")
+        sys.stdout = _open_null_device(1, os.O_RDONLY, "w")
     if sys.stderr is None:
-        sys.stderr = _open_as(2, os.O_WRONLY, "w")
+        sys.stderr = _open_null_device(2, os.O_WRONLY, "w")
 
 
-def _open_as(number: int, flags: int, mode: str) -> object:
+def _open_null_device(stream_number: int, flags: int, mode: str) -> object:
     descriptor = os.open(os.devnull, flags)
-    if descriptor != number:
-        os.dup2(descriptor, number)
+    if descriptor != stream_number:
+        os.dup2(descriptor, stream_number)
         os.close(descriptor)
-    return open(number, mode, encoding="utf-8", closefd=False)
+    return open(stream_number, mode, encoding="utf-8", closefd=False)
 
 
-def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
-    """Return the diagnostic for an error of the operating system, or None for a bug of ours."""
+def _system_error_diagnostic(error: OSError) -> Diagnostic | None:
+    """Return the diagnostic for an error of the operating system, or None for a bug in Linkwright."""
     reason = foreign(error.strerror or error)
     # Functions that write files name the file in the error, so an error without a file name concerns standard output.
-    if error.filename is None and error.errno in _OF_OUTPUT:
-        _leave_output()
+    if error.filename is None and error.errno in _OUTPUT_ERRORS:
+        _discard_output()
         return Diagnostic("CLI202", phrase("cannot write to standard output: {reason}", reason=reason))
     try:
         os.getcwd()  # noqa: PTH109 - import nothing at this point
     except OSError:
         message = phrase("the current folder no longer exists")
         return Diagnostic("CLI203", message, hint=phrase("change to an existing folder, for instance with `cd ~`"))
-    if error.errno not in _OF_THE_SYSTEM:
+    if error.errno not in _SYSTEM_ERRORS:
         return None
     if error.filename is None:
         return Diagnostic("CLI205", phrase("the operating system reports an error: {reason}", reason=reason))
@@ -111,10 +111,10 @@ def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
     )
 
 
-def _leave_output() -> None:
+def _discard_output() -> None:
     """Redirect standard output to the null device.
 
-    Otherwise Python would report a second error when it exits.
+    Without this, Python would report a second error when it exits.
     """
     from contextlib import suppress  # imported here, because the import is slow and rarely needed
 

@@ -1,11 +1,11 @@
 """The entry point of the command line.
 
-Before anything else is imported, it makes Ctrl-C end the process without a traceback.
+It makes Ctrl-C end the process without a traceback before it imports any other module.
 """
 
 from __future__ import annotations
 
-from linkwright.process.interruption import end_at_once
+from linkwright.process.interruption import end_on_interrupt
 
 
 def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:
@@ -19,7 +19,7 @@ def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:
         The exit status.
     """
     if words is None:
-        end_at_once()
+        end_on_interrupt()
     from linkwright.cli.command import main as run
 
     return run(words, program=program)

@@ -26,15 +26,15 @@ def run(arguments: argparse.Namespace) -> int:
     if page is not None:
         print(localized(page.markdown))
         return 0
-    found = meanings(arguments.code)
-    if not found:
-        near = list(dict.fromkeys([*nearest_codes(arguments.code), *nearest(arguments.code, names(), 2)]))
+    explanations = meanings(arguments.code)
+    if not explanations:
+        suggestions = list(dict.fromkeys([*nearest_codes(arguments.code), *nearest(arguments.code, names(), 2)]))
         hint = (
-            phrase("did you mean {near}?", near=joined(near, last=" or "))
-            if near
+            phrase("did you mean {near}?", near=joined(suggestions, last=" or "))
+            if suggestions
             else phrase("docs/rules.md lists the rules")
         )
         message = phrase("there is no code, rule, element or attribute '{code}'", code=arguments.code)
         raise LinkwrightError(Diagnostic("CLI301", message, hint=hint))
-    print("\n\n".join(map(localized, found)))
+    print("\n\n".join(map(localized, explanations)))
     return 0

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
+from linkwright.cli.model_arguments import add_second_model, names_file, requested_pair
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import (
     Diagnostic,
@@ -45,30 +45,30 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.panels.export.feature import FORMATS, format_of
 
     if format_of(arguments.out) is None:
-        endings = " or ".join(f".{ending}" for ending in FORMATS)
-        swapped = "; the file to write comes first" if format_of(arguments.file) is not None else ""
-        print(f"linkwright export: '{arguments.out}' should end with {endings}{swapped}", file=sys.stderr)
+        extensions = " or ".join(f".{ending}" for ending in FORMATS)
+        order_hint = "; the file to write comes first" if format_of(arguments.file) is not None else ""
+        print(f"linkwright export: '{arguments.out}' should end with {extensions}{order_hint}", file=sys.stderr)
         return 2
     with ExitStack() as stack:
         pair = None
         if arguments.against or any(map(names_file, arguments.words)):
-            pair = asked_pair(arguments, stack)
+            pair = requested_pair(arguments, stack)
             if pair is None or not arguments.out.lower().endswith(".html"):
-                usage = "give one file, two to compare, or one and --against COMMIT"
-                html = f"'{arguments.out}' should end with .html, as two descriptions are compared"
-                print(f"linkwright export: {usage if pair is None else html}", file=sys.stderr)
+                usage_error = "give one file, two to compare, or one and --against COMMIT"
+                extension_error = f"'{arguments.out}' should end with .html, as two descriptions are compared"
+                print(f"linkwright export: {usage_error if pair is None else extension_error}", file=sys.stderr)
                 return 2
         try:
-            return _write(arguments, pair)
+            return _export(arguments, pair)
         except LinkwrightError as error:
             print_diagnostics(error.diagnostics, sys.stderr)
             return 1
 
 
-def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
+def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     """Export one description or a comparison of two, and return the exit status."""
     from linkwright.descriptions import DescriptionLibrary, examine
-    from linkwright.descriptions.pairs import text_of_old
+    from linkwright.descriptions.pairs import old_description_key
     from linkwright.packages import PackageFinder
     from linkwright.panels.export.feature import export_snapshot
     from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
@@ -80,8 +80,10 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
         finder = PackageFinder(start=[path.parent, Path.cwd()])
         description = examine(path, arguments=parse_assignments(arguments.words), packages=finder, xacro=True)
     else:
-        finder, description, before = pair.new.finder, pair.new.read(), pair.old.read()
-        old = OldDescription(pair, library.store(before, text_of_old(before), pair.old.finder))
+        finder, description, old_description = pair.new.finder, pair.new.read(), pair.old.read()
+        old = OldDescription(
+            pair, library.store(old_description, old_description_key(old_description), pair.old.finder)
+        )
     text = library.store(description)
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
@@ -90,13 +92,13 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
     print_diagnostics(snapshot.problems, sys.stderr)
     data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
     write_output(Path(arguments.out), data)
-    print(f"Created file {arguments.out} ({_size(len(data))})")
+    print(f"Created file {arguments.out} ({_size_text(len(data))})")
     if snapshot.outside:
-        print_diagnostics([_from_outside(snapshot.outside)], sys.stderr)
+        print_diagnostics([_outside_files_warning(snapshot.outside)], sys.stderr)
     return 1 if snapshot.problems else 0
 
 
-def _from_outside(files: Sequence[Path]) -> Diagnostic:
+def _outside_files_warning(files: Sequence[Path]) -> Diagnostic:
     """Return a warning about exported files that are not in a package.
 
     Includes and ``file://`` URIs can refer to any file on the computer.
@@ -111,5 +113,5 @@ def _from_outside(files: Sequence[Path]) -> Diagnostic:
     return Diagnostic("VIEW206", message, severity=Severity.WARNING, notes=names, hint=hint)
 
 
-def _size(count: int) -> str:
+def _size_text(count: int) -> str:
     return f"{count / 1e6:.1f} MB" if count >= 1e6 else f"{max(1, round(count / 1e3))} kB"

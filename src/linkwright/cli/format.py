@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from linkwright.xmltree.style import Style
 
 _STDIN = "-"
-_CHANGES = 1
+_HAS_CHANGES = 1
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -35,15 +35,25 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--diff", action="store_true", help="change nothing; print the changes, and exit as --check does"
     )
-    parser.add_argument("--indent", metavar="N", type=positive_int, help="the spaces for each level (default: 2)")
     parser.add_argument(
-        "--width", metavar="N", type=positive_int, help="the longest line, in characters (default: 120)"
+        "--indent",
+        metavar="N",
+        type=positive_int,
+        help=("the number of spaces for each level of indentation (default: 2)"),
     )
     parser.add_argument(
-        "--range", metavar="FIRST-LAST", type=_lines, help="change only these lines, counted from 1, of a single file"
+        "--width", metavar="N", type=positive_int, help="the maximum length of a line, in characters (default: 120)"
     )
     parser.add_argument(
-        "--stdin-filename", metavar="NAME", help="the file name of standard input, whose settings apply"
+        "--range",
+        metavar="FIRST-LAST",
+        type=_parse_line_range,
+        help="change only these lines, counted from 1, of a single file",
+    )
+    parser.add_argument(
+        "--stdin-filename",
+        metavar="NAME",
+        help=("the file name to assume for standard input, which selects the settings"),
     )
 
 
@@ -55,16 +65,18 @@ def run(arguments: argparse.Namespace) -> int:
         return _format_stdin(arguments)
     files = find_xml_files(map(Path, arguments.paths))
     if not files:
-        named = ", ".join(f"'{path}'" for path in arguments.paths)
-        raise LinkwrightError(Diagnostic("CLI305", phrase("there is no XML file to format in {named}", named=named)))
+        path_list = ", ".join(f"'{path}'" for path in arguments.paths)
+        raise LinkwrightError(
+            Diagnostic("CLI305", phrase("there is no XML file to format in {named}", named=path_list))
+        )
     if arguments.range and len(files) > 1:
         hint = phrase("name one file: linkwright format --range 10-20 robot.xacro")
         raise LinkwrightError(Diagnostic("CLI306", phrase("--range needs a single file"), hint=hint))
     dry_run = arguments.check or arguments.diff
     changes = [_format_file(file, arguments, dry_run=dry_run) for file in files]
-    changed, failed = changes.count(True), None in changes
-    _summarise(changed, changes.count(False), dry_run=dry_run)
-    return _CHANGES if failed or (changed and dry_run) else FINE
+    changed_count, has_failed = changes.count(True), None in changes
+    _summarise(changed_count, changes.count(False), dry_run=dry_run)
+    return _HAS_CHANGES if has_failed or (changed_count and dry_run) else FINE
 
 
 def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool | None:
@@ -73,27 +85,27 @@ def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) ->
     The result is None if the file is not XML, or cannot be read or written.
     """
     try:
-        return _format_and_report(file, arguments, dry_run=dry_run)
+        return _format_or_raise(file, arguments, dry_run=dry_run)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return None
 
 
-def _format_and_report(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool:
+def _format_or_raise(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool:
     from linkwright.lint.apply import unified_changes, write_text
     from linkwright.xmltree.decoding import decoded
     from linkwright.xmltree.reader import read_bytes
 
-    before, encoding = decoded(read_bytes(file), str(file))
-    after = _formatted(before, file, arguments)
-    if after == before:
+    old_text, encoding = decoded(read_bytes(file), str(file))
+    new_text = _format_text(old_text, file, arguments)
+    if new_text == old_text:
         return False
     if arguments.diff:
-        sys.stdout.write(unified_changes(display_path(file), before, after))
+        sys.stdout.write(unified_changes(display_path(file), old_text, new_text))
     elif arguments.check:
         print(localized(phrase("would format {file}", file=display_path(file))))
     if not dry_run:
-        write_text(file, after, encoding)
+        write_text(file, new_text, encoding)
     return True
 
 
@@ -102,20 +114,20 @@ def _format_stdin(arguments: argparse.Namespace) -> int:
     from linkwright.xmltree.decoding import decoded
 
     name = arguments.stdin_filename or "<stdin>"
-    before = decoded(sys.stdin.buffer.read(), name).text
-    after = _formatted(before, Path(arguments.stdin_filename or Path.cwd() / "stdin.xacro"), arguments, name)
+    old_text = decoded(sys.stdin.buffer.read(), name).text
+    new_text = _format_text(old_text, Path(arguments.stdin_filename or Path.cwd() / "stdin.xacro"), arguments, name)
     if arguments.diff:
-        sys.stdout.write(unified_changes(name, before, after))
+        sys.stdout.write(unified_changes(name, old_text, new_text))
     elif not arguments.check:
-        sys.stdout.buffer.write(after.encode("utf-8"))
-    return _CHANGES if after != before and (arguments.check or arguments.diff) else FINE
+        sys.stdout.buffer.write(new_text.encode("utf-8"))
+    return _HAS_CHANGES if new_text != old_text and (arguments.check or arguments.diff) else FINE
 
 
-def _formatted(text: str, file: Path, arguments: argparse.Namespace, name: str | None = None) -> str:
-    from linkwright.xmltree.formatting import changes, format_text, with_changes
+def _format_text(text: str, file: Path, arguments: argparse.Namespace, name: str | None = None) -> str:
+    from linkwright.xmltree.formatting import apply_edits, changes, format_text
 
-    after = format_text(text, name or str(file), _style(file, arguments))
-    return with_changes(text, changes(text, after, arguments.range)) if arguments.range else after
+    new_text = format_text(text, name or str(file), _style(file, arguments))
+    return apply_edits(text, changes(text, new_text, arguments.range)) if arguments.range else new_text
 
 
 def _style(file: Path, arguments: argparse.Namespace) -> Style:
@@ -128,19 +140,19 @@ def _style(file: Path, arguments: argparse.Namespace) -> Style:
     return style._replace(indent=arguments.indent or style.indent, width=arguments.width or style.width)
 
 
-def _summarise(changed: int, others: int, *, dry_run: bool) -> None:
+def _summarise(changed_count: int, unchanged_count: int, *, dry_run: bool) -> None:
     parts = []
-    if changed and dry_run:
-        parts.append(counted("{count} file would be formatted", "{count} files would be formatted", changed))
-    elif changed:
-        parts.append(counted("{count} file formatted", "{count} files formatted", changed))
-    if others:
-        parts.append(counted("{count} file left unchanged", "{count} files left unchanged", others))
+    if changed_count and dry_run:
+        parts.append(counted("{count} file would be formatted", "{count} files would be formatted", changed_count))
+    elif changed_count:
+        parts.append(counted("{count} file formatted", "{count} files formatted", changed_count))
+    if unchanged_count:
+        parts.append(counted("{count} file left unchanged", "{count} files left unchanged", unchanged_count))
     if parts:  # there is nothing to summarise if every file has an error
         print_message(localized(joined(parts)))
 
 
-def _lines(text: str) -> tuple[int, int]:
+def _parse_line_range(text: str) -> tuple[int, int]:
     """Parse a range of lines such as ``10-20`` to a 0-based, half-open range.
 
     Raises:

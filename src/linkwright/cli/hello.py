@@ -56,13 +56,13 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
 
     host = socket.gethostname()
     counts = Greetings(host)
-    _warn_about_range()
+    _warn_if_local_only()
     publisher = session.node.create_publisher(String, arguments.topic, 10)
     session.node.create_subscription(
-        String, arguments.topic, session.receiver(lambda message: counts.heard_on_topic(message.data)), 10
+        String, arguments.topic, session.receiver(lambda message: counts.count_topic_greeting(message.data)), 10
     )
     with multicast.open_receiver() as receiver, multicast.open_sender(arguments.ttl) as sender:
-        listening, _ = await session.loop.create_datagram_endpoint(lambda: _Listener(counts), sock=receiver)
+        transport, _ = await session.loop.create_datagram_endpoint(lambda: _Listener(counts), sock=receiver)
 
         def emit() -> None:
             publisher.publish(String(data=greeting(host)))
@@ -83,7 +83,7 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
             session.every(arguments.print_period, print_table)
             return await session.finished() or 0
         finally:
-            listening.close()
+            transport.close()
 
 
 class _Listener(asyncio.DatagramProtocol):
@@ -93,11 +93,11 @@ class _Listener(asyncio.DatagramProtocol):
         self._counts = counts
 
     def datagram_received(self, data: bytes, _sender: Any) -> None:
-        self._counts.heard_by_multicast(data.decode(errors="replace"))
+        self._counts.count_multicast_greeting(data.decode(errors="replace"))
 
 
-def _warn_about_range() -> None:
-    """Print a warning if the topic does not leave this computer, which is the default."""
+def _warn_if_local_only() -> None:
+    """Print a warning if the topic stays on this computer, as it does by default."""
     from linkwright.wire.dds.settings import Range, read_settings
     from linkwright.wire.joining import middleware
     from linkwright.wire.unfollowed import CYCLONE

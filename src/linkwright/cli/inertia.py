@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from linkwright.urdf import Robot
 
 
-_LARGEST = 1e15
-"""Masses and densities above this count as mistakes."""
+_MAX_VALUE = 1e15
+"""The maximum mass in kg and density in kg/m3; larger values are refused as mistakes."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--density",
         metavar="KG_PER_M3",
-        type=_positive,
+        type=_parse_positive,
         help="density of all links; by default a link keeps its mass, and a link without a mass gets 1000 kg/m3",
     )
     parser.add_argument(
@@ -78,8 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
         print_diagnostics(reading.diagnostics, sys.stderr)
     if robot is None:
         return 1
-    masses = _masses(arguments.mass, robot)
-    wanted = _selected_links(arguments.link, robot)
+    masses = _parse_masses(arguments.mass, robot)
+    link_names = _selected_links(arguments.link, robot)
     meshes = MeshLibrary(finder, folder)
     estimates = [
         estimate(
@@ -89,34 +89,34 @@ def run(arguments: argparse.Namespace) -> int:
             mass=masses.get(name),
             prefer=arguments.prefer,
         )
-        for name in wanted
+        for name in link_names
     ]
-    written: Written | None = None
+    result: Written | None = None
     if arguments.write:
-        found = {estimate.link: estimate.properties for estimate in estimates if estimate.properties is not None}
-        written = write_inertials(robot, found)
+        properties = {estimate.link: estimate.properties for estimate in estimates if estimate.properties is not None}
+        result = write_inertials(robot, properties)
     if arguments.format == "json":
-        sys.stdout.write(as_json(robot, estimates, written))
+        sys.stdout.write(as_json(robot, estimates, result))
     else:
-        detailed = wanted if arguments.link and written is None else () if written is None else written.refused
-        sys.stdout.write(as_text(robot, estimates, written, detailed))
+        detailed_links = link_names if arguments.link and result is None else () if result is None else result.refusals
+        sys.stdout.write(as_text(robot, estimates, result, detailed_links))
         if not (arguments.link or arguments.write):
             print_message(
                 localized(
                     phrase("`--link NAME` prints the <inertial> of a link's shapes, `--write` writes them to the file")
                 )
             )
-    if written is not None:
-        print_diagnostics(_refusals(written.refused, robot), sys.stderr)
-    return 1 if has_errors(reading.diagnostics) or (written is not None and written.refused) else 0
+    if result is not None:
+        print_diagnostics(_refusal_findings(result.refusals, robot), sys.stderr)
+    return 1 if has_errors(reading.diagnostics) or (result is not None and result.refusals) else 0
 
 
-def _positive(text: str) -> float:
+def _parse_positive(text: str) -> float:
     try:
         value = float(text)
     except ValueError:
         value = 0.0
-    if not 0 < value <= _LARGEST:
+    if not 0 < value <= _MAX_VALUE:
         raise argparse.ArgumentTypeError(f"'{text}' is not a positive number")
     return value
 
@@ -127,57 +127,57 @@ def _selected_links(names: Sequence[str], robot: Robot) -> list[str]:
     Raises:
         LinkwrightError: CLI311, the robot does not have a selected link.
     """
-    unknown = [_unknown(name, robot) for name in names if name not in robot.links]
-    if unknown:
-        raise LinkwrightError(*unknown)
+    diagnostics = [_unknown_link(name, robot) for name in names if name not in robot.links]
+    if diagnostics:
+        raise LinkwrightError(*diagnostics)
     return [name for name in robot.links if not names or name in names]
 
 
-def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
+def _parse_masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
     """Parse arguments such as ``arm=1.5``, and return the mass in kg of each link.
 
     Raises:
         LinkwrightError: CLI311, the robot does not have such a link; CLI312, an argument has no mass.
     """
     masses: dict[str, float] = {}
-    wrong = []
-    for word in words:
-        name, _, value = word.rpartition("=")
+    diagnostics = []
+    for assignment in words:
+        name, _, value = assignment.rpartition("=")
         name = name.removesuffix(":")
         try:
-            masses[name] = _positive(value)
+            masses[name] = _parse_positive(value)
         except argparse.ArgumentTypeError:
             name = ""
         if not name:
-            message = phrase("'{word}' does not set the mass of a link", word=word)
-            wrong.append(
+            message = phrase("'{word}' does not set the mass of a link", word=assignment)
+            diagnostics.append(
                 Diagnostic("CLI312", message, hint=phrase("write --mass LINK=KG, such as --mass arm_link=1.5"))
             )
         elif name not in robot.links:
-            wrong.append(_unknown(name, robot))
-    if wrong:
-        raise LinkwrightError(*wrong)
+            diagnostics.append(_unknown_link(name, robot))
+    if diagnostics:
+        raise LinkwrightError(*diagnostics)
     return masses
 
 
-def _unknown(name: str, robot: Robot) -> Diagnostic:
+def _unknown_link(name: str, robot: Robot) -> Diagnostic:
     return Diagnostic(
         "CLI311", phrase("the robot has no link '{name}'", name=name), hint=did_you_mean(name, robot.links)
     )
 
 
-def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
+def _refusal_findings(reasons: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
     """Return a finding for each ``<inertial>`` element that could not be written."""
-    found = []
-    for name, why in refused.items():
+    diagnostics = []
+    for name, reason in reasons.items():
         element = robot.links[name].element
-        found.append(
+        diagnostics.append(
             Diagnostic(
                 "INR211",
-                phrase("<inertial> of link '{name}' is not written: {why}", name=name, why=why),
+                phrase("<inertial> of link '{name}' is not written: {why}", name=name, why=reason),
                 element.span() if element else None,
                 hint=phrase("add the block printed above to the link, or write expressions with the same values"),
                 source=element.source if element else None,
             )
         )
-    return found
+    return diagnostics

@@ -13,9 +13,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, ph
 
 _TITLES = {"msg": "Messages:", "srv": "Services:", "action": "Actions:"}
 _FIELD = re.compile(r"\s*(?P<type>[A-Za-z]\w*(?:/[A-Za-z]\w*)*)[^\s#]*\s+[A-Za-z]\w*\s*(?P<equals>=)?")
-_SIZED = frozenset(f"{kind}{bits}" for kind in ("int", "uint") for bits in (8, 16, 32, 64))
-_PRIMITIVES = _SIZED | {"bool", "byte", "char", "float32", "float64", "string", "wstring"}
-_DEEPEST = 50
+_INTEGER_TYPES = frozenset(f"{kind}{bits}" for kind in ("int", "uint") for bits in (8, 16, 32, 64))
+_PRIMITIVES = _INTEGER_TYPES | {"bool", "byte", "char", "float32", "float64", "string", "wstring"}
+_MAX_DEPTH = 50
 
 
 def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +25,7 @@ def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-a", "--only-actions", dest="action", action="store_true", help="list only action types")
 
 
-def _kinds(arguments: argparse.Namespace) -> list[str]:
+def _requested_kinds(arguments: argparse.Namespace) -> list[str]:
     """Return the requested kinds (``msg``, ``srv``, ``action``), or all kinds if none is requested."""
     return [kind for kind in _TITLES if getattr(arguments, kind)] or list(_TITLES)
 
@@ -39,7 +39,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     """Print the names of the types by kind, as ros2 does."""
     from linkwright.messages import interface_names
 
-    for kind in _kinds(arguments):
+    for kind in _requested_kinds(arguments):
         print(_TITLES[kind])
         for name in interface_names(kind):
             print(f"    {name}")
@@ -55,7 +55,9 @@ def run_packages(arguments: argparse.Namespace) -> int:
     """Print the names of the packages that define interfaces, one per line."""
     from linkwright.messages import interface_names
 
-    for package in sorted({name.split("/")[0] for kind in _kinds(arguments) for name in interface_names(kind)}):
+    for package in sorted(
+        {name.split("/")[0] for kind in _requested_kinds(arguments) for name in interface_names(kind)}
+    ):
         print(package)
     return 0
 
@@ -71,14 +73,14 @@ def run_package(arguments: argparse.Namespace) -> int:
     from linkwright.messages import interface_names
 
     package = arguments.package_name
-    known = {kind: interface_names(kind) for kind in ("msg", "srv", "action")}
-    packages = sorted({name.split("/")[0] for names in known.values() for name in names})
+    names_by_kind = {kind: interface_names(kind) for kind in ("msg", "srv", "action")}
+    packages = sorted({name.split("/")[0] for names in names_by_kind.values() for name in names})
     if package not in packages:
         hint = did_you_mean(package, packages) or phrase(
             "`linkwright interface packages` lists the packages with types"
         )
         raise LinkwrightError(Diagnostic("CLI441", phrase("Unknown package '{package}'", package=package), hint=hint))
-    names = [name for kind in _kinds(arguments) for name in known[kind]]
+    names = [name for kind in _requested_kinds(arguments) for name in names_by_kind[kind]]
     for name in sorted(name for name in names if name.startswith(f"{package}/")):
         print(name)
     return 0
@@ -144,21 +146,23 @@ def definition_lines(
         comments: whether to include comments and blank lines.
         nested_comments: whether to include the comments and blank lines of nested definitions.
     """
-    yield from _lines(name, source, comments, nested_comments, 0)
+    yield from _definition_lines(name, source, comments, nested_comments, 0)
 
 
-def _lines(name: str, source: Callable[[str], str], comments: bool, nested_comments: bool, level: int) -> Iterator[str]:
+def _definition_lines(
+    name: str, source: Callable[[str], str], comments: bool, nested_comments: bool, level: int
+) -> Iterator[str]:
     package = name.split("/", maxsplit=1)[0]
     for line in source(name).splitlines():
         line = line.rstrip()
-        shown = line if comments else _without_comment(line).rstrip()
-        if shown:
-            yield "\t" * level + shown
+        output_line = line if comments else _without_comment(line).rstrip()
+        if output_line:
+            yield "\t" * level + output_line
         elif comments:
             yield ""
-        nested = nested_type(line, package)
-        if nested is not None and level < _DEEPEST:
-            yield from _lines(nested, source, nested_comments, nested_comments, level + 1)
+        nested_name = nested_type(line, package)
+        if nested_name is not None and level < _MAX_DEPTH:
+            yield from _definition_lines(nested_name, source, nested_comments, nested_comments, level + 1)
 
 
 def nested_type(line: str, package: str) -> str | None:
@@ -166,10 +170,10 @@ def nested_type(line: str, package: str) -> str | None:
 
     The result is None if the line does not declare a field of a message type.
     """
-    found = _FIELD.match(line)
-    if found is None or found["equals"] or found["type"] in _PRIMITIVES:
+    match = _FIELD.match(line)
+    if match is None or match["equals"] or match["type"] in _PRIMITIVES:
         return None
-    parts = found["type"].split("/")
+    parts = match["type"].split("/")
     if parts == ["Header"]:
         return "std_msgs/msg/Header"
     if len(parts) == 1:
@@ -180,13 +184,13 @@ def nested_type(line: str, package: str) -> str | None:
 def _without_comment(line: str) -> str:
     """Return a line without its comment; a ``#`` in a string does not start a comment."""
     quote = ""
-    for at, character in enumerate(line):
+    for index, character in enumerate(line):
         if quote:
             quote = "" if character == quote else quote
         elif character in "\"'":
             quote = character
         elif character == "#":
-            return line[:at]
+            return line[:index]
     return line
 
 

@@ -8,7 +8,7 @@ from linkwright.diagnostics.phrase import TERMS
 from linkwright.diagnostics.translation import LANGUAGES, language, language_of, set_language
 from linkwright.diagnostics.translation.translate import wording
 
-LANGUAGE_HELP = "the language of messages: zh for Chinese, en for English (default: that of the environment)"
+LANGUAGE_HELP = "the language of messages: zh for Chinese, en for English (default: the language of the environment)"
 
 _OPTION = "--lang"
 
@@ -25,27 +25,27 @@ def take_language(words: Sequence[str]) -> list[str]:
     Raises:
         UnknownLanguageError: there is no translation into this language.
     """
-    left: list[str] = []
+    remaining_arguments: list[str] = []
     requested: str | None = None
-    pending = iter(words)
-    for word in pending:
-        name, sign, value = word.partition("=")
+    argument_iterator = iter(words)
+    for argument in argument_iterator:
+        name, sign, value = argument.partition("=")
         if name == _OPTION:
-            requested = _language(value if sign else next(pending, ""))
+            requested = _parse_language(value if sign else next(argument_iterator, ""))
         else:
-            left.append(word)
-        if word == "--":
-            left += pending
+            remaining_arguments.append(argument)
+        if argument == "--":
+            remaining_arguments += argument_iterator
     set_language(requested)
-    return left
+    return remaining_arguments
 
 
-def _language(written: str) -> str:
-    found = language_of(written)
-    if found is None:
-        what = f"there is no language '{written}'" if written else f"'{_OPTION}' needs a language"
-        raise UnknownLanguageError(f"{what}; messages are in {' and '.join(LANGUAGES)}")
-    return found
+def _parse_language(text: str) -> str:
+    code = language_of(text)
+    if code is None:
+        problem = f"there is no language '{text}'" if text else f"'{_OPTION}' needs a language"
+        raise UnknownLanguageError(f"{problem}; messages are in {' and '.join(LANGUAGES)}")
+    return code
 
 
 def translate_help(text: str) -> str:
@@ -53,6 +53,6 @@ def translate_help(text: str) -> str:
     lang = language()
     if lang == "en" or not text:
         return text
-    words = wording(lang)
-    found = words.gettext(text)
-    return words.pgettext(TERMS, text) if found == text else found
+    catalogue = wording(lang)
+    translation = catalogue.gettext(text)
+    return catalogue.pgettext(TERMS, text) if translation == text else translation

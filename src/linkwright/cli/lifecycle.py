@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_LONGEST_ANSWER = 5.0
+_ANSWER_TIMEOUT = 5.0
 _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    """Declare the arguments that select a node, and those of the session."""
+    """Declare the arguments that select a node, and the arguments of the session."""
     add_session_arguments(parser)
     if optional:
         parser.add_argument(
@@ -50,7 +50,7 @@ def run_nodes(arguments: argparse.Namespace) -> int:
         print_names(managed_nodes(session, hidden=arguments.all), arguments)
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_get(parser: argparse.ArgumentParser) -> None:
@@ -66,20 +66,20 @@ def run_get(arguments: argparse.Namespace) -> int:
         hidden = arguments.include_hidden_nodes
         if arguments.node_name is not None:
             node = await find_node(session, arguments.node_name, hidden=hidden)
-            found = await state(session, node, arguments.timeout)
-            print(f"{found.label} [{found.id}]")
+            node_state = await state(session, node, arguments.timeout)
+            print(f"{node_state.label} [{node_state.id}]")
             return 0
         nodes = managed_nodes(session, hidden=hidden)
-        requests = [state(session, node, arguments.timeout or _LONGEST_ANSWER) for node in nodes]
+        requests = [state(session, node, arguments.timeout or _ANSWER_TIMEOUT) for node in nodes]
         status = 0
-        for node, found in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
-            if isinstance(found, NoAnswerError):
-                print(f"Exception while calling service of node '{node}': {found}", file=sys.stderr)
+        for node, node_state in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
+            if isinstance(node_state, NoAnswerError):
+                print(f"Exception while calling service of node '{node}': {node_state}", file=sys.stderr)
                 status = 1
-            elif isinstance(found, BaseException):
-                raise found
+            elif isinstance(node_state, BaseException):
+                raise node_state
             else:
-                print(f"{node}: {found.label} [{found.id}]")
+                print(f"{node}: {node_state.label} [{node_state.id}]")
         return status
 
     return run_in_graph(arguments, job)
@@ -98,7 +98,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
-        for line in transition_lines(await transitions(session, node, every=arguments.all)):
+        for line in transition_lines(await transitions(session, node, all_states=arguments.all)):
             print(line)
         return 0
 
@@ -119,24 +119,25 @@ def run_set(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
         available = [transition.transition for transition in await transitions(session, node)]
-        wanted = next(
+        requested_transition = next(
             (candidate for candidate in available if arguments.transition in (candidate.label, str(candidate.id))), None
         )
-        if wanted is None:
-            listed = "\n".join(f"- {candidate.label} [{candidate.id}]" for candidate in available)
+        if requested_transition is None:
+            transition_list = "\n".join(f"- {candidate.label} [{candidate.id}]" for candidate in available)
             raise LinkwrightError(
                 Diagnostic(
                     "CLI431",
                     phrase(
-                        "Unknown transition requested: node '{node}' cannot make '{transition}' now",
+                        "Unknown transition requested: node '{node}' has no transition '{transition}' in its "
+                        "current state",
                         node=node,
                         transition=arguments.transition,
                     ),
-                    notes=(Note(phrase("available transitions:\n{listed}", listed=listed)),),
+                    notes=(Note(phrase("available transitions:\n{listed}", listed=transition_list)),),
                     hint=did_you_mean(arguments.transition, [candidate.label for candidate in available]),
                 )
             )
-        if await change(session, node, wanted):
+        if await change(session, node, requested_transition):
             print("Transitioning successful")
             return 0
         print("Transitioning failed", file=sys.stderr)
@@ -167,29 +168,29 @@ async def state(session: Session, node: str, timeout: float | None = None) -> An
     return (await call(session, _GET_STATE, f"{node}/get_state", request, timeout=timeout)).current_state
 
 
-async def transitions(session: Session, node: str, *, every: bool = False) -> Sequence[Any]:
-    """Return the available transitions of a managed node, or those of all states if `every` is set.
+async def transitions(session: Session, node: str, *, all_states: bool = False) -> Sequence[Any]:
+    """Return the available transitions of a managed node, or the transitions of all states if `all_states` is set.
 
     The result consists of lifecycle_msgs/msg/TransitionDescription messages.
     """
     from linkwright.messages import get_service
 
-    kind = "lifecycle_msgs/srv/GetAvailableTransitions"
-    service = "get_transition_graph" if every else "get_available_transitions"
-    response = await call(session, kind, f"{node}/{service}", get_service(kind).Request())
-    found: Sequence[Any] = response.available_transitions
-    return found
+    service_type = "lifecycle_msgs/srv/GetAvailableTransitions"
+    service = "get_transition_graph" if all_states else "get_available_transitions"
+    response = await call(session, service_type, f"{node}/{service}", get_service(service_type).Request())
+    descriptions: Sequence[Any] = response.available_transitions
+    return descriptions
 
 
 async def change(session: Session, node: str, transition: Any) -> bool:
     """Trigger a transition (lifecycle_msgs/msg/Transition), and return whether it succeeded."""
     from linkwright.messages import get_service
 
-    kind = "lifecycle_msgs/srv/ChangeState"
-    request = get_service(kind).Request()
+    service_type = "lifecycle_msgs/srv/ChangeState"
+    request = get_service(service_type).Request()
     request.transition.id = transition.id
     request.transition.label = transition.label
-    return bool((await call(session, kind, f"{node}/change_state", request)).success)
+    return bool((await call(session, service_type, f"{node}/change_state", request)).success)
 
 
 def transition_lines(descriptions: Sequence[Any]) -> list[str]:

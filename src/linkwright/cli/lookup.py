@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 NamesAndTypes = Sequence[tuple[str, Sequence[str]]]
 
-_POLL = 0.1
+_POLL_INTERVAL = 0.1
 
 
-def visible(found: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
+def visible(names_and_types: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
     """Return names with their types, sorted by name and without hidden names unless `hidden` is set."""
     from linkwright.graph.names.rules import is_hidden
 
-    return [(name, list(types)) for name, types in sorted(found) if hidden or not is_hidden(name)]
+    return [(name, list(types)) for name, types in sorted(names_and_types) if hidden or not is_hidden(name)]
 
 
 def absolute(name: str) -> str:
@@ -35,22 +35,26 @@ def absolute(name: str) -> str:
     return expand_topic_name(name, "ros2cli", "/")
 
 
-def unknown_name_error(code: str, message: Phrase, name: str, known: Iterable[str], nothing: Phrase) -> LinkwrightError:
+def unknown_name_error(
+    code: str, message: Phrase, name: str, existing_names: Iterable[str], fallback_hint: Phrase
+) -> LinkwrightError:
     """Return the error for a name that is not in the graph.
 
     Args:
         code: the code of the diagnostic.
         message: the message, with ros2's wording if ros2 has a message for this error.
         name: the name that the user gave.
-        known: the existing names, for suggestions.
-        nothing: the hint if no existing name is similar.
+        existing_names: the existing names, for suggestions.
+        fallback_hint: the hint if no existing name is similar.
     """
-    candidates = list(known)
-    by_end = [candidate for candidate in candidates if candidate.endswith("/" + name.strip("/").rpartition("/")[2])]
+    candidates = list(existing_names)
+    same_base_names = [
+        candidate for candidate in candidates if candidate.endswith("/" + name.strip("/").rpartition("/")[2])
+    ]
     hint = did_you_mean(absolute_or_given(name), candidates)
-    if hint is None and by_end:
-        hint = phrase("did you mean {names}?", names=quoted(by_end[0]))
-    return LinkwrightError(Diagnostic(code, message, hint=hint or nothing))
+    if hint is None and same_base_names:
+        hint = phrase("did you mean {names}?", names=quoted(same_base_names[0]))
+    return LinkwrightError(Diagnostic(code, message, hint=hint or fallback_hint))
 
 
 def absolute_or_given(name: str) -> str:
@@ -74,34 +78,34 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
         return types
     print(f"WARNING: topic [{name}] does not appear to be published yet", file=sys.stderr)
     if not wait:
-        known = [topic for topic, _ in session.node.get_topic_names_and_types()]
-        nothing = phrase("give the message type to wait for the topic, or see `linkwright topic list`")
+        topic_names = [topic for topic, _ in session.node.get_topic_names_and_types()]
+        hint = phrase("give the message type to wait for the topic, or see `linkwright topic list`")
         message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
-        raise unknown_name_error("CLI411", message, name, known, nothing)
+        raise unknown_name_error("CLI411", message, name, topic_names, hint)
     while not types:
-        await asyncio.sleep(_POLL)
+        await asyncio.sleep(_POLL_INTERVAL)
         types = _types_of(session, name)
     return types
 
 
 async def topic_type(
-    session: Session, name: str, given: str | None = None, *, wait: bool = False, raw: bool = False
+    session: Session, name: str, type_name: str | None = None, *, wait: bool = False, raw: bool = False
 ) -> Any:
     """Return the message class of a topic.
 
     Args:
         session: the session of the command.
         name: the absolute name of the topic.
-        given: the name of the type, if the user specified one.
+        type_name: the name of the type, if the user specified one.
         wait: whether to wait for a topic that does not exist yet.
-        raw: whether the command needs only serialized messages. For an unknown type, the result is then its name.
+        raw: whether the command needs only serialized messages; if so, the result for an unknown type is its name.
 
     Raises:
         LinkwrightError: MSG101, there is no such type; CLI411, there is no such topic, and `wait` is not set; CLI412,
             the topic has several types.
     """
-    if given is not None:
-        return _message_class(given, raw=raw)
+    if type_name is not None:
+        return _message_class(type_name, raw=raw)
     types = await topic_types(session, name, wait=wait)
     if len(types) > 1:
         message = phrase(

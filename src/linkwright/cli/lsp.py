@@ -15,10 +15,14 @@ _LOOPBACK = "127.0.0.1"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``lsp``."""
-    way = parser.add_mutually_exclusive_group()
-    way.add_argument("--stdio", action="store_true", help="use standard input and output (the default)")
-    way.add_argument("--tcp", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a connection")
-    way.add_argument("--ws", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a WebSocket")
+    transport_group = parser.add_mutually_exclusive_group()
+    transport_group.add_argument("--stdio", action="store_true", help="use standard input and output (the default)")
+    transport_group.add_argument(
+        "--tcp", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a connection"
+    )
+    transport_group.add_argument(
+        "--ws", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a WebSocket"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.ws is not None:
         server.start_ws(_LOOPBACK, arguments.ws)
     else:
-        with os.fdopen(os.dup(0), "rb") as requests, os.fdopen(os.dup(1), "wb") as answers:
+        with os.fdopen(os.dup(0), "rb") as requests, os.fdopen(os.dup(1), "wb") as responses:
             sys.stdout = sys.stderr  # standard output carries only the responses
-            server.start_io(requests, answers)
+            server.start_io(requests, responses)
     return FINE

@@ -26,11 +26,11 @@ def add_values(
     Args:
         parser: the parser of the command.
         values_help: the help text, which states whether other words are accepted as well.
-        name: the attribute for the words.
+        name: the attribute of the parsed arguments that holds the words.
         metavar: the name of the argument in the help.
     """
-    nothing: list[str] = []  # without a default, argparse reports the optional words as missing arguments, too
-    parser.add_argument(name, metavar=metavar, nargs="*", default=nothing, help=values_help)
+    no_values: list[str] = []  # without a default, argparse reports the optional words as missing arguments, too
+    parser.add_argument(name, metavar=metavar, nargs="*", default=no_values, help=values_help)
 
 
 def add_second_model(parser: argparse.ArgumentParser) -> None:
@@ -60,7 +60,7 @@ def names_file(word: str) -> bool:
     return ":=" not in word and ("=" not in word or Path(word).exists())
 
 
-def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
+def requested_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """Return the two descriptions to compare, or None if the command line does not specify two.
 
     Args:
@@ -72,15 +72,15 @@ def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """
     from pathlib import Path
 
-    from linkwright.descriptions.pairs import pair_of, pair_with_commit
+    from linkwright.descriptions.pairs import file_pair, pair_with_commit
 
     files = [word for word in arguments.words if names_file(word)]
     values = parse_assignments([word for word in arguments.words if not names_file(word)])
     if len(files) != (0 if arguments.against else 1):
         return None
-    first = Path(arguments.file)
+    path = Path(arguments.file)
     if arguments.against:
-        pair = pair_with_commit(first, arguments.against, values)
+        pair = pair_with_commit(path, arguments.against, values)
         stack.callback(pair.close)
         return pair
-    return pair_of(first, Path(files[0]), values)
+    return file_pair(path, Path(files[0]), values)

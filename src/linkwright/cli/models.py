@@ -17,8 +17,8 @@ from linkwright.diagnostics.translation import localized
 if TYPE_CHECKING:
     from linkwright.model_files import ModelEntry
 
-_BAR = 30
-_MEGA = 1_000_000
+_BAR_WIDTH = 30
+_BYTES_PER_MB = 1_000_000
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +58,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 def configure_get(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``models get``."""
-    _add_name(parser)
+    _add_name_argument(parser)
     parser.add_argument(
         "--from",
         dest="source",
@@ -77,11 +77,11 @@ def run_get(arguments: argparse.Namespace) -> int:
     entry = model_entry(arguments.name)
     folder: Path = arguments.to or models_folder()
     if is_installed(entry, folder):
-        place = folder / entry.place
-        if not _wrong_with(entry, place):
-            print(place)
+        path = folder / entry.place
+        if not _verification_problems(entry, path):
+            print(path)
             return FINE
-        print_message(localized(phrase("'{path}' is incomplete or modified, and is downloaded again", path=place)))
+        print_message(localized(phrase("'{path}' is incomplete or modified, and is downloaded again", path=path)))
     print_message(
         localized(
             phrase(
@@ -95,29 +95,29 @@ def run_get(arguments: argparse.Namespace) -> int:
     )
     line = ProgressLine()
     try:
-        place = install(
+        path = install(
             entry, arguments.source, arguments.to, lambda done, total: line.show(_progress(entry, done, total))
         )
     finally:
         line.end()
-    print(place)
+    print(path)
     return FINE
 
 
-def _progress(entry: ModelEntry, done: int, total: int | None) -> Phrase:
-    size = total or entry.megabytes * _MEGA
-    filled = min(_BAR, done * _BAR // max(size, 1))
+def _progress(entry: ModelEntry, done_bytes: int, total_bytes: int | None) -> Phrase:
+    size = total_bytes or entry.megabytes * _BYTES_PER_MB
+    filled_width = min(_BAR_WIDTH, done_bytes * _BAR_WIDTH // max(size, 1))
     return phrase(
         "{bar} {done} of {total} MB",
-        bar="#" * filled + "." * (_BAR - filled),
-        done=f"{done / _MEGA:.1f}",
-        total=f"{size / _MEGA:.1f}",
+        bar="#" * filled_width + "." * (_BAR_WIDTH - filled_width),
+        done=f"{done_bytes / _BYTES_PER_MB:.1f}",
+        total=f"{size / _BYTES_PER_MB:.1f}",
     )
 
 
 def configure_path(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``models path``."""
-    _add_name(parser)
+    _add_name_argument(parser)
 
 
 def run_path(arguments: argparse.Namespace) -> int:
@@ -138,18 +138,18 @@ def run_check(arguments: argparse.Namespace) -> int:
     from linkwright.model_files import find_model, is_installed, model_entry, model_table
 
     entries = [model_entry(name) for name in arguments.names]
-    wrong: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for entry in entries or [entry for entry in model_table().values() if is_installed(entry)]:
-        found = _wrong_with(entry, find_model(entry))
-        wrong += found
-        if not found:
+        problems = _verification_problems(entry, find_model(entry))
+        diagnostics += problems
+        if not problems:
             print(localized(phrase("{name}: verified", name=entry.name)))
-    if wrong:
-        raise LinkwrightError(*wrong)
+    if diagnostics:
+        raise LinkwrightError(*diagnostics)
     return FINE
 
 
-def _wrong_with(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
+def _verification_problems(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
     from linkwright.model_files import checked
 
     try:
@@ -161,7 +161,7 @@ def _wrong_with(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
 
 def configure_remove(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``models remove``."""
-    _add_name(parser)
+    _add_name_argument(parser)
 
 
 def run_remove(arguments: argparse.Namespace) -> int:
@@ -172,7 +172,7 @@ def run_remove(arguments: argparse.Namespace) -> int:
     return FINE
 
 
-def _add_name(parser: argparse.ArgumentParser) -> None:
+def _add_name_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", metavar="MODEL", help="the model's name, as `linkwright models list` prints it")
 
 

@@ -10,8 +10,8 @@ from linkwright.cli.numbers import positive_int
 from linkwright.wire import multicast
 
 _GREETING = b"Hello World!"
-_LAST_PORT = 0xFFFF
-_LONGEST_TTL = 0xFF
+_MAX_PORT = 0xFFFF
+_MAX_TTL = 0xFF
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +45,7 @@ def port(text: str) -> int:
     Raises:
         argparse.ArgumentTypeError: the text is not a port number.
     """
-    return _up_to(_LAST_PORT, text)
+    return _parse_up_to(_MAX_PORT, text)
 
 
 def time_to_live(text: str) -> int:
@@ -54,13 +54,13 @@ def time_to_live(text: str) -> int:
     Raises:
         argparse.ArgumentTypeError: the text is not a valid time to live.
     """
-    return _up_to(_LONGEST_TTL, text)
+    return _parse_up_to(_MAX_TTL, text)
 
 
-def _up_to(most: int, text: str) -> int:
+def _parse_up_to(maximum: int, text: str) -> int:
     value = positive_int(text)
-    if value > most:
-        raise argparse.ArgumentTypeError(f"value must be from 1 to {most}")
+    if value > maximum:
+        raise argparse.ArgumentTypeError(f"value must be from 1 to {maximum}")
     return value
 
 

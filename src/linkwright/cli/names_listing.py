@@ -21,49 +21,49 @@ class Kind:
     """A kind of graph names with types: topics, services or actions.
 
     Attributes:
-        found: returns the existing names with their types.
+        find_names: returns the existing names with their types.
         code: the code of the error for an unknown name.
-        missing: returns the message of the error for a given name.
+        missing_message: returns the message of the error for a name.
         hint: the hint of the error if no existing name is similar.
     """
 
-    found: Callable[[Session], NamesAndTypes]
+    find_names: Callable[[Session], NamesAndTypes]
     code: str
-    missing: Callable[[str], Phrase]
+    missing_message: Callable[[str], Phrase]
     hint: Phrase
 
-    def types_of(self, session: Session, given: str, *, hidden: bool = True) -> list[str]:
+    def types_of(self, session: Session, requested_name: str, *, hidden: bool = True) -> list[str]:
         """Return the types of a name from the command line.
 
         Raises:
             LinkwrightError: with `code`, the name does not exist.
             InvalidNameError: the name is not valid.
         """
-        name = absolute(given)
-        found = dict(visible(self.found(session), hidden=hidden))
+        name = absolute(requested_name)
+        found = dict(visible(self.find_names(session), hidden=hidden))
         if name not in found:
-            raise unknown_name_error(self.code, self.missing(given), name, found, self.hint)
+            raise unknown_name_error(self.code, self.missing_message(requested_name), name, found, self.hint)
         return found[name]
 
-    def print_types(self, arguments: argparse.Namespace, given: str, *, hidden: bool = True) -> int:
+    def print_types(self, arguments: argparse.Namespace, requested_name: str, *, hidden: bool = True) -> int:
         """Print the types of a name from the command line, one per line, and return the exit status."""
-        absolute(given)  # reject an invalid name before joining the graph
+        absolute(requested_name)  # reject an invalid name before joining the graph
 
         async def job(session: Session) -> int:
-            print("\n".join(self.types_of(session, given, hidden=hidden)))
+            print("\n".join(self.types_of(session, requested_name, hidden=hidden)))
             return 0
 
-        return run_in_graph(arguments, job, only_looks=True)
+        return run_in_graph(arguments, job, read_only=True)
 
-    def print_of_type(self, arguments: argparse.Namespace, wanted: str, *, hidden: bool) -> int:
-        """Print the names that have the type `wanted`, and return the exit status."""
+    def print_of_type(self, arguments: argparse.Namespace, type_name: str, *, hidden: bool) -> int:
+        """Print the names that have the type `type_name`, and return the exit status."""
 
         async def job(session: Session) -> int:
-            found = visible(self.found(session), hidden=hidden)
-            print_names([name for name, types in found if wanted in types], arguments)
+            found = visible(self.find_names(session), hidden=hidden)
+            print_names([name for name, types in found if type_name in types], arguments)
             return 0
 
-        return run_in_graph(arguments, job, only_looks=True)
+        return run_in_graph(arguments, job, read_only=True)
 
 
 def add_types_argument(parser: argparse.ArgumentParser, *, types_help: str) -> None:
@@ -104,7 +104,7 @@ def print_names(names: Sequence[str], arguments: argparse.Namespace) -> None:
         print(line)
 
 
-def print_names_and_types(found: NamesAndTypes, arguments: argparse.Namespace) -> None:
+def print_names_and_types(names_and_types: NamesAndTypes, arguments: argparse.Namespace) -> None:
     """Print names as ros2 does: with their types if requested, or only their number."""
-    lines = [f"{name} [{', '.join(types)}]" if arguments.show_types else name for name, types in found]
+    lines = [f"{name} [{', '.join(types)}]" if arguments.show_types else name for name, types in names_and_types]
     print_names(lines, arguments)

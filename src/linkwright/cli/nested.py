@@ -1,4 +1,4 @@
-"""Commands with subcommands, such as ``topic echo``, each with an argument parser of its own."""
+"""Commands with subcommands, such as ``topic echo``; each subcommand has a separate argument parser."""
 
 from __future__ import annotations
 
@@ -28,18 +28,20 @@ def configure_nested(parser: argparse.ArgumentParser, verbs: Mapping[str, SubVer
         parser: the command's parser.
         verbs: the subcommands by name.
     """
-    below = parser.add_subparsers(dest="verb", metavar="COMMAND", title="commands")
+    subparsers = parser.add_subparsers(dest="verb", metavar="COMMAND", title="commands")
     for name, verb in verbs.items():
-        made = below.add_parser(name, help=verb.help, description=verb.help, formatter_class=parser.formatter_class)
-        verb.configure(made)
-        made.set_defaults(run_verb=verb.run)
+        subparser = subparsers.add_parser(
+            name, help=verb.help, description=verb.help, formatter_class=parser.formatter_class
+        )
+        verb.configure(subparser)
+        subparser.set_defaults(run_verb=verb.run)
     parser.set_defaults(print_help=parser.print_help)
 
 
 def run_nested(arguments: argparse.Namespace) -> int:
     """Run the requested subcommand, or print the help as ros2 does if none is requested."""
-    run = getattr(arguments, "run_verb", None)
-    if run is None:
+    run_verb = getattr(arguments, "run_verb", None)
+    if run_verb is None:
         arguments.print_help()
         return 0
-    return cast("int", run(arguments))
+    return cast("int", run_verb(arguments))

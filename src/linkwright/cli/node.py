@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_APPEARS_WITHIN = 1.0
+_DISCOVERY_TIMEOUT = 1.0
 """Seconds to wait for a node that has not been discovered."""
 
 
@@ -43,7 +43,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         print_names(names, arguments)
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
@@ -55,40 +55,46 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """Print the topics, services and actions of a node, as ros2 does."""
-    full = absolute_or_given(arguments.node_name)
+    full_name = absolute_or_given(arguments.node_name)
     hidden = arguments.include_hidden
 
     async def job(session: Session) -> int:
-        await session.wait_until(lambda: full in node_names(session, hidden=hidden), _APPEARS_WITHIN)
+        await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), _DISCOVERY_TIMEOUT)
         names = node_names(session, hidden=hidden)
-        count = names.count(full)
+        count = names.count(full_name)
         if not count:
             message = phrase("Unable to find node '{node_name}'", node_name=arguments.node_name)
-            raise unknown_name_error("CLI423", message, full, names, phrase("`linkwright node list` lists them"))
+            raise unknown_name_error(
+                "CLI423", message, full_name, names, phrase("`linkwright node list` lists the nodes")
+            )
         if count > 1:
             print(
-                f"There are {count} nodes in the graph with the exact name '{full}'."
+                f"There are {count} nodes in the graph with the exact name '{full_name}'."
                 " You are seeing information about only one of them.",
                 file=sys.stderr,
             )
         node = session.node
-        namespace, _, name = full.rpartition("/")
-        who = (name, namespace or "/")
-        print(full)
-        _section("Subscribers", node.get_subscriber_names_and_types_by_node(*who), hidden=hidden)
-        _section("Publishers", node.get_publisher_names_and_types_by_node(*who), hidden=hidden)
-        _section("Service Servers", node.get_service_names_and_types_by_node(*who), hidden=hidden)
-        _section("Service Clients", node.get_client_names_and_types_by_node(*who), hidden=hidden)
-        _section("Action Servers", session.graph.get_action_server_names_and_types_by_node(*who), hidden=hidden)
-        _section("Action Clients", session.graph.get_action_client_names_and_types_by_node(*who), hidden=hidden)
+        namespace, _, name = full_name.rpartition("/")
+        node_key = (name, namespace or "/")
+        print(full_name)
+        _print_section("Subscribers", node.get_subscriber_names_and_types_by_node(*node_key), hidden=hidden)
+        _print_section("Publishers", node.get_publisher_names_and_types_by_node(*node_key), hidden=hidden)
+        _print_section("Service Servers", node.get_service_names_and_types_by_node(*node_key), hidden=hidden)
+        _print_section("Service Clients", node.get_client_names_and_types_by_node(*node_key), hidden=hidden)
+        _print_section(
+            "Action Servers", session.graph.get_action_server_names_and_types_by_node(*node_key), hidden=hidden
+        )
+        _print_section(
+            "Action Clients", session.graph.get_action_client_names_and_types_by_node(*node_key), hidden=hidden
+        )
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
-def _section(title: str, found: NamesAndTypes, *, hidden: bool) -> None:
+def _print_section(title: str, names_and_types: NamesAndTypes, *, hidden: bool) -> None:
     print(f"  {title}:")
-    lines = [f"    {name}: {', '.join(types)}" for name, types in visible(found, hidden=hidden)]
+    lines = [f"    {name}: {', '.join(types)}" for name, types in visible(names_and_types, hidden=hidden)]
     print("\n".join(lines))
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.cli.calls import NoAnswerError, find_node, node_names
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.output import write_output
-from linkwright.cli.remote_parameters import TYPE_NAMES, RemoteParameters, parameter_of, print_result
+from linkwright.cli.remote_parameters import TYPE_NAMES, RemoteParameters, parse_parameter, print_result
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_LONGEST_ANSWER = 5.0
-"""Seconds to wait for each node if all are listed; a hanging node must not block the others."""
+_ANSWER_TIMEOUT = 5.0
+"""Seconds to wait for each node when all nodes are listed, so that an unresponsive node does not block the others."""
 _LABELS = {
     1: ("Boolean value is:", "bool_value"),
     2: ("Integer value is:", "integer_value"),
@@ -34,7 +34,7 @@ _LABELS = {
     8: ("Double values are:", "double_array_value"),
     9: ("String values are:", "string_array_value"),
 }
-_USAGE = 2
+_USAGE_ERROR = 2
 
 
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
@@ -88,15 +88,17 @@ def run_list(arguments: argparse.Namespace) -> int:
         if arguments.node_name is not None:
             node = await find_node(session, arguments.node_name, hidden=hidden, timeout=arguments.timeout)
             print(
-                "\n".join(await _listed(RemoteParameters(session, node, arguments.service_timeout), arguments, pattern))
+                "\n".join(
+                    await _list_lines(RemoteParameters(session, node, arguments.service_timeout), arguments, pattern)
+                )
             )
             return 0
         services = dict(session.node.get_service_names_and_types())
         nodes = [
             node for node in dict.fromkeys(node_names(session, hidden=hidden)) if f"{node}/list_parameters" in services
         ]
-        timeout = arguments.service_timeout or _LONGEST_ANSWER
-        requests = [_listed(RemoteParameters(session, node, timeout), arguments, pattern) for node in nodes]
+        timeout = arguments.service_timeout or _ANSWER_TIMEOUT
+        requests = [_list_lines(RemoteParameters(session, node, timeout), arguments, pattern) for node in nodes]
         failed = False
         for node, lines in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
             if isinstance(lines, NoAnswerError):
@@ -111,8 +113,10 @@ def run_list(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job)
 
 
-async def _listed(parameters: RemoteParameters, arguments: argparse.Namespace, wanted: re.Pattern[str]) -> list[str]:
-    names = [name for name in await parameters.names(arguments.param_prefixes) if wanted.search(name)]
+async def _list_lines(
+    parameters: RemoteParameters, arguments: argparse.Namespace, pattern: re.Pattern[str]
+) -> list[str]:
+    names = [name for name in await parameters.names(arguments.param_prefixes) if pattern.search(name)]
     if not arguments.param_type:
         return [f"  {name}" for name in names]
     descriptors = await parameters.descriptors(names)
@@ -133,7 +137,7 @@ def run_get(arguments: argparse.Namespace) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         values = await parameters.values([arguments.parameter_name])
         if not values or values[0].type == 0:
-            await parameters.must_have([arguments.parameter_name])
+            await parameters.check_declared([arguments.parameter_name])
             print("Parameter not set.")
             return 0
         label, field = _LABELS[values[0].type]
@@ -155,7 +159,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
-        await parameters.must_have(arguments.parameter_names)
+        await parameters.check_declared(arguments.parameter_names)
         for descriptor in await parameters.descriptors(arguments.parameter_names):
             print("\n".join(_description(descriptor)))
         return 0
@@ -171,10 +175,10 @@ def _description(descriptor: Any) -> list[str]:
     lines.append("  Constraints:")
     if descriptor.read_only:
         lines.append("    Read only: true")
-    for given in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
-        lines += [f"    Min value: {given.from_value}", f"    Max value: {given.to_value}"]
-        if given.step:
-            lines.append(f"    Step: {given.step}")
+    for value_range in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
+        lines += [f"    Min value: {value_range.from_value}", f"    Max value: {value_range.to_value}"]
+        if value_range.step:
+            lines.append(f"    Step: {value_range.step}")
     if descriptor.additional_constraints:
         lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
     return lines
@@ -195,19 +199,19 @@ def run_set(arguments: argparse.Namespace) -> int:
     if len(words) % 2:
         text = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"
         print(f"linkwright param set: {text}", file=sys.stderr)
-        return _USAGE
-    wanted = [parameter_of(name, value) for name, value in zip(words[::2], words[1::2], strict=True)]
+        return _USAGE_ERROR
+    requested_parameters = [parse_parameter(name, value) for name, value in zip(words[::2], words[1::2], strict=True)]
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         if arguments.atomic:
-            result = await parameters.set_together(wanted)
+            result = await parameters.set_together(requested_parameters)
             print_result(result, "Set parameters atomically successful", "Setting parameters atomically failed")
             return 0 if result.successful else 1
-        results = await parameters.set(wanted)
-        for parameter, result in zip(wanted, results, strict=True):
-            before = f"{parameter.name}: " if len(wanted) > 1 else ""
-            print_result(result, f"{before}Set parameter successful", f"{before}Setting parameter failed")
+        results = await parameters.set(requested_parameters)
+        for parameter, result in zip(requested_parameters, results, strict=True):
+            prefix = f"{parameter.name}: " if len(requested_parameters) > 1 else ""
+            print_result(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
         return 0 if all(result.successful for result in results) else 1
 
     return run_in_graph(arguments, job)
@@ -225,9 +229,9 @@ def run_delete(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
-        await parameters.must_have([arguments.parameter_name])
-        nothing = Parameter(arguments.parameter_name, ParameterType.NOT_SET).to_parameter_msg()
-        (result,) = await parameters.set([nothing])
+        await parameters.check_declared([arguments.parameter_name])
+        unset_parameter = Parameter(arguments.parameter_name, ParameterType.NOT_SET).to_parameter_msg()
+        (result,) = await parameters.set([unset_parameter])
         print_result(result, "Deleted parameter successfully", "Deleting parameter failed")
         return 0 if result.successful else 1
 
@@ -254,8 +258,8 @@ def run_dump(arguments: argparse.Namespace) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         names = await parameters.names()
         values = await parameters.values(names) if names else []
-        plain = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
-        text = parameter_file_text(parameters.node, plain)
+        plain_values = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
+        text = parameter_file_text(parameters.node, plain_values)
         if arguments.output_dir is None:
             print(text)
             return 0
@@ -290,8 +294,8 @@ def run_load(arguments: argparse.Namespace) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         values = rules.for_node(parameters.node)
         if arguments.no_use_wildcard:
-            named = dict(rules).get(parameters.node, {})
-            values = {name: value for name, value in values.items() if name in named}
+            node_values = dict(rules).get(parameters.node, {})
+            values = {name: value for name, value in values.items() if name in node_values}
         if not values:
             nodes = [pattern for pattern, _ in rules]
             message = phrase(
@@ -300,9 +304,9 @@ def run_load(arguments: argparse.Namespace) -> int:
                 nodes=nodes,
             )
             raise LinkwrightError(Diagnostic("CLI426", message))
-        wanted = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
-        results = await parameters.set(wanted)
-        for parameter, result in zip(wanted, results, strict=True):
+        requested_parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+        results = await parameters.set(requested_parameters)
+        for parameter, result in zip(requested_parameters, results, strict=True):
             name = parameter.name
             print_result(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
         return 0 if all(result.successful for result in results) else 1

@@ -23,26 +23,26 @@ def make_parser(
         description: the description of the program in the help.
         configure: declares the arguments.
     """
-    parser = _Parser(prog=program, description=description, formatter_class=_formatter)
+    parser = _Parser(prog=program, description=description, formatter_class=_make_formatter)
     configure(parser)
     _translate_help(parser)
     return parser
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser that suggests similar options and raises the errors of printing help.
+    """An argument parser that suggests similar options, and raises the errors that occur while it prints the help.
 
     argparse ignores errors when it prints the help, as does Python from version 3.15 on.
     """
 
     def error(self, message: str) -> NoReturn:
         """Print a usage error with a suggestion for a misspelt option, and end the process."""
-        meant = None
-        unrecognised = translate_help("unrecognized arguments: %s").removesuffix("%s")
-        if message.startswith(f"{unrecognised}-"):
-            option = message.removeprefix(unrecognised).split()[0].partition("=")[0]
-            meant = did_you_mean(option, _options_below(self))
-        super().error(f"{message}; {meant}" if meant else message)
+        suggestion = None
+        unrecognised_prefix = translate_help("unrecognized arguments: %s").removesuffix("%s")
+        if message.startswith(f"{unrecognised_prefix}-"):
+            option = message.removeprefix(unrecognised_prefix).split()[0].partition("=")[0]
+            suggestion = did_you_mean(option, _long_options(self))
+        super().error(f"{message}; {suggestion}" if suggestion else message)
 
     def _print_message(self, message: str, file: Any = None) -> None:
         if file is sys.stdout:
@@ -51,16 +51,16 @@ class _Parser(argparse.ArgumentParser):
             super()._print_message(message, file)
 
 
-def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
+def _long_options(parser: argparse.ArgumentParser) -> Iterator[str]:
     """Yield the long options of a parser and its subparsers."""
     for action in parser._actions:
         yield from (name for name in action.option_strings if name.startswith("--"))
         if isinstance(action, argparse._SubParsersAction):
-            for below in action.choices.values():
-                yield from _options_below(below)
+            for subparser in action.choices.values():
+                yield from _long_options(subparser)
 
 
-def _formatter(prog: str) -> argparse.HelpFormatter:
+def _make_formatter(prog: str) -> argparse.HelpFormatter:
     """Return a help formatter as wide as the terminal.
 
     To determine the width itself, argparse would import many modules.
@@ -80,10 +80,10 @@ argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports it
 def _translate_help(parser: argparse.ArgumentParser) -> None:
     """Translate the texts of a parser and its subparsers into the user's language."""
     if language() != "en":
-        _translate(parser)
+        _translate_parser(parser)
 
 
-def _translate(parser: argparse.ArgumentParser) -> None:
+def _translate_parser(parser: argparse.ArgumentParser) -> None:
     parser.description = translate_help(parser.description or "")
     for group in parser._action_groups:
         group.title = translate_help(group.title or "")
@@ -93,5 +93,5 @@ def _translate(parser: argparse.ArgumentParser) -> None:
         if isinstance(action, argparse._SubParsersAction):
             for choice in action._choices_actions:
                 choice.help = translate_help(choice.help or "")
-            for below in action.choices.values():
-                _translate(below)
+            for subparser in action.choices.values():
+                _translate_parser(subparser)

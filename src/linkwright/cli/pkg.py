@@ -41,11 +41,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from linkwright.packages.creation.request import BUILD_TYPES, DEFAULT_DESCRIPTION, DEFAULT_LICENSE
 
     verbs = parser.add_subparsers(dest="verb", metavar="COMMAND", required=True, title="commands")
-    create = verbs.add_parser(
+    create_parser = verbs.add_parser(
         "create", help="create a new package", description="create a new package, laid out as ros2 pkg create does"
     )
-    create.add_argument("name", metavar="NAME", help="the package's name: lower-case letters, digits, underscores")
-    create.add_argument(
+    create_parser.add_argument(
+        "name", metavar="NAME", help="the package's name: lower-case letters, digits, underscores"
+    )
+    create_parser.add_argument(
         "--package-format",
         "--package_format",
         type=int,
@@ -53,10 +55,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         choices=(2, 3),
         help="format of package.xml, default 3",
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--description", metavar="TEXT", default=DEFAULT_DESCRIPTION, help="one sentence for package.xml"
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--license",
         metavar="LICENSE",
         action=_ListLicenses,
@@ -64,39 +66,39 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="SPDX identifier or any text; for a known identifier, the file LICENSE is written; '?' lists the "
         "known identifiers",
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--destination-directory",
         metavar="FOLDER",
         default=".",
         help="the folder to create the package in, default the current one",
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--build-type",
         choices=BUILD_TYPES,
         default="ament_cmake",
         help="the build type of the package, default ament_cmake",
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--dependencies", metavar="PACKAGE", nargs="+", default=[], help="packages that this one depends on"
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--maintainer-email",
         metavar="EMAIL",
         help="the maintainer's address, default git's user.email or login@todo.todo",
     )
-    create.add_argument(
+    create_parser.add_argument(
         "--maintainer-name", metavar="TEXT", help="the maintainer's name, default git's user.name or the login name"
     )
-    create.add_argument("--node-name", metavar="NODE", help="create an executable with this name")
-    create.add_argument("--library-name", metavar="LIBRARY", help="create a library with this name")
-    create.set_defaults(answer=_create)
-    _configure_questions(verbs)
+    create_parser.add_argument("--node-name", metavar="NODE", help="create an executable with this name")
+    create_parser.add_argument("--library-name", metavar="LIBRARY", help="create a library with this name")
+    create_parser.set_defaults(answer=_create)
+    _configure_queries(verbs)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the requested subcommand."""
-    answer: Callable[[argparse.Namespace], int] = arguments.answer
-    return answer(arguments)
+    run_verb: Callable[[argparse.Namespace], int] = arguments.answer
+    return run_verb(arguments)
 
 
 def _create(arguments: argparse.Namespace) -> int:
@@ -171,31 +173,31 @@ def _address_part(login: str) -> str:
     return re.sub(r"[^A-Za-z0-9_%+-]+", "-", login).strip("-") or "user"
 
 
-def _configure_questions(verbs: _Subparsers) -> None:
+def _configure_queries(verbs: _Subparsers) -> None:
     """Declare the subcommands that describe packages."""
-    listing = verbs.add_parser("list", help="list all packages", description="list all packages")
-    listing.set_defaults(answer=_list)
+    list_parser = verbs.add_parser("list", help="list all packages", description="list all packages")
+    list_parser.set_defaults(answer=_list)
 
-    prefix = verbs.add_parser(
+    prefix_parser = verbs.add_parser(
         "prefix", help="print the install prefix of a package", description="print the install prefix of a package"
     )
-    prefix.add_argument("package", metavar="PACKAGE", help="the package")
-    prefix.add_argument("--share", action="store_true", help="print its share folder instead of the prefix")
-    prefix.set_defaults(answer=_prefix)
+    prefix_parser.add_argument("package", metavar="PACKAGE", help="the package")
+    prefix_parser.add_argument("--share", action="store_true", help="print its share folder instead of the prefix")
+    prefix_parser.set_defaults(answer=_prefix)
 
-    executables = verbs.add_parser(
+    executables_parser = verbs.add_parser(
         "executables", help="list the executables of packages", description="list the executables of packages"
     )
-    executables.add_argument("package", metavar="PACKAGE", nargs="?", help="the package (default: all packages)")
-    executables.add_argument("--full-path", action="store_true", help="print paths instead of names")
-    executables.set_defaults(answer=_executables)
+    executables_parser.add_argument("package", metavar="PACKAGE", nargs="?", help="the package (default: all packages)")
+    executables_parser.add_argument("--full-path", action="store_true", help="print paths instead of names")
+    executables_parser.set_defaults(answer=_executables)
 
-    xml = verbs.add_parser(
+    xml_parser = verbs.add_parser(
         "xml", help="print the package.xml of a package", description="print the package.xml of a package"
     )
-    xml.add_argument("package", metavar="PACKAGE", help="the package")
-    xml.add_argument("-t", "--tag", metavar="TAG", help="print only the contents of these elements of <package>")
-    xml.set_defaults(answer=_xml)
+    xml_parser.add_argument("package", metavar="PACKAGE", help="the package")
+    xml_parser.add_argument("-t", "--tag", metavar="TAG", help="print only the contents of these elements of <package>")
+    xml_parser.set_defaults(answer=_xml)
 
 
 def _list(_: argparse.Namespace) -> int:
@@ -221,8 +223,8 @@ def _executables(arguments: argparse.Namespace) -> int:
     finder = PackageFinder()
     packages = [arguments.package] if arguments.package else sorted({*finder.packages(), *builtin_packages()})
     for package in packages:
-        for name, place in sorted(executables_of(finder, package).items()):
-            print(place if arguments.full_path else f"{package} {name}")
+        for name, path in sorted(executables_of(finder, package).items()):
+            print(path if arguments.full_path else f"{package} {name}")
     return 0
 
 
@@ -235,8 +237,8 @@ def _xml(arguments: argparse.Namespace) -> int:
     if arguments.tag is None:
         sys.stdout.write(path.read_text(encoding="utf-8"))
         return 0
-    found = [element for element in document.root.elements() if element.tag == arguments.tag]
-    if not found:
+    elements = [element for element in document.root.elements() if element.tag == arguments.tag]
+    if not elements:
         names = sorted({element.tag for element in document.root.elements()})
         raise LinkwrightError(
             Diagnostic(
@@ -247,6 +249,6 @@ def _xml(arguments: argparse.Namespace) -> int:
                 hint=did_you_mean(arguments.tag, names) or phrase("choose from {names}", names=joined(names)),
             )
         )
-    for element in found:
+    for element in elements:
         print(element.text())
     return 0

@@ -16,17 +16,17 @@ class ProgressLine:
 
     def __init__(self) -> None:
         self.shown = sys.stderr.isatty()
-        self._written = False
+        self._has_text = False
 
     def show(self, text: Phrase) -> None:
         """Replace the text of the line."""
         if self.shown:
             sys.stderr.write(f"\r{localized(text)}\x1b[K")
             sys.stderr.flush()
-            self._written = True
+            self._has_text = True
 
     def end(self) -> None:
         """Erase the line."""
-        if self._written:
+        if self._has_text:
             sys.stderr.write("\r\x1b[K")
-            self._written = False
+            self._has_text = False

@@ -29,10 +29,10 @@ _RELIABILITY = ("system_default", "reliable", "best_effort", "unknown", "best_av
 _DURABILITY = ("system_default", "transient_local", "volatile", "unknown", "best_available")
 _LIVELINESS = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
 
-_BURST = 100
-"""The default queue depth of a command."""
-_SINGLE = ("qos_reliability", "qos_durability", "qos_depth", "qos_history", "qos_liveliness")
-_LEASE = "qos_liveliness_lease_duration_seconds"
+_MIN_QUEUE_DEPTH = 100
+"""The minimum queue depth of a subscribing command that does not set a policy."""
+_POLICY_OPTIONS = ("qos_reliability", "qos_durability", "qos_depth", "qos_history", "qos_liveliness")
+_LEASE_OPTION = "qos_liveliness_lease_duration_seconds"
 
 
 def add_publisher_qos_arguments(parser: argparse.ArgumentParser) -> None:
@@ -84,44 +84,45 @@ def profile(arguments: argparse.Namespace) -> QoSProfile:
     from linkwright.graph.qos import profile as qos
     from linkwright.graph.time.values import Duration
 
-    chosen = copy(qos.QoSPresetProfiles.get_from_short_key(arguments.qos_profile))
+    qos_profile = copy(qos.QoSPresetProfiles.get_from_short_key(arguments.qos_profile))
     if arguments.qos_history is not None:
-        chosen.history = qos.HistoryPolicy[arguments.qos_history.upper()]
+        qos_profile.history = qos.HistoryPolicy[arguments.qos_history.upper()]
     if arguments.qos_reliability is not None:
-        chosen.reliability = qos.ReliabilityPolicy[arguments.qos_reliability.upper()]
+        qos_profile.reliability = qos.ReliabilityPolicy[arguments.qos_reliability.upper()]
     if arguments.qos_durability is not None:
-        chosen.durability = qos.DurabilityPolicy[arguments.qos_durability.upper()]
+        qos_profile.durability = qos.DurabilityPolicy[arguments.qos_durability.upper()]
     if arguments.qos_liveliness is not None:
-        chosen.liveliness = qos.LivelinessPolicy[arguments.qos_liveliness.upper()]
-    lease = getattr(arguments, _LEASE)
+        qos_profile.liveliness = qos.LivelinessPolicy[arguments.qos_liveliness.upper()]
+    lease = getattr(arguments, _LEASE_OPTION)
     if lease is not None and lease >= 0:
-        chosen.liveliness_lease_duration = Duration(seconds=lease)
+        qos_profile.liveliness_lease_duration = Duration(seconds=lease)
     if arguments.qos_depth:
-        chosen.depth = arguments.qos_depth
-    elif chosen.durability is qos.DurabilityPolicy.TRANSIENT_LOCAL and chosen.depth == 0:
-        chosen.depth = 1
-    return chosen
+        qos_profile.depth = arguments.qos_depth
+    elif qos_profile.durability is qos.DurabilityPolicy.TRANSIENT_LOCAL and qos_profile.depth == 0:
+        qos_profile.depth = 1
+    return qos_profile
 
 
 def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
     """Return the QoS profile of a subscription that is compatible with the topic's publishers.
 
-    If the options set a policy, the profile is that of the options. Otherwise each policy is the strictest that all
-    publishers offer: as in ros2cli, the subscription is reliable and transient local if all publishers are, so that a
-    message that was published once is shown. The default queue is longer than ros2's, so that no message of a burst is
-    dropped.
+    If the options set a policy, the result is the profile of the options. If they set none, each policy is the
+    strictest that all publishers offer. As in ros2cli, the subscription is reliable and transient local if all
+    publishers are, and then also receives a message that was published once. The default queue is longer than in
+    ros2, so that bursts of messages are not dropped.
     """
     from linkwright.graph.qos.compatibility import fit
 
-    chosen = profile(arguments)
-    if any(getattr(arguments, name) is not None for name in (*_SINGLE, _LEASE)):
-        return chosen
-    chosen.depth = max(chosen.depth, _BURST)
-    fitting = fit(chosen, [info.qos_profile for info in node.get_publishers_info_by_topic(topic)])
-    for offered, taken in fitting.mixed:
+    requested_profile = profile(arguments)
+    if any(getattr(arguments, name) is not None for name in (*_POLICY_OPTIONS, _LEASE_OPTION)):
+        return requested_profile
+    requested_profile.depth = max(requested_profile.depth, _MIN_QUEUE_DEPTH)
+    fitted = fit(requested_profile, [info.qos_profile for info in node.get_publishers_info_by_topic(topic)])
+    for offered_policies, chosen_policy in fitted.mixed:
         print(
-            f"Some, but not all, publishers are offering {offered}. Falling back to {taken} as it will connect to all "
+            f"Some, but not all, publishers are offering {offered_policies}. Falling back to "
+            f"{chosen_policy} as it will connect to all "
             "publishers",
             file=sys.stderr,
         )
-    return fitting.profile
+    return fitted.profile

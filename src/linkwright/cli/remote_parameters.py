@@ -44,7 +44,7 @@ class RemoteParameters:
 
     @classmethod
     async def of(cls, session: Session, arguments: argparse.Namespace) -> RemoteParameters:
-        """Create the access to the node that the command line names.
+        """Return the access to the node that the command line names.
 
         Raises:
             LinkwrightError: CLI423, the node is not running.
@@ -87,21 +87,22 @@ class RemoteParameters:
         response = await self._call("set_parameters_atomically", parameters=list(parameters))
         return response.result
 
-    async def must_have(self, names: Sequence[str]) -> None:
+    async def check_declared(self, names: Sequence[str]) -> None:
         """Check that parameters are declared.
 
         Raises:
             LinkwrightError: CLI424, for each parameter that is not declared.
         """
-        there = await self.names()
+        declared_names = await self.names()
         missing = [
             Diagnostic(
                 "CLI424",
                 phrase("Parameter not set: node '{node}' has no parameter '{name}'", node=self.node, name=name),
-                hint=did_you_mean(name, there) or phrase("`linkwright param list {node}` lists them", node=self.node),
+                hint=did_you_mean(name, declared_names)
+                or phrase(("`linkwright param list {node}` lists its parameters"), node=self.node),
             )
             for name in names
-            if name not in there
+            if name not in declared_names
         ]
         if missing:
             raise LinkwrightError(*missing)
@@ -115,7 +116,7 @@ class RemoteParameters:
         return await call(self._session, name, f"{self.node}/{service}", request, timeout=self._timeout)
 
 
-def parameter_of(name: str, text: str) -> Any:
+def parse_parameter(name: str, text: str) -> Any:
     """Return a rcl_interfaces/msg/Parameter whose value is parsed from a text.
 
     As in ros2, the text is read as YAML. A text that is not a boolean, a number or a list of one type remains a string.
@@ -131,18 +132,18 @@ def parameter_of(name: str, text: str) -> Any:
     if isinstance(value, (bool, int, float)):
         return Parameter(name, value=value).to_parameter_msg()
     if isinstance(value, list):
-        for kind, element in (
+        for array_type, element_type in (
             (ParameterType.BOOL_ARRAY, bool),
             (ParameterType.INTEGER_ARRAY, int),
             (ParameterType.DOUBLE_ARRAY, float),
             (ParameterType.STRING_ARRAY, str),
         ):
-            if all(isinstance(item, element) for item in value):
-                return Parameter(name, kind, value).to_parameter_msg()
+            if all(isinstance(item, element_type) for item in value):
+                return Parameter(name, array_type, value).to_parameter_msg()
     return Parameter(name, ParameterType.STRING, text).to_parameter_msg()
 
 
-def print_result(result: Any, good: str, bad: str) -> None:
+def print_result(result: Any, success_text: str, failure_text: str) -> None:
     """Print a message for success or failure, followed by the reason if the node gave one."""
-    text = good if result.successful else bad
+    text = success_text if result.successful else failure_text
     print(f"{text}: {result.reason}" if result.reason else text, file=sys.stdout if result.successful else sys.stderr)

@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer
     from linkwright.packages import PackageFinder
 
-    words = list(arguments.words)
+    program_arguments = list(arguments.words)
     if is_viewer(arguments.package, arguments.executable):
         options = LaunchOptions(
             arguments.host,
@@ -44,12 +44,12 @@ def run(arguments: argparse.Namespace) -> int:
             foxglove=arguments.foxglove,
             history=arguments.history,
         )
-        return run_viewer(words, options)
+        return run_viewer(program_arguments, options)
     standins.activate()
     program = find_program(PackageFinder(), arguments.package, arguments.executable)
     prefix = shlex.split(arguments.prefix) if arguments.prefix else []
     if program.is_ours and not prefix:
         from linkwright.nodes.process import main
 
-        return main(arguments.package, arguments.executable, words)
-    return become([*prefix, *program.command, *words], program.environment)
+        return main(arguments.package, arguments.executable, program_arguments)
+    return become([*prefix, *program.command, *program_arguments], program.environment)

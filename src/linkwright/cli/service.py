@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_AT_ONCE = 0.2
-"""Seconds to wait for a service before the user is informed."""
+_QUIET_WAIT = 0.2
+"""Seconds to wait for a service before the command prints that it is waiting."""
 
 
 def add_service_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,8 +41,8 @@ def add_service_arguments(parser: argparse.ArgumentParser) -> None:
 _SERVICES = Kind(
     lambda session: session.node.get_service_names_and_types(),
     "CLI427",
-    lambda given: phrase("Unknown service '{service_name}'", service_name=given),
-    phrase("`linkwright service list` lists them"),
+    lambda service_name: phrase("Unknown service '{service_name}'", service_name=service_name),
+    phrase("`linkwright service list` lists the services"),
 )
 
 
@@ -62,7 +62,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         print_names_and_types(services, arguments)
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_find(parser: argparse.ArgumentParser) -> None:
@@ -94,7 +94,7 @@ def run_info(arguments: argparse.Namespace) -> int:
         print(f"Services count: {session.node.count_services(name)}")
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
@@ -128,15 +128,15 @@ def run_call(arguments: argparse.Namespace) -> int:
     from linkwright.messages import get_service
 
     name = absolute(arguments.service_name)
-    kind = get_service(arguments.service_type)
+    service_class = get_service(arguments.service_type)
     text = read_values(arguments)
-    request = kind.Request()
+    request = service_class.Request()
     fill(request, parse_values(text)[0], text)
 
     async def job(session: Session) -> int:
-        client = session.node.create_client(kind, name)
-        if not await session.wait_until(client.service_is_ready, _AT_ONCE):
-            _check_type(session, name, kind.TYPE_NAME)
+        client = session.node.create_client(service_class, name)
+        if not await session.wait_until(client.service_is_ready, _QUIET_WAIT):
+            _check_type(session, name, service_class.TYPE_NAME)
             print("waiting for service to become available...")
             if not await session.wait_until(client.service_is_ready, arguments.timeout):
                 message = phrase(
@@ -146,7 +146,7 @@ def run_call(arguments: argparse.Namespace) -> int:
         loop = asyncio.get_running_loop()
         while True:
             print(f"requester: making request: {request!r}\n")
-            began = loop.time()
+            start_time = loop.time()
             response = await session.wait_for_result(client.call_async(request), arguments.timeout)
             if response is None:
                 raise LinkwrightError(
@@ -160,12 +160,12 @@ def run_call(arguments: argparse.Namespace) -> int:
             print(f"response:\n{response!r}\n")
             if arguments.rate is None:
                 return 0
-            await asyncio.sleep(max(0.0, began + 1.0 / arguments.rate - loop.time()))
+            await asyncio.sleep(max(0.0, start_time + 1.0 / arguments.rate - loop.time()))
 
     return run_in_graph(arguments, job)
 
 
-def _check_type(session: Session, name: str, asked: str) -> None:
+def _check_type(session: Session, name: str, requested_type: str) -> None:
     """Check that a service, if it exists, has the type that the user gave.
 
     Without this check, the command would wait for a service that never appears.
@@ -181,9 +181,9 @@ def _check_type(session: Session, name: str, asked: str) -> None:
         if endpoint.kind is EndpointKind.SERVICE and endpoint.name == name
     ]
     types = sorted({server.type_name for server in servers})
-    if types and asked not in types:
+    if types and requested_type not in types:
         message = phrase(
-            "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=asked
+            "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=requested_type
         )
         raise LinkwrightError(
             Diagnostic("CLI428", message, hint=phrase("call the service with the type {types}", types=types[0]))
@@ -206,13 +206,13 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
 def run_echo(arguments: argparse.Namespace) -> int:
     """Print service events until the user interrupts the command, as ros2 does."""
     name = absolute(arguments.service_name)
-    form = EchoFormat.of(arguments)
+    echo_format = EchoFormat.of(arguments)
 
     async def job(session: Session) -> int:
         from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
         from linkwright.messages import get_service
 
-        kind = get_service(arguments.service_type or _SERVICES.types_of(session, arguments.service_name)[0])
+        service_class = get_service(arguments.service_type or _SERVICES.types_of(session, arguments.service_name)[0])
         topic = name + EVENT_TOPIC_SUFFIX
         if not session.node.get_publishers_info_by_topic(topic):
             print(
@@ -221,10 +221,10 @@ def run_echo(arguments: argparse.Namespace) -> int:
             )
 
         def show(event: Any) -> None:
-            sys.stdout.write(_event_text(event, form))
+            sys.stdout.write(_event_text(event, echo_format))
 
         profile = fitting_profile(session.node, topic, arguments)
-        session.node.create_subscription(kind.Event, topic, session.receiver(show), profile)
+        session.node.create_subscription(service_class.Event, topic, session.receiver(show), profile)
         return await session.finished() or 0
 
     return run_in_graph(arguments, job)
@@ -234,9 +234,9 @@ def _event_text(event: Any, form: EchoFormat) -> str:
     """Format a service event as YAML with the name of the event's type, as ros2 does."""
     from linkwright.graph.endpoints.service import EventType
 
-    kind = event.info.event_type
-    named = EventType(kind).name if kind in iter(EventType) else str(kind)
-    return form.text(event).replace(f"event_type: {kind}\n", f"event_type: {named}\n", 1)
+    event_type = event.info.event_type
+    event_name = EventType(event_type).name if event_type in iter(EventType) else str(event_type)
+    return form.text(event).replace(f"event_type: {event_type}\n", f"event_type: {event_name}\n", 1)
 
 
 VERBS = {

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_HIDDEN = "_ros2cli"
-_LONGEST_JOINING = 10.0
-_LONGEST_DISCOVERY = 3.0
-_POLL = 0.01
+_NODE_NAME_PREFIX = "_ros2cli"
+_JOIN_TIMEOUT = 10.0
+_DISCOVERY_TIMEOUT = 3.0
+_POLL_INTERVAL = 0.01
 
 
 def add_session_arguments(parser: argparse.ArgumentParser) -> None:
@@ -137,8 +137,8 @@ class Session:
 
     async def finished(self, timeout: float | None = None) -> int | None:
         """Wait for the command to end, and return its exit status, or None after `timeout` seconds."""
-        done, _ = await asyncio.wait([self._outcome], timeout=timeout)
-        return self._outcome.result() if done else None
+        done_futures, _ = await asyncio.wait([self._outcome], timeout=timeout)
+        return self._outcome.result() if done_futures else None
 
     async def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
         """Poll a condition until it is true.
@@ -147,11 +147,11 @@ class Session:
             True if the condition became true; False if the command ended or `timeout` seconds passed before that.
         """
         loop = asyncio.get_running_loop()
-        end = None if timeout is None else loop.time() + timeout
+        deadline = None if timeout is None else loop.time() + timeout
         while not condition():
-            if self._outcome.done() or (end is not None and loop.time() >= end):
+            if self._outcome.done() or (deadline is not None and loop.time() >= deadline):
                 return False
-            await asyncio.sleep(_POLL)
+            await asyncio.sleep(_POLL_INTERVAL)
         return True
 
     async def wait_for_result(self, future: Future[T], timeout: float | None = None) -> T | None:
@@ -160,14 +160,14 @@ class Session:
         The result is None if the command ends or `timeout` seconds pass before the future is done.
         """
         loop = asyncio.get_running_loop()
-        ended = asyncio.Event()
-        future.add_waiter(lambda: loop.call_soon_threadsafe(ended.set))
-        waiting = asyncio.ensure_future(ended.wait())
+        done_event = asyncio.Event()
+        future.add_waiter(lambda: loop.call_soon_threadsafe(done_event.set))
+        wait_task = asyncio.ensure_future(done_event.wait())
         try:
-            pending: tuple[asyncio.Future[Any], ...] = (waiting, self._outcome)
+            pending: tuple[asyncio.Future[Any], ...] = (wait_task, self._outcome)
             await asyncio.wait(pending, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            waiting.cancel()
+            wait_task.cancel()
         return future.result() if future.done() else None
 
 
@@ -178,7 +178,7 @@ async def graph_session(
     spin_time: float | None = None,
     use_sim_time: bool = False,
     remappings: Sequence[tuple[str, str]] = (),
-    only_looks: bool = False,
+    read_only: bool = False,
 ) -> AsyncIterator[Session]:
     """Join the graph with a hidden node for the duration of the context.
 
@@ -187,7 +187,7 @@ async def graph_session(
         spin_time: the time to wait for discovery, in seconds; None to wait until the other participants are discovered.
         use_sim_time: whether the node uses ``/clock``.
         remappings: rules ``(from, to)`` for the names that the node uses.
-        only_looks: whether the command only reads the graph, in which case its node is invisible to other nodes.
+        read_only: whether the command only reads the graph, in which case its node is invisible to other nodes.
 
     Raises:
         LinkwrightError: see `join_others`.
@@ -195,12 +195,12 @@ async def graph_session(
     graph = open_graph()
     try:
         node = graph.create_node(
-            node_name or f"{_HIDDEN}_{os.getpid()}",
+            node_name or f"{_NODE_NAME_PREFIX}_{os.getpid()}",
             parameters={"use_sim_time": True} if use_sim_time else None,
             remappings=remappings,
             start_parameter_services=False,
         )
-        await join_others(graph, spin_time, only_looks=only_looks)
+        await join_others(graph, spin_time, read_only=read_only)
         yield Session(graph, node)
     finally:
         await graph.close()
@@ -212,7 +212,7 @@ def run_in_graph(
     *,
     node_name: str | None = None,
     remappings: Sequence[tuple[str, str]] = (),
-    only_looks: bool = False,
+    read_only: bool = False,
     signals: SignalWatch | None = None,
 ) -> int:
     """Run a command's coroutine in the graph, and return its result as the exit status.
@@ -222,7 +222,7 @@ def run_in_graph(
         job: the coroutine function of the command.
         node_name: see `graph_session`.
         remappings: see `graph_session`.
-        only_looks: see `graph_session`.
+        read_only: see `graph_session`.
         signals: the signal handler, which finishes the session on the first signal; None to interrupt the command
             instead.
     """
@@ -233,7 +233,7 @@ def run_in_graph(
             spin_time=getattr(arguments, "spin_time", None),
             use_sim_time=getattr(arguments, "use_sim_time", False),
             remappings=remappings,
-            only_looks=only_looks,
+            read_only=read_only,
         ) as session:
             if signals is not None:
                 signals.session = session
@@ -244,7 +244,7 @@ def run_in_graph(
     if signals is not None:
         with signals:
             return signals.run(main)
-    with SigtermExits():
+    with ExitOnSigterm():
         return run_coroutine(main, raise_interrupts)
 
 
@@ -255,7 +255,7 @@ def open_graph() -> Graph:
     return Graph()
 
 
-async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool = False) -> None:
+async def join_others(graph: Graph, spin_time: float | None, *, read_only: bool = False) -> None:
     """Join the graph with other processes, and wait until their participants are discovered.
 
     Raises:
@@ -266,7 +266,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
 
     if available():
         check_settings()  # report malformed settings as errors; joining would only log them
-    transport = join(graph, only_looks=only_looks, must_join=True) if available() else None
+    transport = join(graph, only_looks=read_only, must_join=True) if available() else None
     if transport is None:
         raise LinkwrightError(
             Diagnostic(
@@ -276,28 +276,28 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )
-    while not await asyncio.to_thread(transport.wait_until_ready, _LONGEST_JOINING) and transport.waits:
+    while not await asyncio.to_thread(transport.wait_until_ready, _JOIN_TIMEOUT) and transport.waits:
         pass  # the transport logs what it is waiting for
     if transport.problem is not None:
         raise transport.problem
     if spin_time is not None:
         await asyncio.sleep(spin_time)
     else:
-        await asyncio.to_thread(transport.wait_for_discovery, _LONGEST_DISCOVERY)
+        await asyncio.to_thread(transport.wait_for_discovery, _DISCOVERY_TIMEOUT)
 
 
-class SigtermExits:
+class ExitOnSigterm:
     """A context in which SIGTERM ends the process as Ctrl-C does, so that it leaves the graph."""
 
     def __enter__(self) -> None:
-        self._before: Any = None
+        self._previous_handler: Any = None
         if threading.current_thread() is threading.main_thread():
-            self._before = signal.signal(signal.SIGTERM, self._end)
+            self._previous_handler = signal.signal(signal.SIGTERM, self._end)
 
     def __exit__(self, *_: object) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGTERM, self._before)
+        if self._previous_handler is not None:
+            signal.signal(signal.SIGTERM, self._previous_handler)
 
     @staticmethod
-    def _end(number: int, _frame: FrameType | None) -> None:
-        raise SystemExit(128 + number)
+    def _end(signal_number: int, _frame: FrameType | None) -> None:
+        raise SystemExit(128 + signal_number)

@@ -21,11 +21,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Run a shell, or a command in a shell, and return its exit status."""
     from linkwright.cli.completion.scripts import shell_script
     from linkwright.shell import run_shell
-    from linkwright.shell.instead import INSTEAD
+    from linkwright.shell.instead import HINTS
     from linkwright.shell.session import MARK
 
-    words = arguments.command
+    command = arguments.command
     return run_shell(
-        words[1:] if words[:1] == ["--"] else words,
-        additions=lambda kind: shell_script(kind, sys.executable, MARK, list(INSTEAD)),
+        command[1:] if command[:1] == ["--"] else command,
+        additions=lambda kind: shell_script(kind, sys.executable, MARK, list(HINTS)),
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.simulation_options import (
-    add_place_options,
+    add_pose_options,
     add_simulation_options,
     load_model,
     positive,
@@ -27,7 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "robot", metavar="ROBOT", nargs="?", help="the URDF, xacro or SDF file of a robot or model to add"
     )
     add_values(parser, values_help="values for the robot's <xacro:arg>")
-    add_place_options(parser)
+    add_pose_options(parser)
     add_simulation_options(parser)
     parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of noise (default: 0)")

@@ -30,7 +30,7 @@ def add_simulation_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--rate",
         metavar="FACTOR",
-        type=_rate,
+        type=_parse_rate,
         default=0.0,
         help="simulated seconds per real second, or max (default: the world's)",
     )
@@ -56,7 +56,7 @@ def positive(text: str) -> float:
     return value
 
 
-def _rate(text: str) -> float:
+def _parse_rate(text: str) -> float:
     if text == "max":
         return -1.0
     try:
@@ -68,7 +68,7 @@ def _rate(text: str) -> float:
     return value
 
 
-def add_place_options(parser: argparse.ArgumentParser) -> None:
+def add_pose_options(parser: argparse.ArgumentParser) -> None:
     """Declare the options for the initial pose of a robot."""
     group = parser.add_argument_group(title="initial pose")
     group.add_argument("-x", metavar="M", type=float, default=0.0, help="the initial x of the robot (m)")
@@ -120,7 +120,7 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
 
         converted = as_sdf(path, finder, arguments=dict(values), folder=Path.cwd())
         if converted.sdf is None or not converted.sdf.models:
-            print_diagnostics(converted.diagnostics or [_no_model(path)], sys.stderr)
+            print_diagnostics(converted.diagnostics or [_no_model_error(path)], sys.stderr)
             return None
         if converted.diagnostics:
             print_diagnostics(converted.diagnostics, sys.stderr)
@@ -142,18 +142,18 @@ def _with_absolute_uris(model: Model, folder: Path, finder: PackageFinder) -> Mo
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import Missing, ResourceFinder
 
-    here, beside = ResourceFinder(PackageFinder(start=[Path.cwd()])), ResourceFinder(finder)
+    folder_finder, package_finder = ResourceFinder(PackageFinder(start=[Path.cwd()])), ResourceFinder(finder)
 
-    def resolved(written: str, written_in: Path) -> str:
-        if not written or not isinstance(here.file(written, Path.cwd()), Missing):
-            return written
-        found = beside.file(written, written_in)
-        return written if isinstance(found, Missing) else found.absolute().as_uri()
+    def resolved(uri: str, uri_folder: Path) -> str:
+        if not uri or not isinstance(folder_finder.file(uri, Path.cwd()), Missing):
+            return uri
+        path = package_finder.file(uri, uri_folder)
+        return uri if isinstance(path, Missing) else path.absolute().as_uri()
 
-    changed: Model = with_changed_uris(model, folder, resolved)
-    return changed
+    changed_model: Model = with_changed_uris(model, folder, resolved)
+    return changed_model
 
 
-def _no_model(path: Path) -> Diagnostic:
-    message = phrase("there is no model in '{path}'", path=str(path))
-    return Diagnostic("CLI331", message, hint=phrase("a robot must be URDF, xacro, or SDF with a <model>"))
+def _no_model_error(path: Path) -> Diagnostic:
+    message = phrase("the file '{path}' contains no model", path=str(path))
+    return Diagnostic("CLI331", message, hint=phrase("use a URDF or xacro file, or an SDF file with a <model>"))

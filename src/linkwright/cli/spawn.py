@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.calls import NoAnswerError, call
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.simulation_options import add_place_options, load_model
+from linkwright.cli.simulation_options import add_pose_options, load_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.process.assignments import parse_assignments
 
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--namespace", metavar="NAMESPACE", default="", help="the namespace of the ROS names that its plugins use"
     )
-    add_place_options(parser)
+    add_pose_options(parser)
     add_session_arguments(parser)
 
 

@@ -61,33 +61,33 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the sweep; return 1 if a run failed, 130 if the sweep was interrupted."""
     from linkwright.sweep.plan import plan_runs, with_values
-    from linkwright.sweep.running import prepare
+    from linkwright.sweep.running import load_into_process
     from linkwright.sweep.sweep import Sweep
     from linkwright.sweep.table import check_format
 
     path = Path(arguments.file).absolute()
     table_path = Path(arguments.out or f"{path.stem}.csv").absolute()
     check_format(table_path)
-    began_in = Path.cwd()
-    scenario = with_values(prepare(path), parse_assignments(arguments.values), arguments.seeds)
+    start_folder = Path.cwd()
+    scenario = with_values(load_into_process(path), parse_assignments(arguments.values), arguments.seeds)
     if arguments.rerun is not None:
         return _rerun(scenario, arguments.rerun)
-    os.chdir(began_in)  # `prepare` changed to the folder of the scenario
-    words = ["linkwright", "sweep", arguments.file, *arguments.values]
+    os.chdir(start_folder)  # `prepare` changed to the folder of the scenario
+    command = ["linkwright", "sweep", arguments.file, *arguments.values]
     if arguments.seeds is not None:
-        words += ["--seeds", str(arguments.seeds)]
-    began = time.monotonic()
-    sweep = Sweep(scenario, table_path, words)
+        command += ["--seeds", str(arguments.seeds)]
+    start_time = time.monotonic()
+    sweep = Sweep(scenario, table_path, command)
     progress = _Progress()
     table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.show)
     progress.end()
     missing = len(plan_runs(scenario)) - len(table)
-    _print_summary(table, time.monotonic() - began, progress.made)
+    _print_summary(table, time.monotonic() - start_time, progress.made)
     for written in (sweep.table, sweep.page):
         print(localized(phrase("Created file {file}", file=display_path(written))))
     if missing:
-        left = counted("{count} run is left", "{count} runs are left", missing)
-        print_message(localized(phrase("{left}; `--resume` continues the sweep", left=left)))
+        missing_runs = counted("{count} run is left", "{count} runs are left", missing)
+        print_message(localized(phrase("{left}; `--resume` continues the sweep", left=missing_runs)))
         return INTERRUPTED
     return FINDINGS if table.failed else FINE
 
@@ -106,18 +106,18 @@ def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
 def _rerun(scenario: Scenario, row: int) -> int:
     """Run one row of the sweep in this process, and print its parameters and results, or its error."""
     from linkwright.sweep.plan import plan_runs
-    from linkwright.sweep.running import results_of
+    from linkwright.sweep.running import run_scenario
 
     runs = plan_runs(scenario)
     if row > len(runs):
         message = phrase("there is no row {row}", row=row)
         hint = phrase("the sweep has rows 1 to {count}", count=len(runs))
         raise LinkwrightError(Diagnostic("SWEEP112", message, hint=hint))
-    chosen = runs[row - 1]
-    for name, value in {**chosen.parameters, "seed": chosen.seed}.items():
+    scenario_run = runs[row - 1]
+    for name, value in {**scenario_run.parameters, "seed": scenario_run.seed}.items():
         print(f"{name}: {value}", flush=True)
     try:
-        results = results_of(scenario, chosen)
+        results = run_scenario(scenario, scenario_run)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
         traceback.print_exception(error)
         return FINDINGS
@@ -133,23 +133,23 @@ class _Progress:
         self.made = 0
         self._line = ProgressLine()
 
-    def show(self, done: int, count: int, failed: int) -> None:
+    def show(self, done_count: int, count: int, failed: int) -> None:
         """Count one more run, and show how many runs have finished and how many of these failed."""
         self.made += 1
-        self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed))
+        self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done_count, count=count, failed=failed))
 
     def end(self) -> None:
         """End the progress line."""
         self._line.end()
 
 
-def _print_summary(table: Table, seconds: float, made: int) -> None:
+def _print_summary(table: Table, seconds: float, finished_runs: int) -> None:
     """Print the number of runs, the duration and the number of failures to standard error."""
     summary = phrase(
         "{runs} in {seconds} s, {rate} per second, {failed} failed",
-        runs=counted("{count} run", "{count} runs", made),
+        runs=counted("{count} run", "{count} runs", finished_runs),
         seconds=f"{seconds:.1f}",
-        rate=f"{made / max(seconds, 1e-9):.1f}",
+        rate=f"{finished_runs / max(seconds, 1e-9):.1f}",
         failed=len(table.failed),
     )
     print_message(localized(summary))

@@ -7,7 +7,7 @@ import os
 
 from linkwright.cli.becoming import become
 
-_PROGRAM = "from launch_testing.launch_test import main; main()"
+_LAUNCH_TEST_CODE = "from launch_testing.launch_test import main; main()"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -40,5 +40,5 @@ def run(arguments: argparse.Namespace) -> int:
     for name in ("junit_xml", "package_name"):
         if getattr(arguments, name) is not None:
             options += [f"--{name.replace('_', '-')}", getattr(arguments, name)]
-    command = process.python_command(["-c", _PROGRAM, arguments.file, *arguments.words, *options])
+    command = process.python_command(["-c", _LAUNCH_TEST_CODE, arguments.file, *arguments.words, *options])
     return become(command, process.environment(workspace_environment(PackageFinder(), os.environ)))

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
     from linkwright.messages import Message
 
-_NAME = "<values>"
-_FAULTS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
-"""The exceptions of an assignment of an invalid value to a field, as in rosidl's generated classes."""
+_SOURCE_NAME = "<values>"
+_ASSIGNMENT_ERRORS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
+"""The exceptions that a field raises when an invalid value is assigned, as in rosidl's generated classes."""
 
 _AUTOMATIC = ("auto", "now")
 
@@ -80,13 +80,13 @@ def parse_values(text: str) -> list[dict[str, Any]]:
     """
     import yaml
 
-    source = SourceText(_NAME, text)
+    source = SourceText(_SOURCE_NAME, text)
     try:
         documents = list(yaml.safe_load_all(text))
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         span = None if mark is None else source.span(mark.index)
-        what = error.problem or error.context
+        problem = error.problem or error.context
         notes = (Note(foreign(error.context)),) if error.context and error.problem else ()
         hint = phrase(
             "quote the values for the shell, and write a space after each colon and comma: \"{a: 1, b: 'x'}\""
@@ -94,7 +94,7 @@ def parse_values(text: str) -> list[dict[str, Any]]:
         raise LinkwrightError(
             Diagnostic(
                 "CLI402",
-                phrase("the values are not YAML: {what}", what=foreign(what)),
+                phrase("the values are not YAML: {what}", what=foreign(problem)),
                 span,
                 notes=notes,
                 hint=hint,
@@ -108,11 +108,11 @@ def parse_values(text: str) -> list[dict[str, Any]]:
     documents = [document for document in documents if document is not None] or [{}]
     for document in documents:
         if not isinstance(document, dict):
-            raise LinkwrightError(_no_mapping(document, source))
+            raise LinkwrightError(_not_a_mapping(document, source))
     return documents
 
 
-def _no_mapping(document: object, source: SourceText) -> Diagnostic:
+def _not_a_mapping(document: object, source: SourceText) -> Diagnostic:
     hint = phrase("write 'field: value', or '{field: value, other: value}'")
     if isinstance(document, str) and ":" in document:
         name, _, value = document.partition(":")
@@ -133,10 +133,10 @@ def check_values(message: Message, values: Mapping[str, Any], text: str = "") ->
     Raises:
         LinkwrightError: CLI405, there is no such field; CLI406, a value is invalid for its field.
     """
-    places = _Places(text)
-    faults = list(_faults(message, values, (), places))
-    if faults:
-        raise LinkwrightError(*faults)
+    locations = _Locations(text)
+    diagnostics = list(_find_problems(message, values, (), locations))
+    if diagnostics:
+        raise LinkwrightError(*diagnostics)
 
 
 def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
@@ -151,8 +151,8 @@ def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Ca
     from linkwright.messages import set_fields
 
     check_values(message, values, text)
-    plain, setters = _split(message, dict(values))
-    set_fields(message, plain)
+    plain_values, setters = _split(message, dict(values))
+    set_fields(message, plain_values)
     return setters
 
 
@@ -163,31 +163,31 @@ def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[C
         The values without placeholders, and a function for each placeholder that sets its stamp.
     """
     setters: list[Callable[[Any], None]] = []
-    plain: dict[str, Any] = {}
+    plain_values: dict[str, Any] = {}
     for name, value in values.items():
         field = getattr(message, name)
-        kind = getattr(field, "TYPE_NAME", "")
-        if value == "auto" and kind == "std_msgs/msg/Header":
+        type_name = getattr(field, "TYPE_NAME", "")
+        if value == "auto" and type_name == "std_msgs/msg/Header":
             setters.append(_setter(field, "stamp"))
-        elif value == "now" and kind == "builtin_interfaces/msg/Time":
+        elif value == "now" and type_name == "builtin_interfaces/msg/Time":
             setters.append(_setter(message, name))
-        elif isinstance(value, dict) and kind:
-            plain[name], below = _split(field, value)
-            setters += below
+        elif isinstance(value, dict) and type_name:
+            plain_values[name], field_setters = _split(field, value)
+            setters += field_setters
         else:
-            plain[name] = value
-    return plain, setters
+            plain_values[name] = value
+    return plain_values, setters
 
 
 def _setter(owner: Any, name: str) -> Callable[[Any], None]:
     return lambda stamp: setattr(owner, name, stamp)
 
 
-class _Places:
+class _Locations:
     """Maps the path of a value, which consists of names and indices, to its location in the YAML."""
 
     def __init__(self, text: str) -> None:
-        self.source = SourceText(_NAME, text)
+        self.source = SourceText(_SOURCE_NAME, text)
         self._root: yaml.Node | None = None
         if text:
             import yaml
@@ -201,67 +201,67 @@ class _Places:
         """Return the location of a value or of its key, or None if it is unknown."""
         import yaml
 
-        node, at = self._root, None
+        node, key_node = self._root, None
         for step in path:
-            at = None
+            key_node = None
             if isinstance(node, yaml.MappingNode):
                 for name, value in node.value:
                     if name.value == str(step):
-                        at, node = name, value
+                        key_node, node = name, value
             elif isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
-                at = node = node.value[step]
-            if at is None:
+                key_node = node = node.value[step]
+            if key_node is None:
                 return None
-        found = at if key else node
-        if found is None:
+        target = key_node if key else node
+        if target is None:
             return None
-        return self.source.span(found.start_mark.index, found.end_mark.index)
+        return self.source.span(target.start_mark.index, target.end_mark.index)
 
 
-def _faults(
-    message: Any, values: Mapping[str, Any], path: tuple[str | int, ...], places: _Places
+def _find_problems(
+    message: Any, values: Mapping[str, Any], path: tuple[str | int, ...], locations: _Locations
 ) -> Iterator[Diagnostic]:
     from linkwright.messages import set_fields
 
     fields = message.get_fields_and_field_types()
     for name, value in values.items():
-        here = (*path, name)
+        field_path = (*path, name)
         if name not in fields:
             yield Diagnostic(
                 "CLI405",
                 phrase("{type_name} has no field '{name}'", type_name=message.TYPE_NAME, name=name),
-                places.span(here, key=True),
+                locations.span(field_path, key=True),
                 hint=did_you_mean(str(name), fields) or phrase("its fields are {fields}", fields=", ".join(fields))
                 if fields
                 else None,
-                source=places.source,
+                source=locations.source,
             )
             continue
         field = getattr(message, name)
         if hasattr(field, "get_fields_and_field_types") and isinstance(value, dict):
-            yield from _faults(field, value, here, places)
+            yield from _find_problems(field, value, field_path, locations)
             continue
         if hasattr(field, "get_fields_and_field_types") and value in _AUTOMATIC:
             continue
         try:
             set_fields(type(message)(), {name: value})
-        except (*_FAULTS, LinkwrightError) as error:
+        except (*_ASSIGNMENT_ERRORS, LinkwrightError) as error:
             yield Diagnostic(
                 "CLI406",
                 phrase(
                     "field '{here}' is of type {fields} and cannot be {value}",
-                    here=".".join(map(str, here)),
+                    here=".".join(map(str, field_path)),
                     fields=fields[name],
-                    value=_shown(value),
+                    value=_shorten(value),
                 ),
-                places.span(here),
+                locations.span(field_path),
                 notes=(Note(foreign(error)),) if str(error) else (),
                 hint=_type_hint(fields[name], value),
-                source=places.source,
+                source=locations.source,
             )
 
 
-def _shown(value: object) -> str:
+def _shorten(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
 

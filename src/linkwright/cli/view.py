@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
+from linkwright.cli.model_arguments import add_second_model, names_file, requested_pair
 from linkwright.hosting.last_minutes import DEFAULT_HISTORY
 from linkwright.process.assignments import parse_assignments
 
@@ -64,10 +64,10 @@ def size(text: str) -> int:
     Raises:
         argparse.ArgumentTypeError: the text is not a size.
     """
-    found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
-    if found is None:
+    match = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
+    if match is None:
         raise argparse.ArgumentTypeError(f"'{text}' is not a size; give one such as 256MB, or 0")
-    return round(float(found[1]) * _UNITS[(found[2] or "").upper()])
+    return round(float(match[1]) * _UNITS[(match[2] or "").upper()])
 
 
 def port(text: str) -> int:
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
-    rviz = None if arguments.display_config is None else _readable(Path(arguments.display_config))
+    rviz = None if arguments.display_config is None else _readable_config(Path(arguments.display_config))
     options = HostOptions(
         arguments.host,
         arguments.port,
@@ -96,37 +96,39 @@ def run(arguments: argparse.Namespace) -> int:
         rviz=rviz,
     )
     if is_recording(Path(arguments.file)):
-        return _run_bag(arguments, options)
+        return _view_recordings(arguments, options)
     bag = next((word for word in arguments.words if names_file(word) and is_recording(Path(word))), None)
     if bag is not None:
-        return _misused(f"'{bag}' is a recording, which is shown by itself: linkwright view {bag}")
+        return _report_misuse(f"'{bag}' is a recording, which is shown by itself: linkwright view {bag}")
     if arguments.against or any(map(names_file, arguments.words)):
         if rviz is not None:
-            return _misused("two descriptions are compared with displays of their own: leave -d out")
-        return _run_compared(arguments, options)
+            return _report_misuse("two descriptions are compared with displays of their own: leave -d out")
+        return _view_comparison(arguments, options)
     values = parse_assignments(arguments.words)
     from linkwright.hosting.view import run_view
 
     return run_view(arguments.file, values, options, foxglove=arguments.foxglove)
 
 
-def _run_bag(arguments: argparse.Namespace, options: HostOptions) -> int:
+def _view_recordings(arguments: argparse.Namespace, options: HostOptions) -> int:
     from linkwright.bag import is_recording
     from linkwright.hosting.bag_view import run_bag_view
 
     files = [Path(arguments.file)]
     files += [Path(word) for word in arguments.words if names_file(word) and is_recording(Path(word))]
-    others = [word for word in arguments.words if Path(word) not in files[1:]]
-    needless = [*others, *([f"--against {arguments.against}"] if arguments.against else [])]
-    if needless:
-        return _misused(f"'{arguments.file}' is a recording, which is shown by itself: leave {', '.join(needless)} out")
+    other_arguments = [word for word in arguments.words if Path(word) not in files[1:]]
+    extra_arguments = [*other_arguments, *([f"--against {arguments.against}"] if arguments.against else [])]
+    if extra_arguments:
+        return _report_misuse(
+            f"'{arguments.file}' is a recording, which is shown by itself: leave {', '.join(extra_arguments)} out"
+        )
     folder = next((file for file in files if len(files) > 1 and file.is_dir()), None)
     if folder is not None:
-        return _misused(f"several files are shown as one recording, and '{folder}' is a folder: name its files")
+        return _report_misuse(f"several files are shown as one recording, and '{folder}' is a folder: name its files")
     return run_bag_view(files, options, foxglove=arguments.foxglove)
 
 
-def _readable(rviz: Path) -> Path:
+def _readable_config(rviz: Path) -> Path:
     """Return the absolute path of a .rviz file after checking that it can be read.
 
     Raises:
@@ -138,16 +140,16 @@ def _readable(rviz: Path) -> Path:
     return rviz.absolute()
 
 
-def _misused(what: str) -> int:
-    print(f"linkwright view: {what}", file=sys.stderr)
+def _report_misuse(message: str) -> int:
+    print(f"linkwright view: {message}", file=sys.stderr)
     return 2
 
 
-def _run_compared(arguments: argparse.Namespace, options: HostOptions) -> int:
+def _view_comparison(arguments: argparse.Namespace, options: HostOptions) -> int:
     from linkwright.hosting.compared import run_compared_view
 
     with ExitStack() as stack:
-        pair = asked_pair(arguments, stack)
+        pair = requested_pair(arguments, stack)
         if pair is None:
-            return _misused("give one file, two to compare, or one and --against COMMIT")
+            return _report_misuse("give one file, two to compare, or one and --against COMMIT")
         return run_compared_view(pair, options, foxglove=arguments.foxglove)

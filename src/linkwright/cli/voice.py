@@ -79,7 +79,7 @@ class _Trial:
 
     def __init__(self, engine: SpeechEngine, commands: CommandSet, *, partials: bool) -> None:
         self._engine, self._commands, self._partials = engine, commands, partials
-        self._given = 0  # the number of samples fed to the engine
+        self._fed_samples = 0  # the number of samples fed to the engine
 
     def hear(self, file: str, samples: Samples) -> None:
         """Feed a recording to the engine, and print the results, one per line."""
@@ -87,40 +87,47 @@ class _Trial:
 
         from linkwright.speech.sound.samples import BLOCK, RATE
 
-        began = self._given / RATE
+        recording_start = self._fed_samples / RATE
         sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # append silence, which ends an utterance
-        finals = 0
-        for first in range(0, len(sound), BLOCK):
-            block = sound[first : first + BLOCK]
-            self._given += len(block)
-            start = time.perf_counter()
-            heard = self._engine.hear(block)
-            finals += self._print(file, heard, began, self._given / RATE + time.perf_counter() - start)
-        start = time.perf_counter()
-        heard = self._engine.finish()
-        finals += self._print(file, heard, began, self._given / RATE + time.perf_counter() - start)
-        if not finals:
+        final_count = 0
+        for block_start in range(0, len(sound), BLOCK):
+            block = sound[block_start : block_start + BLOCK]
+            self._fed_samples += len(block)
+            computation_start = time.perf_counter()
+            results = self._engine.hear(block)
+            final_count += self._print(
+                file, results, recording_start, self._fed_samples / RATE + time.perf_counter() - computation_start
+            )
+        computation_start = time.perf_counter()
+        results = self._engine.finish()
+        final_count += self._print(
+            file, results, recording_start, self._fed_samples / RATE + time.perf_counter() - computation_start
+        )
+        if not final_count:
             print(localized(phrase("{file}: nothing recognized", file=file)))
 
-    def _print(self, file: str, results: Sequence[Heard], began: float, now: float) -> int:
+    def _print(self, file: str, results: Sequence[Heard], recording_start: float, now: float) -> int:
         """Print results, and return how many of them are final.
 
         Args:
             file: the name of the recording.
             results: the results of one block.
-            began: the time at which the recording begins, in seconds since the first recording began.
+            recording_start: the time at which the recording begins, in seconds since the first recording began.
             now: the current time on the same scale, which includes the time of computation.
         """
         for result in results:
             if result.final or self._partials:
-                times = {"start": f"{max(0.0, result.start - began):.2f}", "end": f"{result.end - began:.2f}"}
+                times = {
+                    "start": f"{max(0.0, result.start - recording_start):.2f}",
+                    "end": f"{result.end - recording_start:.2f}",
+                }
                 print(localized(phrase(
                     "{file}: {what}, {start} s to {end} s, recognized {latency} s later",
-                    file=file, what=self._what(result), latency=f"{max(0.0, now - result.end):.2f}", **times,
+                    file=file, what=self._result_text(result), latency=f"{max(0.0, now - result.end):.2f}", **times,
                 )))  # fmt: skip
         return sum(result.final for result in results)
 
-    def _what(self, result: Heard) -> Phrase:
+    def _result_text(self, result: Heard) -> Phrase:
         if not result.text:
             return phrase("none of the phrases")
         words = {"text": result.text, "confidence": f"{result.confidence:.2f}"}
@@ -144,24 +151,26 @@ def configure_enrol(parser: argparse.ArgumentParser) -> None:
 def run_enrol(arguments: argparse.Namespace) -> int:
     """Enrol a word from recordings; if one recording is unusable, none is used."""
     from linkwright.speech.enrolled.enrolment import enrol
-    from linkwright.speech.enrolled.words import TAKES
+    from linkwright.speech.enrolled.words import RECOMMENDED_TAKES
     from linkwright.speech.sound.wav import read_wav
 
     path = _path(arguments)
     words = _read(path)
-    wrong: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for file in arguments.files:
-        place = Note(phrase("in '{path}'", path=file))
-        found = enrol(words, arguments.word, read_wav(file))
-        wrong += [diagnostic.with_changes(notes=(*diagnostic.notes, place)) for diagnostic in found]
-    if wrong:
-        raise LinkwrightError(*wrong)
+        note = Note(phrase("in '{path}'", path=file))
+        new_diagnostics = enrol(words, arguments.word, read_wav(file))
+        diagnostics += [diagnostic.with_changes(notes=(*diagnostic.notes, note)) for diagnostic in new_diagnostics]
+    if diagnostics:
+        raise LinkwrightError(*diagnostics)
     _write(words, path)
     count = len(words.takes(arguments.word))
     takes = counted("{count} recording", "{count} recordings", count)
     print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
-    if count < TAKES:
-        print_message(localized(phrase("{takes} recordings make the recognition more reliable", takes=TAKES)))
+    if count < RECOMMENDED_TAKES:
+        print_message(
+            localized(phrase("{takes} recordings make the recognition more reliable", takes=RECOMMENDED_TAKES))
+        )
     return FINE
 
 

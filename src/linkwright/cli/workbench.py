@@ -53,20 +53,21 @@ GROUPS = {
 }
 """The commands in the order in which the help lists them, with their help texts.
 
-Each is a module or package of this package, which is loaded only when it is run.
+Each command is a module or package of this package, which is loaded only when the command runs.
 """
 
 OTHER_NAMES = {"wtf": "doctor"}
 """Aliases of commands that ros2 has; the help does not list them."""
 
-IN_ORDER = frozenset({"pkg", "run", "shell"})
-"""Commands whose arguments must be in order, besides those with subcommands: the rest belongs to another program. Other
-commands accept options between arguments (`launch PACKAGE --no-open FILE`)."""
+ORDERED_COMMANDS = frozenset({"pkg", "run", "shell"})
+"""Commands, besides those with subcommands, that do not accept options between positional arguments.
+
+Their last arguments belong to another program. Other commands accept `launch PACKAGE --no-open FILE`.
+"""
 
 _GRAPH_GROUPS = ("the running ROS graph", "bags", "network and diagnosis")
 
-WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "spawn", "launch"}).union(
+EVENT_LOOP_COMMANDS = frozenset({"view", "drive", "run", "sim", "spawn", "launch"}).union(
     *(GROUPS[title] for title in _GRAPH_GROUPS)
 )
-"""Commands that run an event loop or another program, which handle Ctrl-C themselves; before that there is nothing to
-clean up."""
+"""Commands that run an event loop or another program, and handle Ctrl-C themselves."""

@@ -27,25 +27,25 @@ def run_list(arguments: argparse.Namespace) -> int:
     from linkwright.sdf.resources import ResourceFinder
 
     finder = ResourceFinder(PackageFinder(start=Path.cwd()))
-    found = {"world": finder.worlds(), "model": finder.models()}
+    paths_by_kind = {"world": finder.worlds(), "model": finder.models()}
     if arguments.json:
         rows = [
             {"kind": kind, "name": name, "path": str(path)}
-            for kind, places in found.items()
-            for name, path in sorted(places.items())
+            for kind, paths in paths_by_kind.items()
+            for name, path in sorted(paths.items())
         ]
         print(json.dumps(rows, indent=2, ensure_ascii=False))
         return 0
     print(localized(phrase("Worlds:")))
-    _print_places(found["world"])
+    _print_paths(paths_by_kind["world"])
     print(localized(phrase("Models, for <include><uri>model://NAME</uri></include>:")))
-    _print_places(found["model"])
+    _print_paths(paths_by_kind["model"])
     return 0
 
 
-def _print_places(places: Mapping[str, Path]) -> None:
-    width = max(map(len, places), default=0)
-    for name, path in sorted(places.items()):
+def _print_paths(paths: Mapping[str, Path]) -> None:
+    width = max(map(len, paths), default=0)
+    for name, path in sorted(paths.items()):
         print(f"  {name:<{width}}  {path}")
 
 

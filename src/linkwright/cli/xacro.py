@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 _QUIET, _PROPERTIES, _ALL_PROPERTIES = 0, 3, 4
-_USAGE = 2
+_USAGE_ERROR = 2
 _DEFAULTS: dict[str, Any] = {
     "args": False,
     "deps": False,
@@ -63,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-i",
         "--inorder",
         action="store_true",
-        help="process the file in reading order, as is always done",
+        help="process the file in reading order; this is always the case",
     )
     parser.add_argument(
         "-q",
@@ -99,32 +99,32 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     from linkwright.xacro.limits import Limits
     from linkwright.xacro.session import Inputs
 
-    words = [arguments.file, *arguments.values]
-    files = [word for word in words if ":=" not in word]
+    tokens = [arguments.file, *arguments.values]
+    files = [word for word in tokens if ":=" not in word]
     if not files or (len(files) > 1 and not any("=" in word for word in files[1:])):
-        given = f"given {len(files)}: {', '.join(files)}" if files else "given none"
-        print(f"linkwright xacro: exactly one file is expected and {given}", file=sys.stderr)
-        return _USAGE
+        file_list = f"given {len(files)}: {', '.join(files)}" if files else "given none"
+        print(f"linkwright xacro: exactly one file is expected and {file_list}", file=sys.stderr)
+        return _USAGE_ERROR
     if (arguments.explain is not None and (arguments.args or arguments.deps)) or (arguments.args and arguments.deps):
         print("linkwright xacro: --args, --deps and --explain are different questions; ask one", file=sys.stderr)
-        return _USAGE
+        return _USAGE_ERROR
     verbosity = arguments.verbosity
     if arguments.inorder and verbosity > _QUIET:
         print("linkwright xacro: files are always processed in reading order; -i can be left out", file=sys.stderr)
-    words.remove(files[0])
-    values, ignored = _values(words)
+    tokens.remove(files[0])
+    values, warnings = _values(tokens)
     if verbosity > _QUIET:
-        print_diagnostics(ignored, sys.stderr)
+        print_diagnostics(warnings, sys.stderr)
     file, text = files[0], None
     if file == "-":
         file, text = "<stdin>", sys.stdin.read()
     inputs = Inputs(file, values, None, text, Limits(), arguments.root_dir or "")
     if arguments.args:
-        result = _arguments(inputs, verbosity, arguments.format)
+        result = _arguments_output(inputs, verbosity, arguments.format)
     elif arguments.explain is not None:
-        result = _provenance(inputs, arguments.explain, arguments.format)
+        result = _provenance_output(inputs, arguments.explain, arguments.format)
     else:
-        result = _expansion(inputs, verbosity, deps=arguments.deps)
+        result = _expand_text(inputs, verbosity, deps=arguments.deps)
     if arguments.output:
         from pathlib import Path
 
@@ -135,24 +135,24 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
-    """Return the xacro arguments by name, and remarks on ignored arguments.
+    """Return the xacro arguments by name, and warnings about ignored arguments.
 
     Empty values and ROS parameters (``_name:=``) are ignored.
     """
     values = parse_assignments(words)
-    ignored = []
+    warnings = []
     for name, value in list(values.items()):
-        private = len(name) > 1 and name[0] == "_" and name[1] != "_"
-        if value and not private:
+        is_ros_parameter = len(name) > 1 and name[0] == "_" and name[1] != "_"
+        if value and not is_ros_parameter:
             continue
         del values[name]
-        why = phrase("its name begins with an underscore") if value else phrase("it is empty")
-        message = phrase("the argument '{name}' is ignored, as in xacro: {why}", name=name, why=why)
-        ignored.append(Diagnostic("CLI103", message, severity=Severity.WARNING))
-    return values, ignored
+        reason = phrase("its name begins with an underscore") if value else phrase("it is empty")
+        message = phrase("the argument '{name}' is ignored, as in xacro: {why}", name=name, why=reason)
+        warnings.append(Diagnostic("CLI103", message, severity=Severity.WARNING))
+    return values, warnings
 
 
-def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
+def _expand_text(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
     from linkwright.xacro import expand
 
     if verbosity >= _PROPERTIES:
@@ -164,35 +164,37 @@ def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
     if verbosity > _QUIET:
         print_diagnostics(expansion.diagnostics, sys.stderr)
     else:
-        print_diagnostics([found for found in expansion.diagnostics if found.severity is Severity.ERROR], sys.stderr)
+        print_diagnostics(
+            [diagnostic for diagnostic in expansion.diagnostics if diagnostic.severity is Severity.ERROR], sys.stderr
+        )
     return " ".join(map(str, expansion.dependencies[1:])) if deps else str(expansion)
 
 
-def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
+def _arguments_output(inputs: Inputs, verbosity: int, form: str) -> str:
     from linkwright.xacro.tracing.arguments import arguments_data, examine_arguments
-    from linkwright.xacro.tracing.arguments_text import arguments_text, incomplete
+    from linkwright.xacro.tracing.arguments_text import arguments_text, incompleteness_remarks
 
-    examined = examine_arguments(inputs)
+    examination = examine_arguments(inputs)
     if verbosity > _QUIET:
-        print_diagnostics([*incomplete(examined), *examined.unused], sys.stderr)
+        print_diagnostics([*incompleteness_remarks(examination), *examination.unused], sys.stderr)
     if form == "json":
-        return _json({"arguments": arguments_data(examined.arguments)})
-    return arguments_text(examined.arguments)
+        return _json_text({"arguments": arguments_data(examination.arguments)})
+    return arguments_text(examination.arguments)
 
 
-def _provenance(inputs: Inputs, name: str, form: str) -> str:
+def _provenance_output(inputs: Inputs, name: str, form: str) -> str:
     from linkwright.xacro.inspection import provenance_of_named
     from linkwright.xacro.limits import recursion_limit_for
     from linkwright.xacro.tracing.provenance_text import provenance_data, provenance_text
 
-    found = provenance_of_named(inputs, name)
+    provenances = provenance_of_named(inputs, name)
     if form == "json":
         with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than that
-            return _json({"elements": [provenance_data(provenance) for provenance in found]})
-    return "\n".join(map(provenance_text, found))
+            return _json_text({"elements": [provenance_data(provenance) for provenance in provenances]})
+    return "\n".join(map(provenance_text, provenances))
 
 
-def _json(data: object) -> str:
+def _json_text(data: object) -> str:
     import json
 
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

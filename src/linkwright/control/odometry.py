@@ -20,19 +20,19 @@ Variances = tuple[float, ...]
 """Variances of x, y, z, roll, pitch and yaw."""
 
 TRANSFORMS, TRANSFORMS_DEPTH = "tf2_msgs/msg/TFMessage", 100
-"""The type of a topic of transforms, and the number of messages that its publisher keeps."""
+"""The type of transform topics, and the depth of their publishers."""
 
-_NONE = (0.0,) * 6
-_UNKNOWN = 1e12
-"""The variance of values that a robot on wheels does not measure: z, roll and pitch."""
+_NO_VARIANCES = (0.0,) * 6
+_UNKNOWN_VARIANCE = 1e12
+"""The variance of z, roll and pitch, which a wheeled robot does not measure."""
 
 
 def planar_variances(x: float, y: float, yaw: float) -> Variances:
-    """Return the six variances of a planar motion from those of x, y and yaw.
+    """Return the six variances of a planar motion from the variances of x, y and yaw.
 
-    The other three variances are large, or 0 if all given variances are 0.
+    The variances of z, roll and pitch are large, or 0 if all arguments are 0.
     """
-    return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
+    return (x, y, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, yaw) if x or y or yaw else _NO_VARIANCES
 
 
 def yaw_of(pose: Transform) -> float:
@@ -44,7 +44,7 @@ def yaw_of(pose: Transform) -> float:
 def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[float, float, float]:
     """Rotate a velocity from world axes to the robot's axes.
 
-    Returns the velocities forward and to the left in m/s, and around z in rad/s.
+    Returns the velocities forward and to the left in m/s, and about z in rad/s.
     """
     yaw = yaw_of(pose)
     forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
@@ -79,7 +79,7 @@ def _classes() -> _Classes:
 
 @dataclass(slots=True)
 class OdometryTopics:
-    """The topics on which odometry is published.
+    """The topics for odometry messages and their transforms.
 
     Attributes:
         frame: the frame in which the robot moves.
@@ -87,23 +87,25 @@ class OdometryTopics:
         odometry: the odometry topic; None to publish no odometry.
         transforms: the transform topic; None to publish no transforms.
         variances: the variances of the pose.
-        velocity_variances: the variances of the velocities; None to use those of the pose.
+        velocity_variances: the variances of the velocities; None to use the variances of the pose.
     """
 
     frame: str
     child: str
     odometry: Output | None
     transforms: Output | None
-    variances: Variances = _NONE
+    variances: Variances = _NO_VARIANCES
     velocity_variances: Variances | None = None
     _covariances: tuple[Array, Array] = field(init=False)
     _outputs: tuple[tuple[Output, Callable[..., None]], ...] = field(init=False)
 
     def __post_init__(self) -> None:
         velocity = self.variances if self.velocity_variances is None else self.velocity_variances
-        self._covariances = (_diagonal(self.variances), _diagonal(velocity))
-        made = ((self.odometry, self._odometry_message), (self.transforms, self._transform_message))
-        self._outputs = tuple((output, output.deferred_publisher(make)) for output, make in made if output is not None)
+        self._covariances = (_diagonal_matrix(self.variances), _diagonal_matrix(velocity))
+        message_factories = ((self.odometry, self._odometry_message), (self.transforms, self._transform_message))
+        self._outputs = tuple(
+            (output, output.deferred_publisher(factory)) for output, factory in message_factories if output is not None
+        )
 
     @property
     def is_wanted(self) -> bool:
@@ -123,19 +125,22 @@ class OdometryTopics:
                 send(stamp, pose, forward, sideways, angular)
 
     def _odometry_message(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> Any:
-        make = _classes()
+        classes = _classes()
         x, y, z, qx, qy, qz, qw = pose
-        place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
-        speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
-        of_pose, of_velocity = self._covariances
-        places, speeds = make.pose_covariance(place, of_pose), make.twist_covariance(speed, of_velocity)
-        return make.odometry(Header(stamp, self.frame), self.child, places, speeds)
+        message_pose = classes.pose(classes.point(x, y, z), Quaternion(qx, qy, qz, qw))
+        message_twist = classes.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
+        pose_covariance, twist_covariance = self._covariances
+        pose_with_covariance, twist_with_covariance = (
+            classes.pose_covariance(message_pose, pose_covariance),
+            classes.twist_covariance(message_twist, twist_covariance),
+        )
+        return classes.odometry(Header(stamp, self.frame), self.child, pose_with_covariance, twist_with_covariance)
 
     def _transform_message(self, stamp: Time, pose: Transform, *_velocity: float) -> Any:
         return transform_message(Header(stamp, self.frame), self.child, pose)
 
 
-def _diagonal(variances: Variances) -> Array:
+def _diagonal_matrix(variances: Variances) -> Array:
     return np.diag(np.asarray(variances, np.float64)).ravel()
 
 

@@ -15,7 +15,7 @@ from linkwright.packages import PackageFinder
 if TYPE_CHECKING:
     from linkwright.sdf.worlds import Sdf, World
 
-_ADDRESSES = {
+_URI_FIELDS = {
     "Animation": {"filename"},
     "Heightmap": {"uri"},
     "Image": {"uri"},
@@ -29,11 +29,11 @@ _ADDRESSES = {
         *("metalness_map", "normal_map", "roughness_map", "specular_map"),
     },
 }
-"""Classes of `linkwright.sdf` -> their fields that name files."""
+"""The fields that name files, by the name of their class in `linkwright.sdf`."""
 
 
 @dataclass(frozen=True, slots=True)
-class Converted:
+class ConversionResult:
     """The result of converting a file to SDF.
 
     Attributes:
@@ -54,7 +54,7 @@ def as_sdf(
     arguments: Mapping[str, str] | None = None,
     lump_fixed_joints: bool = True,
     folder: Path | None = None,
-) -> Converted:
+) -> ConversionResult:
     """Return a URDF, xacro or SDF file converted to one SDF.
 
     The SDF needs no other files except meshes and textures.
@@ -74,23 +74,23 @@ def as_sdf(
     if is_world(path.name):
         world = examine_world(path, arguments=arguments, packages=finder)
         if world.sdf is None:
-            return Converted(None, world.diagnostics, world.files)
-        sdf = replace(world.sdf, worlds=tuple(map(_as_it_is, world.sdf.worlds)))
-        return Converted(_relocate_paths(sdf, path.parent, folder), world.diagnostics, world.files)
+            return ConversionResult(None, world.diagnostics, world.files)
+        sdf = replace(world.sdf, worlds=tuple(map(_in_saved_state, world.sdf.worlds)))
+        return ConversionResult(_relocate_paths(sdf, path.parent, folder), world.diagnostics, world.files)
     from linkwright.sdf.from_urdf import model_from_robot
     from linkwright.sdf.worlds import Sdf
     from linkwright.sdf.writer import VERSION
 
     description = examine(path, arguments=arguments, packages=finder)
     if description.robot is None or not description.robot.root:
-        return Converted(None, description.diagnostics, description.files)
+        return ConversionResult(None, description.diagnostics, description.files)
     conversion = model_from_robot(description.robot, lump_fixed_joints=lump_fixed_joints)
     sdf = Sdf(VERSION, models=(conversion.model,))
-    found = (*description.diagnostics, *conversion.diagnostics)
-    return Converted(_relocate_paths(sdf, path.parent, folder), found, description.files)
+    diagnostics = (*description.diagnostics, *conversion.diagnostics)
+    return ConversionResult(_relocate_paths(sdf, path.parent, folder), diagnostics, description.files)
 
 
-def _as_it_is(world: World) -> World:
+def _in_saved_state(world: World) -> World:
     """Return a world in its saved state, with gravity in the element that SDF uses since 1.6."""
     from linkwright.sdf.saved import with_saved_state
     from linkwright.sdf.worlds import gravity_of
@@ -102,49 +102,49 @@ def _as_it_is(world: World) -> World:
     return world
 
 
-def _relocate_paths(part: Any, written_in: Path, folder: Path) -> Any:
+def _relocate_paths(sdf_object: Any, source_folder: Path, folder: Path) -> Any:
     """Return a part of SDF whose relative paths are relative to another folder."""
-    return with_changed_uris(part, written_in, lambda written, beside: _address(written, beside, folder))
+    return with_changed_uris(sdf_object, source_folder, lambda uri, uri_folder: _relocate_uri(uri, uri_folder, folder))
 
 
-def with_changed_uris(part: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
+def with_changed_uris(sdf_object: Any, source_folder: Path, change: Callable[[str, Path], str]) -> Any:
     """Return a part of SDF with changed URIs of meshes, textures and other files.
 
     Args:
-        part: an object of `linkwright.sdf`, or a tuple of them.
-        written_in: the folder of the part's file, for an object that does not store its file.
+        sdf_object: an object of `linkwright.sdf`, or a tuple of them.
+        source_folder: the folder of the part's file, for an object that does not store its file.
         change: a function that returns the new URI, given a URI and the folder of the file that contains it.
     """
-    if isinstance(part, tuple):
-        return tuple(with_changed_uris(item, written_in, change) for item in part)
-    if not is_dataclass(part) or isinstance(part, type):
-        return part
-    source = getattr(getattr(part, "element", None), "source", None)
+    if isinstance(sdf_object, tuple):
+        return tuple(with_changed_uris(item, source_folder, change) for item in sdf_object)
+    if not is_dataclass(sdf_object) or isinstance(sdf_object, type):
+        return sdf_object
+    source = getattr(getattr(sdf_object, "element", None), "source", None)
     if source is not None:
-        written_in = Path(source.name).parent
-    addresses = _ADDRESSES.get(type(part).__name__, ())
-    changed: dict[str, Any] = {}
-    for field in fields(part):
-        value = getattr(part, field.name)
-        if field.name in addresses:
-            many = isinstance(value, tuple)
-            moved = tuple(change(item, written_in) for item in (value if many else (value,)))
-            new = moved if many else moved[0]
+        source_folder = Path(source.name).parent
+    uri_fields = _URI_FIELDS.get(type(sdf_object).__name__, ())
+    changed_fields: dict[str, Any] = {}
+    for field in fields(sdf_object):
+        value = getattr(sdf_object, field.name)
+        if field.name in uri_fields:
+            is_tuple = isinstance(value, tuple)
+            new_uris = tuple(change(item, source_folder) for item in (value if is_tuple else (value,)))
+            new_value = new_uris if is_tuple else new_uris[0]
         else:
-            new = with_changed_uris(value, written_in, change)
-        if new != value:
-            changed[field.name] = new
-    return replace(part, **changed) if changed else part
+            new_value = with_changed_uris(value, source_folder, change)
+        if new_value != value:
+            changed_fields[field.name] = new_value
+    return replace(sdf_object, **changed_fields) if changed_fields else sdf_object
 
 
-def _address(written: str, written_in: Path, folder: Path) -> str:
+def _relocate_uri(uri: str, source_folder: Path, folder: Path) -> str:
     """Return the URI of a file for an SDF in another folder.
 
     The relative path of an existing file becomes relative to the folder, or a file URI if the file is outside it. Other
     URIs are unchanged.
     """
-    file = Path(os.path.abspath(written_in / written))  # noqa: PTH100 - links stay what they are
+    file = Path(os.path.abspath(source_folder / uri))  # noqa: PTH100 - links stay what they are
     folder = folder.absolute()
-    if not written or "://" in written or Path(written).is_absolute() or not file.exists():
-        return written
+    if not uri or "://" in uri or Path(uri).is_absolute() or not file.exists():
+        return uri
     return file.relative_to(folder).as_posix() if file.is_relative_to(folder) else file.as_uri()

@@ -34,7 +34,7 @@ class Model:
     revision: Revision | None = None
 
     def label(self) -> str:
-        """Return the name of the file for users; see `named`."""
+        """Return the name of the file for users; see `display_name`."""
         return self.named(str(self.path))
 
     @property
@@ -57,12 +57,12 @@ class Model:
             LinkwrightError: if the description cannot be read or expanded, or if urdfdom would refuse it.
         """
         try:
-            found = examine(self.path, arguments=self.values, packages=self.finder)
+            description = examine(self.path, arguments=self.values, packages=self.finder)
         except LinkwrightError as error:
             raise LinkwrightError(*map(self._relabel, error.diagnostics)) from None
-        if found.robot is None:
-            raise LinkwrightError(*map(self._relabel, found.diagnostics))
-        return found
+        if description.robot is None:
+            raise LinkwrightError(*map(self._relabel, description.diagnostics))
+        return description
 
     def read_robot(self) -> Robot:
         """Return the robot; raises the same errors as `read`."""
@@ -110,7 +110,7 @@ class Pair:
         """Return the name of a file of either description for users."""
         return self.old.named(file)
 
-    def compared(self) -> Comparison:
+    def read_and_compare(self) -> Comparison:
         """Read both descriptions and return the differences between them.
 
         Raises:
@@ -120,14 +120,14 @@ class Pair:
 
     def compare(self, old: Robot, new: Robot) -> Comparison:
         """Return the differences between the robots of the two descriptions, which were read before."""
-        before, after = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
+        old_side, new_side = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
         if self.old.revision is not None:
-            ours, theirs = self.old.revision.normalizers(self.new.finder)
-            before, after = replace(before, normalize=ours), replace(after, normalize=theirs)
-        return compare(before, after)
+            normalize_old, normalize_new = self.old.revision.normalizers(self.new.finder)
+            old_side, new_side = replace(old_side, normalize=normalize_old), replace(new_side, normalize=normalize_new)
+        return compare(old_side, new_side)
 
 
-def text_of_old(description: Description) -> str:
+def old_description_key(description: Description) -> str:
     """Return a text that identifies the old description, even if the new one has the same text.
 
     Descriptions are identified by their text.
@@ -135,7 +135,7 @@ def text_of_old(description: Description) -> str:
     return f"{description.text}\n<!-- the old one -->\n"
 
 
-def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
+def file_pair(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
     """Return the pair of two files.
 
     Args:
@@ -143,10 +143,10 @@ def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
         new: the new file.
         values: the values for the ``<xacro:arg>`` of both files.
     """
-    first, second = (
+    old_model, new_model = (
         Model(path.absolute(), values, PackageFinder(start=[path.absolute().parent, Path.cwd()])) for path in (old, new)
     )
-    return Pair(first, second)
+    return Pair(old_model, new_model)
 
 
 def pair_with_commit(path: Path, commit: str, values: Mapping[str, str]) -> Pair:

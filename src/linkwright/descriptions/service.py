@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from linkwright.xacro.tracing.provenance import Provenance
 
 
-TRUE_OF_PARTS = frozenset(
+HOLDS_FOR_PARTS = frozenset(
     {
         *("URDF101", "URDF102", "URDF110", "URDF120", "URDF121", "URDF122", "URDF123", "URDF124", "URDF130"),
         *("URDF131", "URDF132", "URDF140", "URDF162", "URDF170", "URDF190"),
     }
 )
-"""Findings of the reader that hold whatever else the robot has; the others may be due to what is missing."""
+"""Findings of the reader that hold for a part of a robot; the other findings may be due to missing parts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Description:
         document: the expanded URDF document, whose elements have their source file and position.
         reading: the result of the URDF reader.
         expansion: the result of the xacro expansion, or None for plain URDF.
-        overlay: texts that replaced those of files.
+        overlay: texts that replaced the contents of files.
         problems: the errors because of which only parts of the description are available. If there are any, there is no
             robot.
     """
@@ -66,7 +66,9 @@ class Description:
         """
         reading = read(expansion.document)
         if expansion.problems:
-            reading = Reading(None, tuple(found for found in reading.diagnostics if found.code in TRUE_OF_PARTS))
+            reading = Reading(
+                None, tuple(diagnostic for diagnostic in reading.diagnostics if diagnostic.code in HOLDS_FOR_PARTS)
+            )
         return cls(name, expansion.document, reading, expansion, overlay, expansion.problems)
 
     @property
@@ -105,22 +107,22 @@ class Description:
             return {Path(self.name): self.document}
         from linkwright.xacro.cache import read_document
 
-        found: dict[Path, Document] = {}
+        documents: dict[Path, Document] = {}
         for path in self.expansion.dependencies:
             with suppress(LinkwrightError):  # YAML files are also among the files, but are not XML
-                found[path] = read_document(str(path), self.overlay)
-        return found
+                documents[path] = read_document(str(path), self.overlay)
+        return documents
 
     def provenance(self, element: Element) -> Provenance | None:
         """Return the macro calls and includes that produced an element, or None for plain URDF.
 
         Raises:
-            LinkwrightError: XAC802 if the files have changed since.
+            LinkwrightError: XAC802 if the files have changed since they were read.
         """
         return None if self.expansion is None else self.expansion.provenance(element)
 
 
-_KEPT_TEXTS = 32
+_MAX_TEXTS = 32
 
 
 class DescriptionLibrary:
@@ -140,8 +142,7 @@ class DescriptionLibrary:
         Args:
             description: the description.
             text: the key under which to store it, or None for the description's own text.
-            packages: the finder of the description's packages, if they may differ from those of the rest of the
-                program.
+            packages: the finder of the description's packages, if the rest of the program may use other packages.
 
         Returns:
             The text under which the description is stored.
@@ -151,7 +152,7 @@ class DescriptionLibrary:
         self._descriptions.move_to_end(text)
         if packages is not None:
             self._finders[text] = packages
-        if len(self._descriptions) > _KEPT_TEXTS:
+        if len(self._descriptions) > _MAX_TEXTS:
             self._finders.pop(self._descriptions.popitem(last=False)[0], None)
         return text
 
@@ -165,8 +166,8 @@ class DescriptionLibrary:
 
     def files(self, text: str) -> tuple[Path, ...]:
         """Return the files of a stored description, the main file first; empty if not stored."""
-        known = self._descriptions.get(text)
-        return () if known is None else known.files
+        description = self._descriptions.get(text)
+        return () if description is None else description.files
 
     def provenance(self, text: str, element: Element) -> Provenance | None:
         """Return the macro calls and includes that produced an element of a stored description.
@@ -174,23 +175,23 @@ class DescriptionLibrary:
         The result is None for an unknown text.
 
         Raises:
-            LinkwrightError: XAC802 if the files of the description have changed since.
+            LinkwrightError: XAC802 if the files of the description have changed since they were read.
         """
-        known = self._descriptions.get(text)
-        return None if known is None else known.provenance(element)
+        description = self._descriptions.get(text)
+        return None if description is None else description.provenance(element)
 
     def read(self, text: str) -> Reading:
         """Return the reading of a text in plain URDF or SDF, from the cache if possible.
 
         If the text is not XML, the reading has no robot, and its diagnostics contain the reason.
         """
-        known = self._descriptions.get(text)
-        if known is None:
-            known = _read(text)
-            self.store(known, text)
+        description = self._descriptions.get(text)
+        if description is None:
+            description = _read(text)
+            self.store(description, text)
         else:
             self._descriptions.move_to_end(text)
-        return known.reading
+        return description.reading
 
 
 def _read(text: str) -> Description:
@@ -203,10 +204,10 @@ def _read(text: str) -> Description:
     return Description(TEXT_NAME, document, read(document))
 
 
-_OF_A_KIND = frozenset({"SDF150", "SDF160"})
-_MOST_LINKS = 100_000
-"""No more are read of a world: more would take minutes, and gigabytes."""
-_ENDINGS = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
+_REPORTED_ONCE = frozenset({"SDF150", "SDF160"})
+_MAX_LINKS = 100_000
+"""The maximum number of links in a world; reading more would take minutes and gigabytes."""
+_WORLD_SUFFIXES = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,8 +229,8 @@ class WorldDescription:
 
 
 def is_world(name: str) -> bool:
-    """Return whether the name of a file means that it is read as SDF."""
-    return name.endswith(_ENDINGS)
+    """Return whether a file with this name is read as SDF."""
+    return name.endswith(_WORLD_SUFFIXES)
 
 
 def examine_world(
@@ -248,7 +249,7 @@ def examine_world(
         packages: the packages, as a mapping of names to share folders, or a finder.
         environment: the variables with search paths (`linkwright.sdf.resources`); the default is the environment of the
             process.
-        overlay: texts that replace those of files.
+        overlay: texts that replace the contents of files.
 
     Raises:
         LinkwrightError: if the file is not XML, cannot be expanded, or has too many links (SDF163).
@@ -268,16 +269,16 @@ def examine_world(
         if isinstance(packages, PackageFinder)
         else PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
     )
-    document, remarks, files = _document(path, arguments, finder, overlay)
+    document, remarks, files = _read_expanded(path, arguments, finder, overlay)
     reading = read(document)
-    found = [*remarks, *reading.diagnostics]
+    diagnostics = [*remarks, *reading.diagnostics]
     if reading.sdf is None:
-        return WorldDescription(path, None, tuple(found), files)
+        return WorldDescription(path, None, tuple(diagnostics), files)
     resources = ResourceFinder(finder, environment)
-    included = resolve_includes(reading.sdf, path, resources)
-    found += [*included.diagnostics, *check_references(included.sdf)]
-    sdf = with_scripts(replace(included.sdf, worlds=tuple(map(with_populations, included.sdf.worlds))), resources)
-    return WorldDescription(path, sdf, tuple(_without_repetitions(found)), (*files, *included.files))
+    resolution = resolve_includes(reading.sdf, path, resources)
+    diagnostics += [*resolution.diagnostics, *check_references(resolution.sdf)]
+    sdf = with_scripts(replace(resolution.sdf, worlds=tuple(map(with_populations, resolution.sdf.worlds))), resources)
+    return WorldDescription(path, sdf, tuple(_without_repetitions(diagnostics)), (*files, *resolution.files))
 
 
 def robot_of_text(text: str, name: str) -> Reading:
@@ -303,26 +304,26 @@ def robot_of_text(text: str, name: str) -> Reading:
     return robot_from_sdf(resolve_includes(reading.sdf, Path(name), resources).sdf, document.root)
 
 
-def _without_repetitions(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the findings without repetitions about unread elements and missing models.
 
     Of these, only the first with the same message is yielded.
     """
-    reported: set[str] = set()
-    for diagnostic in found:
-        words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
-        if diagnostic.code not in _OF_A_KIND or words not in reported:
-            reported.add(words)
+    reported_keys: set[str] = set()
+    for diagnostic in diagnostics:
+        key = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
+        if diagnostic.code not in _REPORTED_ONCE or key not in reported_keys:
+            reported_keys.add(key)
             yield diagnostic
 
 
-def _document(
+def _read_expanded(
     path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, overlay: Overlay | None
 ) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
     """Return the document of a file, its diagnostics, and the files that were read."""
     text = None if overlay is None else overlay.text(str(path))
     if path.suffix != ".xacro":
-        document, warnings = _as_written(path, read_bytes(path) if text is None else text)
+        document, warnings = _parse_world(path, read_bytes(path) if text is None else text)
         if not _is_xacro(document):
             return document, warnings, (path,)
     from linkwright.xacro import expand
@@ -331,17 +332,17 @@ def _document(
     return expansion.document, expansion.diagnostics, expansion.dependencies
 
 
-def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagnostic, ...]]:
+def _parse_world(path: Path, content: str | bytes) -> tuple[Document, tuple[Diagnostic, ...]]:
     from linkwright.sdf.link_counts import has_more_links
     from linkwright.sdf.text import parse_as_gazebo
 
-    if has_more_links(written, _MOST_LINKS):
+    if has_more_links(content, _MAX_LINKS):
         message = phrase(
-            "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MOST_LINKS
+            "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MAX_LINKS
         )
         hint = phrase("put shapes that never move into one link")
         raise LinkwrightError(Diagnostic("SDF163", message, hint=hint))
-    return parse_as_gazebo(written, str(path))
+    return parse_as_gazebo(content, str(path))
 
 
 def _is_xacro(document: Document) -> bool:
@@ -354,10 +355,10 @@ def _is_xacro(document: Document) -> bool:
 
 
 _URDF = ".urdf"
-"""The ending of files that robot_state_publisher may be given as they are, whatever prefixes they declare."""
+"""The suffix of files that robot_state_publisher may read unexpanded, whatever prefixes they declare."""
 
-_LEFT_OVER = "URDF102"
-"""Tags of xacro that were not evaluated."""
+_UNEVALUATED_TAG = "URDF102"
+"""The finding about a xacro tag that was not evaluated."""
 
 Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
 
@@ -403,7 +404,7 @@ def examine(
         path_or_text: see `load`.
         arguments: see `load`.
         packages: see `load`.
-        overlay: texts that replace those of the file and of all files that it includes or loads.
+        overlay: texts that replace the contents of the file, or of files that it includes or loads.
         xacro: whether to expand the file with xacro; None to decide by the file, see `is_xacro`. A plain URDF file is
             read as urdfdom reads it.
         partly: whether to accept the parts that can be expanded if others cannot. `Description.problems` then contains
@@ -412,16 +413,16 @@ def examine(
     Raises:
         LinkwrightError: if the description is not XML, or cannot be expanded.
     """
-    given_text = is_text(path_or_text)
-    name = TEXT_NAME if given_text else str(path_or_text)
-    text = str(path_or_text) if given_text else overlay.text(name) if overlay is not None else None
+    is_text_input = is_text(path_or_text)
+    name = TEXT_NAME if is_text_input else str(path_or_text)
+    text = str(path_or_text) if is_text_input else overlay.text(name) if overlay is not None else None
     if not xacro:
-        document, forbidden = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
+        document, remarks = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
         if document.root.tag == "sdf" and document.source is not None:
             return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
-            return _unexpanded_description(name, document, forbidden, overlay)
-        text = document.source.text if given_text and document.source else text
+            return _unexpanded_description(name, document, remarks, overlay)
+        text = document.source.text if is_text_input and document.source else text
     from linkwright.xacro import expand
 
     try:
@@ -430,15 +431,19 @@ def examine(
         if not partly:
             raise
         if not xacro and not arguments and name.endswith(_URDF):
-            reported = {diagnostic.code for diagnostic in forbidden}
-            unexpanded = tuple(
-                _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in reported
+            reported_codes = {diagnostic.code for diagnostic in remarks}
+            expansion_warnings = tuple(
+                _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in reported_codes
             )
-            plain = _unexpanded_description(
-                name, document, (*unexpanded, *forbidden), overlay, is_reported=bool(unexpanded)
+            plain_description = _unexpanded_description(
+                name, document, (*expansion_warnings, *remarks), overlay, is_reported=bool(expansion_warnings)
             )
-            if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):
-                return plain
+            if (
+                plain_description.robot is not None
+                and not has_errors(plain_description.diagnostics)
+                and not _has_unexpanded_names(plain_description.robot)
+            ):
+                return plain_description
         from linkwright.xacro.parts import expand_parts
         from linkwright.xacro.session import Inputs
 
@@ -466,11 +471,13 @@ def _unexpanded_description(
     return Description(name, document, Reading(reading.robot, (*remarks, *diagnostics)), overlay=overlay)
 
 
-def _holds_unexpanded(found: Diagnostic) -> bool:
-    return found.severity is Severity.ERROR or (found.code in TRUE_OF_PARTS and found.code != _LEFT_OVER)
+def _holds_unexpanded(diagnostic: Diagnostic) -> bool:
+    return diagnostic.severity is Severity.ERROR or (
+        diagnostic.code in HOLDS_FOR_PARTS and diagnostic.code != _UNEVALUATED_TAG
+    )
 
 
-def _has_open_names(robot: Robot) -> bool:
+def _has_unexpanded_names(robot: Robot) -> bool:
     """Return whether link names contain xacro expressions.
 
     A file with such names is not intended for urdfdom.
@@ -487,6 +494,6 @@ def _as_warning(error: Diagnostic) -> Diagnostic:
 def is_xacro(name: str, root: Element) -> bool:
     """Return whether to expand a document with xacro.
 
-    This is so if the name of the file ends in ``.xacro``, or if the root declares or uses the xacro prefix.
+    This is the case if the name of the file ends in ``.xacro``, or if the root declares or uses the xacro prefix.
     """
     return name.endswith(".xacro") or "xmlns:xacro" in root.attributes or root.tag.startswith("xacro:")

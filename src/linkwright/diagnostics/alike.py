@@ -1,4 +1,4 @@
-"""Grouping of similar findings that occur in many places."""
+"""Group similar findings that occur in many places."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
 from linkwright.diagnostics.phrase import as_phrase, counted
 
-_FEW = 3
-"""So many are shown one by one."""
-_PLACES = 2
-"""So many places are named besides the first."""
+_MAX_SEPARATE = 3
+"""The maximum number of similar findings that are shown one by one."""
+_MAX_PLACES = 2
+"""The number of places of a group that are shown besides the first."""
 
 
 def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Reduce each large group of similar diagnostics to the first, plus a count of the others.
+    """Replace each large group of similar diagnostics by its first one, with notes on the others.
 
     Diagnostics are similar if they have the same code and severity, and their messages differ only in names and
     numbers.
@@ -25,15 +25,21 @@ def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
             diagnostic
         )
     return [
-        diagnostic for group in groups.values() for diagnostic in (group if len(group) <= _FEW else [_together(group)])
+        diagnostic
+        for group in groups.values()
+        for diagnostic in (group if len(group) <= _MAX_SEPARATE else [_summarize(group)])
     ]
 
 
-def _together(group: list[Diagnostic]) -> Diagnostic:
+def _summarize(group: list[Diagnostic]) -> Diagnostic:
     first, *others = group
-    notes = [Note(other.message, other.span) for other in others[:_PLACES]]
-    rest = len(others) - _PLACES
+    notes = [Note(other.message, other.span) for other in others[:_MAX_PLACES]]
+    hidden_count = len(others) - _MAX_PLACES
     notes.append(
-        Note(counted("and {count} more like it (--all shows it)", "and {count} more like it (--all shows them)", rest))
+        Note(
+            counted(
+                "and {count} more like it (--all shows it)", "and {count} more like it (--all shows them)", hidden_count
+            )
+        )
     )
     return first.with_changes(notes=(*first.notes, *notes))

@@ -1,6 +1,6 @@
-"""Diagnostics, their places in source texts, and the exception that carries them.
+"""Diagnostics, their positions in source texts, and the exception that carries them.
 
-A diagnostic is a finding about a user's input. Positions inside the program are character offsets, which are cheap to
+A diagnostic is a finding about a user's input. Inside the program, positions are character offsets, which are cheap to
 pass on. Lines and columns are computed only for a `Span`.
 """
 
@@ -20,33 +20,33 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 
-_BEGINS = b"version https://git-lfs.github.com/spec/"
-IS_POINTER = phrase("it is only a Git LFS pointer")
-FETCH = phrase("run `git lfs pull` in its repository")
+_POINTER_START = b"version https://git-lfs.github.com/spec/"
+POINTER_REASON = phrase("it is only a Git LFS pointer")
+POINTER_HINT = phrase("run `git lfs pull` in its repository")
 
 
 def is_pointer(data: bytes) -> bool:
-    """Return whether the content of a file, or its beginning, is a pointer of Git LFS."""
-    return data.startswith(_BEGINS)
+    """Return whether the content of a file, or its beginning, is that of a Git LFS pointer."""
+    return data.startswith(_POINTER_START)
 
 
 def is_pointer_file(path: Path) -> bool:
-    """Return whether a file is a pointer of Git LFS; False if it cannot be read."""
+    """Return whether a file is a Git LFS pointer; False if it cannot be read."""
     try:
         with path.open("rb") as file:
-            return is_pointer(file.read(len(_BEGINS)))
+            return is_pointer(file.read(len(_POINTER_START)))
     except OSError:
         return False
 
 
 TEXT_NAME = "<robot_description>"
-"""The name, in messages, of a description that is given as a text."""
+"""The name in messages of a description that was passed as text, not as a path."""
 
 
 def is_text(path_or_text: object) -> bool:
-    """Return whether a description is given as a text, not as a path.
+    """Return whether a description was passed as text, not as a path.
 
-    A text is recognised by its ``<``.
+    A text is recognised by a ``<`` in it.
     """
     return isinstance(path_or_text, str) and "<" in path_or_text
 
@@ -71,8 +71,8 @@ class SourceText:
     """A named text that converts character offsets to lines and columns.
 
     Args:
-        name: the name by which a reader knows the text: a path, or a name in angle brackets such as ``<stdin>``.
-        text: the entire text, with the line ends of the file.
+        name: the name of the text for the user: a path, or a name in angle brackets such as ``<stdin>``.
+        text: the entire text, with the line endings of the file.
     """
 
     __slots__ = ("_starts", "name", "text")
@@ -105,7 +105,7 @@ class SourceText:
         return min(start + column - 1, len(self.text))
 
     def span(self, start: int, end: int | None = None) -> Span:
-        """Return the span between two character offsets; without an end, the span of one character."""
+        """Return the span between two character offsets; without an end, the span of one character at the start."""
         line, column = self.position(start)
         end_line, end_column = self.position(start + 1 if end is None else end)
         return Span(self.name, line, column, end_line, end_column)
@@ -122,10 +122,10 @@ class SourceText:
         if self._starts is None:
             starts = [0]
             find = self.text.find
-            at = find("\n")
-            while at >= 0:
-                starts.append(at + 1)
-                at = find("\n", at + 1)
+            newline = find("\n")
+            while newline >= 0:
+                starts.append(newline + 1)
+                newline = find("\n", newline + 1)
             self._starts = starts
         return self._starts
 
@@ -139,24 +139,24 @@ class Severity(Enum):
 
 
 class Note(NamedTuple):
-    """Another fact about a diagnostic with its place, such as the macro call that led to it."""
+    """A fact that belongs to a diagnostic, such as the macro call that led to it, with its position."""
 
     message: Phrase
     span: Span | None = None
 
 
 class Diagnostic:
-    """A finding, with a stable code, what is wrong, where, why, and how to fix it; immutable.
+    """A finding with a stable code: what is wrong, where, why, and how to fix it. It is immutable.
 
     Two diagnostics with the same content are equal.
 
     Attributes:
-        code: letters for the room and three digits, such as ``XAC101``; never reused for another meaning.
-        message: one sentence without a full stop, with names as the user wrote them.
-        span: the place, or None if there is none (a missing file).
+        code: letters for the room and three digits, such as ``XAC101``; a code is never reused with another meaning.
+        message: one sentence without a full stop; names are as the user wrote them.
+        span: the position; None if there is none, as for a missing file.
         notes: what led to the finding: includes, macro calls, values.
         hint: how to fix the problem, or None.
-        source: the text that contains the span, for an excerpt; None if it was not stored.
+        source: the text that contains the span, from which an excerpt is shown; None if it is not available.
     """
 
     __slots__ = ("code", "hint", "message", "notes", "severity", "source", "span")
@@ -204,14 +204,14 @@ class Diagnostic:
 
     @property
     def placed_message(self) -> Phrase:
-        """The message, preceded by its place if it has one."""
+        """The message, preceded by its position if there is one."""
         return joined((str(self.span), self.message), ": ") if self.span else self.message
 
 
 class LinkwrightError(Exception):
-    """Raised for an error in the user's input, never for a bug of Linkwright.
+    """Raised for an error in the user's input, never for a bug in Linkwright.
 
-    It has at least one diagnostic.
+    It has one or more diagnostics.
     """
 
     def __init__(self, *diagnostics: Diagnostic) -> None:

@@ -1,6 +1,6 @@
-"""The extras of the distribution, which are optional libraries.
+"""The extras of the distribution: optional libraries.
 
-Commands name an extra if it is not installed.
+If a command needs an extra that is missing, its error names the extra.
 """
 
 from __future__ import annotations
@@ -32,25 +32,25 @@ EXTRAS = {
     "voice": "vosk",
     "zenoh": "zenoh",
 }
-"""Name of the extra -> the module that is missing without it."""
+"""The extras, each with a module that is missing without it."""
 
-_BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision", "lsprotocol": "lsp"}
+_EXTRA_BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision", "lsprotocol": "lsp"}
 
 
 _VERSION = sys.version_info[:2]
-_BEFORE = r"python_version < '(\d+)\.(\d+)'"  # compiled only on use, because few commands need it
+_VERSION_LIMIT = r"python_version < '(\d+)\.(\d+)'"  # compiled only on use, because few commands need it
 
 
 def install_hint(extra: str, package: str = "") -> Phrase:
-    """Return a hint on how to install an extra of `EXTRAS`.
+    """Return a hint on how to install an extra.
 
     Args:
-        extra: the name of the extra.
-        package: the missing module of the extra; by default its module in the table.
+        extra: the name of the extra, a key of `EXTRAS`.
+        package: the missing module of the extra; empty for its module in `EXTRAS`.
     """
     package = package or EXTRAS[extra]
-    newest = _newest_python(package)
-    if newest and newest <= _VERSION:
+    first_unsupported = _first_python_without_wheel(package)
+    if first_unsupported and first_unsupported <= _VERSION:
         return phrase(
             "there is no wheel of {package} for Python {version}: use an older Python, or run {command},"
             " which needs a compiler",
@@ -62,8 +62,8 @@ def install_hint(extra: str, package: str = "") -> Phrase:
     command = installation.command_for_extras(extra)
     if installation.origin.is_gone:
         return phrase(
-            "run {command}, and replace {placeholder} with the path of a checkout or wheel of "
-            "Linkwright: '{path}', from which it was installed, no longer exists",
+            "run {command}, and replace {placeholder} with the path of a checkout or wheel of Linkwright, "
+            "because '{path}', from which it was installed, no longer exists",
             command=command,
             placeholder=installation.origin.words(())[-1],
             path=installation.origin.place,
@@ -72,9 +72,9 @@ def install_hint(extra: str, package: str = "") -> Phrase:
 
 
 def package_hint(distribution: str) -> Phrase:
-    """Return a hint on how to install a package that belongs to no extra.
+    """Return a hint on how to install a package that does not belong to an extra.
 
-    The command installs it where Linkwright's Python finds it.
+    The command installs it into the environment of Linkwright's Python.
     """
     return phrase("run {command}", command=_installation().command_for_packages(distribution))
 
@@ -85,34 +85,38 @@ def _installation() -> Installation:
     return find_installation()
 
 
-def _newest_python(package: str) -> tuple[int, ...]:
-    """Return the first Python version for which a package has no wheel, else empty.
+def _first_python_without_wheel(package: str) -> tuple[int, ...]:
+    """Return the first Python version for which a package has no wheel; empty if there is none.
 
-    It is the version from which no extra requires the package.
+    From this version on, no extra requires the package.
     """
     from importlib.metadata import PackageNotFoundError, requires  # takes 10 ms, needed only for errors
 
     try:
-        asked = requires("linkwright") or []
+        requirements = requires("linkwright") or []
     except PackageNotFoundError:  # Linkwright runs from a folder without being installed
         return ()
-    found = [line for line in asked if re.match(rf"{re.escape(package)}\b", line)]
-    ends = [tuple(map(int, end.groups())) for line in found if (end := re.search(_BEFORE, line.replace('"', "'")))]
-    return max(ends, default=()) if len(ends) == len(found) else ()
+    package_requirements = [line for line in requirements if re.match(rf"{re.escape(package)}\b", line)]
+    limits = [
+        tuple(map(int, match.groups()))
+        for line in package_requirements
+        if (match := re.search(_VERSION_LIMIT, line.replace('"', "'")))
+    ]
+    return max(limits, default=()) if len(limits) == len(package_requirements) else ()
 
 
 def missing_extra(code: str, error: ModuleNotFoundError) -> LinkwrightError:
     """Return the error for a library that cannot be imported because an extra is missing.
 
     Args:
-        code: the code of the finding.
+        code: the code of the diagnostic.
         error: the exception that the import of the library raised.
 
     Raises:
         ModuleNotFoundError: `error` itself, if the module belongs to no extra.
     """
     package = (error.name or "").partition(".")[0]
-    if package not in _BY_MODULE:
+    if package not in _EXTRA_BY_MODULE:
         raise error
     message = phrase("the package '{package}' is not installed", package=package)
-    return LinkwrightError(Diagnostic(code, message, hint=install_hint(_BY_MODULE[package], package)))
+    return LinkwrightError(Diagnostic(code, message, hint=install_hint(_EXTRA_BY_MODULE[package], package)))

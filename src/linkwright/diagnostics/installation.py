@@ -1,7 +1,7 @@
-"""How this Linkwright was installed, and the commands that add packages to it.
+"""How this Linkwright was installed, and with which commands packages are added to it.
 
 Installers record this: ``direct_url.json`` (PEP 610) names the origin of a distribution, and ``pipx_metadata.json`` or
-``uv-receipt.toml`` marks an environment that belongs to a tool, which recreates the environment when it installs again.
+``uv-receipt.toml`` marks an environment of a tool, which recreates the environment when it installs again.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from linkwright.loading.lean_typing import Any
 
 NAME = "linkwright"
 ENGINE = "linkwright-core"
-"""The distribution of the engine alone."""
-SOMEWHERE = "PATH_TO_LINKWRIGHT"
-"""A placeholder in a command for a checkout or wheel that no longer exists."""
+"""The name of the distribution with the engine only."""
+PATH_PLACEHOLDER = "PATH_TO_LINKWRIGHT"
+"""The placeholder in a command for the path of a checkout or wheel that no longer exists."""
 
 
 @dataclass(frozen=True)
 class Origin:
-    """The origin of a distribution.
+    """Where a distribution was installed from.
 
     Attributes:
         place: a path or a URL; empty for a package index.
@@ -50,26 +50,26 @@ class Origin:
         return bool(self.place) and "://" not in self.place and not Path(self.place).exists()
 
     def words(self, extras: Iterable[str]) -> list[str]:
-        """Return the installer's arguments that install the distribution with extras."""
-        wanted = f"[{','.join(sorted(extras))}]" if extras else ""
+        """Return the arguments with which an installer installs the distribution with extras."""
+        extras_suffix = f"[{','.join(sorted(extras))}]" if extras else ""
         if "://" in self.place:
-            return [f"{self.name}{wanted} @ {self.place}"]
-        place = SOMEWHERE if self.is_gone else self.place or self.name
+            return [f"{self.name}{extras_suffix} @ {self.place}"]
+        place = PATH_PLACEHOLDER if self.is_gone else self.place or self.name
         if self.place and Path(self.place) == Path.cwd():
             place = "."
-        return [*(["-e"] if self.editable else []), f"{place}{wanted}"]
+        return [*(["-e"] if self.editable else []), f"{place}{extras_suffix}"]
 
 
 @dataclass(frozen=True)
 class Installation:
-    """A distribution in an environment.
+    """A distribution in its environment.
 
     Attributes:
         origin: the origin of the distribution.
-        tool: the words of pip or uv that install into the environment; `PIPX` or `UV_TOOL` if it belongs to such a
-            tool.
+        tool: the start of the command of pip or uv that installs into the environment; `PIPX` or `UV_TOOL` if the
+                environment belongs to such a tool.
         extras: the extras that the tool was asked to install, and that it would drop if they were not requested again.
-        beside: other packages that the tool was asked to install, and that it would drop in the same way.
+        other_packages: other packages that the tool was asked to install, and that it would drop in the same way.
     """
 
     origin: Origin
@@ -78,58 +78,60 @@ class Installation:
     other_packages: tuple[str, ...] = ()
 
     def command_for_extras(self, *extras: str) -> str:
-        """Return the command that adds extras of Linkwright."""
+        """Return the command that adds extras to the installation."""
         return self._command(self.tool, {*self.extras, *extras}, self.other_packages)
 
     def command_for_packages(self, *packages: str) -> str:
-        """Return the command that adds other packages, which are given by their names for pip."""
+        """Return the command that adds other packages, by their names for pip."""
         if self.tool == PIPX:
-            return _quoted(["pipx", "inject", self.origin.name, *packages])
+            return _quote_command(["pipx", "inject", self.origin.name, *packages])
         if self.tool == UV_TOOL:
             return self._command(self.tool, self.extras, (*self.other_packages, *packages))
-        return _quoted([*self.tool, *packages])
+        return _quote_command([*self.tool, *packages])
 
-    def _command(self, tool: tuple[str, ...], extras: Iterable[str], beside: Iterable[str]) -> str:
-        return _quoted([*tool, *(word for name in beside for word in ("--with", name)), *self.origin.words(extras)])
+    def _command(self, tool: tuple[str, ...], extras: Iterable[str], other_packages: Iterable[str]) -> str:
+        return _quote_command(
+            [*tool, *(argument for name in other_packages for argument in ("--with", name)), *self.origin.words(extras)]
+        )
 
 
 PIPX = ("pipx", "install", "--force")
 UV_TOOL = ("uv", "tool", "install")
-_EXTRAS = lazy_pattern(r"\[([^\]]*)\]")
-_PLAIN = lazy_pattern(r"[\w@%+=:,./\\-]+")
-_CACHE_OF_UV = ("archive-v", "environments-v")
+_EXTRAS_PATTERN = lazy_pattern(r"\[([^\]]*)\]")
+_UNQUOTED_PATTERN = lazy_pattern(r"[\w@%+=:,./\\-]+")
+_UV_CACHE_FOLDERS = ("archive-v", "environments-v")
 
 
 def find_installation() -> Installation:
     """Return how the running Linkwright was installed."""
-    return installation_in(Path(sys.prefix), _origin())
+    return installation_in(Path(sys.prefix), _find_origin())
 
 
 def installation_in(prefix: Path, origin: Origin) -> Installation:
-    """Return the installation in an environment.
+    """Return the installation of Linkwright in an environment.
 
     Args:
-        prefix: the environment's folder.
+        prefix: the folder of the environment.
         origin: the origin of Linkwright.
     """
-    pipx, receipt = prefix / "pipx_metadata.json", prefix / "uv-receipt.toml"
-    if pipx.is_file():
-        asked = json.loads(pipx.read_text(encoding="utf-8"))["main_package"]["package_or_url"]
-        return Installation(origin, PIPX, _extras_in(asked))
+    pipx_metadata, receipt = prefix / "pipx_metadata.json", prefix / "uv-receipt.toml"
+    if pipx_metadata.is_file():
+        requirement = json.loads(pipx_metadata.read_text(encoding="utf-8"))["main_package"]["package_or_url"]
+        return Installation(origin, PIPX, _parse_extras(requirement))
     if receipt.is_file():
         toml: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
         requirements = toml.loads(receipt.read_text(encoding="utf-8"))["tool"]["requirements"]
-        own = (asked for asked in requirements if asked["name"] == origin.name)
-        others = tuple(asked["name"] for asked in requirements if asked["name"] != origin.name)
-        extras = frozenset(extra for asked in own for extra in asked.get("extras", ()))
-        return Installation(origin, UV_TOOL, extras, others)
-    if prefix.parent.name.startswith(_CACHE_OF_UV):  # uvx created the environment for this run only
+        own_requirements = (asked for asked in requirements if asked["name"] == origin.name)
+        other_packages = tuple(asked["name"] for asked in requirements if asked["name"] != origin.name)
+        extras = frozenset(extra for asked in own_requirements for extra in asked.get("extras", ()))
+        return Installation(origin, UV_TOOL, extras, other_packages)
+    if prefix.parent.name.startswith(_UV_CACHE_FOLDERS):  # uvx created the environment for this run only
         return Installation(origin, UV_TOOL)
-    return Installation(origin, _pip(prefix, origin))
+    return Installation(origin, _pip_command(prefix, origin))
 
 
 def origin_of(direct_url: Mapping[str, Any], name: str = NAME) -> Origin:
-    """Return the origin of a distribution, given its ``direct_url.json``."""
+    """Return the origin of a distribution from the content of its ``direct_url.json``."""
     url = direct_url["url"]
     if version_control := direct_url.get("vcs_info"):
         revision = version_control.get("requested_revision")
@@ -145,7 +147,7 @@ def origin_of(direct_url: Mapping[str, Any], name: str = NAME) -> Origin:
     return Origin(url, name=name)
 
 
-def _origin() -> Origin:
+def _find_origin() -> Origin:
     for name in (NAME, ENGINE):
         with suppress(metadata.PackageNotFoundError):
             direct_url = metadata.distribution(name).read_text("direct_url.json")
@@ -154,25 +156,25 @@ def _origin() -> Origin:
     return Origin(str(checkout), editable=True) if (checkout / "pyproject.toml").is_file() else Origin()
 
 
-def _pip(prefix: Path, origin: Origin) -> tuple[str, ...]:
-    """Return the command that installs into an environment that does not belong to a tool."""
+def _pip_command(prefix: Path, origin: Origin) -> tuple[str, ...]:
+    """Return the start of the command that installs into an environment without a tool of its own."""
     if find_spec("pip"):
-        found = shutil.which("pip")
-        in_reach = found is not None and Path(found).parent == Path(sys.executable).parent
-        return ("pip", "install") if in_reach else (sys.executable, "-m", "pip", "install")
-    own = Path(origin.place, ".build", "uv", "bin", "uv")  # installed by the Makefile
-    uv = str(own) if shutil.which("uv") is None and own.is_file() else "uv"
-    active = os.environ.get("VIRTUAL_ENV", "") == str(prefix)
-    return (uv, "pip", "install", *(() if active else ("--python", str(prefix))))
+        pip_path = shutil.which("pip")
+        is_on_path = pip_path is not None and Path(pip_path).parent == Path(sys.executable).parent
+        return ("pip", "install") if is_on_path else (sys.executable, "-m", "pip", "install")
+    checkout_uv = Path(origin.place, ".build", "uv", "bin", "uv")  # installed by the Makefile
+    uv = str(checkout_uv) if shutil.which("uv") is None and checkout_uv.is_file() else "uv"
+    is_active = os.environ.get("VIRTUAL_ENV", "") == str(prefix)
+    return (uv, "pip", "install", *(() if is_active else ("--python", str(prefix))))
 
 
-def _extras_in(requirement: str) -> frozenset[str]:
-    found = _EXTRAS.search(requirement)
-    return frozenset(found[1].replace(" ", "").split(",")) if found else frozenset()
+def _parse_extras(requirement: str) -> frozenset[str]:
+    match = _EXTRAS_PATTERN.search(requirement)
+    return frozenset(match[1].replace(" ", "").split(",")) if match else frozenset()
 
 
-def _quoted(words: list[str]) -> str:
-    """Return a command line for the user's shell; the shell of Windows has only double quotes."""
+def _quote_command(words: list[str]) -> str:
+    """Return a command line for the user's shell; on Windows with double quotes, the only ones of its shell."""
     if sys.platform == "win32":
-        return " ".join(word if _PLAIN.fullmatch(word) else f'"{word}"' for word in words)
+        return " ".join(word if _UNQUOTED_PATTERN.fullmatch(word) else f'"{word}"' for word in words)
     return shlex.join(words)

@@ -1,6 +1,6 @@
-"""Finds the known name of which another name is a misspelling, never a sibling's name.
+"""Find the existing name that another name misspells, but never the name of a sibling.
 
-``wheel_2`` is not a misspelling of ``wheel_1``, nor is ``lwheel`` of ``rwheel``, or ``stopKp`` of ``stopKd``: they name
+``wheel_2`` does not misspell ``wheel_1``, nor ``lwheel`` ``rwheel``, nor ``stopKp`` ``stopKd``: they name different
 different parts, and a fix that confuses them breaks the robot.
 """
 
@@ -10,36 +10,36 @@ from collections.abc import Iterable
 
 from linkwright.diagnostics.suggest import is_misspelt, words_of
 
-_SHORTEST = 3
-"""Shorter words, such as ``fl`` and ``fr`` of wheels, are never taken for misspellings of each other."""
+_MIN_LENGTH = 3
+"""The minimum length of a word that can be misspelt; shorter words, such as ``fl`` and ``fr``, differ on purpose."""
 
 
-def misspelling_of(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is misspelt, or None.
+def find_misspelt(name: str, names: Iterable[str]) -> str | None:
+    """Return the existing name that a name misspells, or None.
 
-    It is None if there is no such name, or if several with different words are possible.
+    It is None if there is no such name, or if there are several with different words.
     """
-    meant = [each for each in known if each != name and _is_slip(name, each)]
-    return meant[0] if len({"".join(words_of(item)) for item in meant}) == 1 else None
+    candidates = [candidate for candidate in names if candidate != name and _is_misspelling(name, candidate)]
+    return candidates[0] if len({"".join(words_of(item)) for item in candidates}) == 1 else None
 
 
-def _is_slip(name: str, known: str) -> bool:
-    """Return whether two names differ only in case, separators or a typing error in a word."""
+def _is_misspelling(name: str, known: str) -> bool:
+    """Return whether two names differ only in case, in separators, or by a typing error in one word."""
     words, others = words_of(name), words_of(known)
     if not words or not others:
         return False
     if "".join(words) == "".join(others):
         return True
     if len(words) != len(others):
-        # A separator may be missing, and a letter in addition.
-        return _is_slip_of_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known))
-    different = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
-    return len(different) == 1 and _is_slip_of_word(*different[0])
+        # Either a separator is missing, or there is also a typing error.
+        return _is_misspelt_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known))
+    differing_pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
+    return len(differing_pairs) == 1 and _is_misspelt_word(*differing_pairs[0])
 
 
-def _is_slip_of_word(word: str, known: str) -> bool:
+def _is_misspelt_word(word: str, known: str) -> bool:
     return (
-        min(len(word), len(known)) >= _SHORTEST
+        min(len(word), len(known)) >= _MIN_LENGTH
         and not word.isdigit()
         and not known.isdigit()
         and word[0] == known[0]

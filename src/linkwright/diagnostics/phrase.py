@@ -1,8 +1,8 @@
-"""Translatable texts, which consist of an English template and its arguments.
+"""Translatable texts: an English template with its arguments.
 
-A `Phrase` is an ordinary string that contains the English text. To translate it, a reader looks up its template in the
-catalogue of another language, and formats the result with the same arguments, which are translated if they are phrases
-themselves.
+A `Phrase` is an ordinary string that contains the English text. For another language, the template is looked up in
+that language's catalogue and formatted with the same arguments. Arguments that are phrases are translated as
+well.
 """
 
 from __future__ import annotations
@@ -15,38 +15,37 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 TERMS = "term"
-"""The context of words that tables and files hold, such as ``link``, in catalogues."""
+"""The context of terms from tables and files, such as ``link``, in catalogues."""
 
 FOREIGN = "foreign"
-"""The context of texts from other programs: Python, the operating system, libraries."""
+"""The context of texts from other programs: Python, the operating system and libraries."""
 
 RULES = "rule"
-"""The context of the titles of the pages of rules and other diagnostic codes."""
+"""The context of titles of pages about rules and other diagnostic codes."""
 
 
 class Wording(Protocol):
-    """The catalogue of a language, like gettext's translations.
+    """The catalogue of a language, with the interface of gettext's translations.
 
-    An unknown text is returned unchanged.
+    A text that the catalogue lacks is returned unchanged.
     """
 
     def gettext(self, message: str, /) -> str:
-        """Return the template in this language."""
+        """Return the translation of a template."""
 
     def ngettext(self, one: str, many: str, count: int, /) -> str:
-        """Return the singular or plural template for a count, in this language."""
+        """Return the translation of a singular or plural template for a count."""
 
     def pgettext(self, context: str, message: str, /) -> str:
         """Return the translation of a template that depends on the context."""
 
 
 class Phrase(str):
-    """An English text that can be translated; created by `phrase` and the functions after it.
+    """An English text that can be translated. It is created by `phrase` and the other functions of this module.
 
     Attributes:
-        template: the text with a named placeholder for each argument; without arguments, the text itself with its
-            braces.
-        arguments: the values of the placeholders: phrases, the user's own words, numbers.
+        template: the text with a named placeholder for each argument; without arguments, the literal text.
+        arguments: the values of the placeholders: phrases, names from the user's input, and numbers.
     """
 
     __slots__ = ("arguments", "template")
@@ -55,16 +54,16 @@ class Phrase(str):
 
     def __new__(cls, template: str, arguments: Mapping[str, object] | None = None) -> Self:
         """Create the phrase by filling in its template."""
-        kept = {name: _kept(value) for name, value in (arguments or {}).items()}
-        self = super().__new__(cls, template.format_map(kept) if kept else template)
+        values = {name: _to_argument(value) for name, value in (arguments or {}).items()}
+        self = super().__new__(cls, template.format_map(values) if values else template)
         self.template = template
-        self.arguments = kept
+        self.arguments = values
         return self
 
     def __str__(self) -> Phrase:
         """Return the phrase itself.
 
-        The text of an exception raised with it is therefore still a phrase.
+        So the text of an exception that was raised with a phrase is still a phrase.
         """
         return self
 
@@ -73,7 +72,7 @@ class Phrase(str):
 
     def translated_text(self, wording: Wording) -> str:
         """Return the text in another language."""
-        return self._filled(wording.gettext(self.template), wording) if self.template else ""
+        return self._fill(wording.gettext(self.template), wording) if self.template else ""
 
     @property
     def chosen_template(self) -> str:
@@ -81,10 +80,10 @@ class Phrase(str):
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:
-        """Return the text in another language, with its template and arguments."""
+        """Return a phrase with the text in another language, and with the English template and the arguments."""
         return _Translated(self.translated_text(wording), self)
 
-    def _filled(self, template: str, wording: Wording) -> str:
+    def _fill(self, template: str, wording: Wording) -> str:
         if not self.arguments:
             return template
         from string import Formatter  # imported here, because commands in English do not need it
@@ -92,20 +91,20 @@ class Phrase(str):
         text = ""
         after_phrase = False
         for literal, name, spec, _ in Formatter().parse(template):
-            text = _spaced(text, literal) if after_phrase else text + literal
+            text = _join_spaced(text, literal) if after_phrase else text + literal
             if name is None:
                 continue
             value = self.arguments[name]
             after_phrase = isinstance(value, Phrase)
             if isinstance(value, Phrase):
-                text = _spaced(text, value.translated_text(wording))
+                text = _join_spaced(text, value.translated_text(wording))
             else:
                 text += format(value, spec or "")
         return text
 
 
 class _Translated(Phrase):
-    """A phrase in another language."""
+    """A phrase with its text in another language."""
 
     __slots__ = ("original",)
     original: Phrase
@@ -150,11 +149,11 @@ class _Counted(Phrase):
     def translated_text(self, wording: Wording) -> str:
         count = self.arguments["count"]
         assert isinstance(count, int)
-        return self._filled(wording.ngettext(self.template, self.several, count), wording)
+        return self._fill(wording.ngettext(self.template, self.several, count), wording)
 
 
 class _Known(Phrase):
-    """A text that is looked up as a whole, in a context."""
+    """A text that is translated as a whole, in a context of the catalogue."""
 
     __slots__ = ("context",)
     context: str
@@ -172,7 +171,7 @@ class _Known(Phrase):
 
 
 class _Joined(Phrase):
-    """Several texts joined with separators."""
+    """Several texts, joined with separators."""
 
     __slots__ = ("items", "last", "separator")
     items: tuple[str, ...]
@@ -180,7 +179,7 @@ class _Joined(Phrase):
     last: str
 
     def __new__(cls, items: tuple[str, ...], separator: str, last: str) -> Self:
-        self = super().__new__(cls, _in_a_row(items, separator, last))
+        self = super().__new__(cls, _join_items(items, separator, last))
         self.items = items
         self.separator = separator
         self.last = last
@@ -191,28 +190,28 @@ class _Joined(Phrase):
 
     def translated_text(self, wording: Wording) -> str:
         items = [item.translated_text(wording) if isinstance(item, Phrase) else item for item in self.items]
-        return _in_a_row(items, wording.pgettext(TERMS, self.separator), wording.pgettext(TERMS, self.last))
+        return _join_items(items, wording.pgettext(TERMS, self.separator), wording.pgettext(TERMS, self.last))
 
 
 def phrase(template: str, **arguments: object) -> Phrase:
     """Return a text that can be translated.
 
     Args:
-        template: the English text, which must be a literal, because the catalogues are checked against the literals in
-            the source. Each argument has a placeholder with its name, optionally with a number format: ``{length:g}
+        template: the English text. It must be a literal, because the catalogues are checked against the literals in
+                the source. Each argument has a placeholder with its name, optionally with a number format: ``{length:g}
             m``.
-        arguments: the user's own words, numbers, or phrases, which are translated, too.
+        arguments: names from the user's input, numbers, or phrases; phrases are translated as well.
     """
     return Phrase(template, arguments)
 
 
 def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
-    """Return a translatable text with a count, whose English has a singular and a plural.
+    """Return a translatable text with a count; its English has a singular and a plural.
 
     Args:
         one: the template for the singular; ``{count}`` is the number.
         several: the template for any other number.
-        count: the number.
+        count: the number that selects the template.
         arguments: the other arguments of the templates.
     """
     return _Counted(one, {"count": count, **arguments}, several)
@@ -221,23 +220,23 @@ def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
 def term(word: str) -> Phrase:
     """Return a phrase for a term from a table or a file, such as the tag ``link``.
 
-    It is translated as a whole, among the terms.
+    It is translated as a whole, with the context for terms.
     """
     return _Known(word, TERMS)
 
 
 def title_of_page(text: str) -> Phrase:
-    """Return a phrase for the title of the page on a rule or diagnostic code.
+    """Return a phrase for the title of the page about a rule or diagnostic code.
 
-    It is translated as a whole, among the titles.
+    It is translated as a whole, with the context for titles.
     """
     return _Known(text, RULES)
 
 
 def foreign(words: object) -> Phrase:
-    """Return a phrase for a text of another program, such as an exception's.
+    """Return a phrase for a text from another program, such as an exception's.
 
-    It is translated if a catalogue has it.
+    It is translated if a catalogue contains it.
     """
     text = str(words)
     return text if isinstance(text, Phrase) else _Known(text, FOREIGN)
@@ -252,9 +251,9 @@ def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None)
     """Join texts, as in ``a, b or c``.
 
     Args:
-        texts: the user's own words or phrases.
+        texts: phrases, or names from the user's input.
         separator: the text between two items.
-        last: the separator before the last item, such as ``" or "``.
+        last: the separator before the last item, such as ``" or "``; None for `separator`.
     """
     return _Joined(tuple(texts), separator, separator if last is None else last)
 
@@ -269,21 +268,21 @@ def as_phrase(text: str) -> Phrase:
     return text if isinstance(text, Phrase) else Phrase(text)
 
 
-def _kept(value: object) -> object:
+def _to_argument(value: object) -> object:
     return value if isinstance(value, (str, int, float)) else str(value)
 
 
-def _in_a_row(items: Iterable[str], separator: str, last: str) -> str:
-    *first, end = items or ("",)
-    return f"{separator.join(first)}{last}{end}" if first else end
+def _join_items(items: Iterable[str], separator: str, last: str) -> str:
+    *leading, final = items or ("",)
+    return f"{separator.join(leading)}{last}{final}" if leading else final
 
 
-def _spaced(left: str, right: str) -> str:
-    """Join two texts, with a space between Latin and Chinese letters, as is usual in Chinese."""
-    return f"{left} {right}" if _meet(left[-1:], right[:1]) else left + right
+def _join_spaced(left: str, right: str) -> str:
+    """Join two texts, with a space where a Latin and a Chinese letter meet, as is usual in Chinese."""
+    return f"{left} {right}" if _needs_space(left[-1:], right[:1]) else left + right
 
 
-def _meet(left: str, right: str) -> bool:
+def _needs_space(left: str, right: str) -> bool:
     return (_is_latin(left, "<>)") and _is_chinese(right)) or (_is_chinese(left) and _is_latin(right, "<("))
 
 

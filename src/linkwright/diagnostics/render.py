@@ -1,4 +1,4 @@
-"""Formats diagnostics as text for a terminal and as plain data."""
+"""Format diagnostics as text for a terminal, and as plain data."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
-MOST_PRINTED = 500
-"""The most findings to print: no user reads more, and the errors among them would scroll away."""
+MAX_PRINTED = 500
+"""The maximum number of findings to print: no user reads more, and the errors among them would scroll away."""
 _TAB = "    "
-_WIDEST = 300
-_AROUND = 80
-"""Of a longer line so many characters are shown before and after the place."""
-_SEEN_AS = {
+_MAX_LINE = 300
+_CONTEXT = 80
+"""The number of characters of a longer line that are shown before and after the position."""
+_REPLACEMENTS = {
     **{code: 0x2400 + code for code in range(0x20) if chr(code) not in "\t\n"},
     0x7F: 0x2421,
     **dict.fromkeys((*range(0x80, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)), 0xFFFD),
 }
-"""Characters that control a terminal or the order of the text after them -> the text printed in their place."""
+"""The replacements of characters that control a terminal or the order of the text after them."""
 
 
 def wants_colour(stream: IO[str]) -> bool:
-    """Return whether output to a stream is coloured.
+    """Return whether output to a stream should be coloured.
 
-    It is coloured on a terminal, unless NO_COLOR is set or TERM is ``dumb``.
+    It should on a terminal, unless NO_COLOR is set or TERM is ``dumb``.
     """
     if os.environ.get("NO_COLOR"):
         return False
@@ -41,10 +41,10 @@ def wants_colour(stream: IO[str]) -> bool:
 def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") -> str:
     """Format a diagnostic for a terminal.
 
-    The result has a head line, the place, an excerpt with a caret, notes and the hint. The diagnostic's texts are
-    printed unchanged; `lang` is the language of the labels, such as "error" and "hint".
+    The result has a headline, the position, an excerpt with carets, notes and the hint. The texts of the diagnostic are
+    not translated; `lang` is the language of the labels, such as "error" and "hint".
     """
-    paint = _Paint(colour)
+    paint = _Painter(colour)
     words = labels(lang)
     severity, colon = diagnostic.severity, words[": "]
     head = f"{words[severity.value]}[{diagnostic.code}]"
@@ -53,42 +53,45 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
         lines.append(f"  {paint('-->', '34')} {_place(diagnostic.span)}")
         lines += _excerpt(diagnostic, paint)
     for note in diagnostic.notes:
-        where = f" ({_place(note.span)})" if note.span else ""
-        lines.append(f"   {paint('=', '34')} {words['note']}{colon}{_indented(note.message)}{where}")
+        position = f" ({_place(note.span)})" if note.span else ""
+        lines.append(f"   {paint('=', '34')} {words['note']}{colon}{_indent(note.message)}{position}")
     if diagnostic.hint:
-        lines.append(f"   {paint('=', '34')} {paint(words['hint'], '32')}{colon}{_indented(diagnostic.hint)}")
+        lines.append(f"   {paint('=', '34')} {paint(words['hint'], '32')}{colon}{_indent(diagnostic.hint)}")
     return "\n".join(lines)
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
-    """Write diagnostics to a stream, in the reader's language.
+    """Write diagnostics to a stream, in the user's language.
 
-    They are coloured if the stream supports it. If there are more than `MOST_PRINTED`, the rest is only counted;
-    formats for programs contain all of them.
+    They are coloured if the stream supports it. If there are too many, the rest is only counted; formats for programs
+    contain all of them.
     """
     colour, lang = wants_colour(stream), language()
-    found = list(diagnostics)
-    shown = _most_severe(found)
-    for diagnostic in translated(shown):
+    all_diagnostics = list(diagnostics)
+    printed = _most_severe(all_diagnostics)
+    for diagnostic in translated(printed):
         print(render(diagnostic, colour=colour, lang=lang), file=stream)
-    if len(shown) < len(found):
-        print(localized(phrase("... and {count:,} more findings", count=len(found) - len(shown))), file=stream)
+    if len(printed) < len(all_diagnostics):
+        print(
+            localized(phrase("... and {count:,} more findings", count=len(all_diagnostics) - len(printed))), file=stream
+        )
     stream.flush()
 
 
-def _most_severe(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
-    """Return at most `MOST_PRINTED` findings in their order, preferring errors."""
-    if len(found) <= MOST_PRINTED:
-        return found
-    numbers = sorted(range(len(found)), key=lambda number: found[number].severity is not Severity.ERROR)
-    return [found[number] for number in sorted(numbers[:MOST_PRINTED])]
+def _most_severe(diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+    """Return the findings to print, in their order; if there are too many, errors take precedence."""
+    if len(diagnostics) <= MAX_PRINTED:
+        return diagnostics
+    indices = sorted(range(len(diagnostics)), key=lambda index: diagnostics[index].severity is not Severity.ERROR)
+    return [diagnostics[number] for number in sorted(indices[:MAX_PRINTED])]
 
 
 def to_data(diagnostic: Diagnostic) -> dict[str, Any]:
-    """Convert a diagnostic to JSON-ready data.
+    """Return a diagnostic as data that can be written as JSON.
 
-    Positions are 1-based, and missing ones are None. ``template`` and ``arguments`` are the parts of the message, in
-    English: the same finding has the same template for every robot and in every language.
+    Lines and columns count from 1; a missing position is None. ``template`` and ``arguments`` are the English parts
+    of the
+    message: the same finding has the same template for every robot and in every language.
     """
     message = as_phrase(diagnostic.message)
     return {
@@ -123,7 +126,7 @@ def _note_data(note: Note) -> dict[str, Any]:
     }
 
 
-class _Paint:
+class _Painter:
     def __init__(self, colour: bool) -> None:
         self._colour = colour
 
@@ -136,7 +139,7 @@ def _place(span: Span) -> str:
     return f"{printable(path)}:{span.line}:{span.column}"
 
 
-def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
+def _excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
     span, source = diagnostic.span, diagnostic.source
     if span is None or source is None or source.name != span.file:
         return []
@@ -148,34 +151,34 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
         marked = line[span.column - 1 : max(span.end_column - 1, span.column)]
     else:
         marked = line[span.column - 1 :]
-    if len(line) > _WIDEST:  # for example, an entire robot in one line
-        cut = max(0, len(before) - _AROUND)
-        end = len(before) + _AROUND
-        line = f"{'...' if cut else ''}{line[cut:end]}{'...' if end < len(line) else ''}"
-        before = f"{'...' if cut else ''}{before[cut:]}"
-        marked = marked[:_AROUND]
+    if len(line) > _MAX_LINE:  # for example, an entire robot in one line
+        start = max(0, len(before) - _CONTEXT)
+        end = len(before) + _CONTEXT
+        line = f"{'...' if start else ''}{line[start:end]}{'...' if end < len(line) else ''}"
+        before = f"{'...' if start else ''}{before[start:]}"
+        marked = marked[:_CONTEXT]
     number = str(span.line)
     gutter = " " * len(number)
     bar = paint("|", "34")
     carets = paint("^" * max(1, shown_width(marked)), _COLOURS[diagnostic.severity])
-    shown = printable(line).replace("\t", _TAB)
+    visible_line = printable(line).replace("\t", _TAB)
     return [
         f"{gutter} {bar}",
-        f"{paint(number, '34')} {bar} {shown}",
+        f"{paint(number, '34')} {bar} {visible_line}",
         f"{gutter} {bar} {' ' * shown_width(before)}{carets}",
     ]
 
 
 def printable(text: str) -> str:
-    """Return the text with control characters replaced by visible ones.
+    """Return the text with control characters replaced by visible characters.
 
-    A terminal can print the result.
+    The result is safe to print on a terminal.
     """
-    return text.translate(_SEEN_AS)
+    return text.translate(_REPLACEMENTS)
 
 
 def shown_width(text: str) -> int:
-    """Return the number of terminal columns that a text takes."""
+    """Return the number of terminal columns that a printed text occupies."""
     return sum(map(_columns, text))
 
 
@@ -191,12 +194,12 @@ def _columns(character: str) -> int:
     return 2 if east_asian_width(character) in "WF" else 1
 
 
-def _indented(text: str) -> str:
+def _indent(text: str) -> str:
     return printable(text).replace("\n", "\n     ")
 
 
 def display_path(path: str | Path) -> str:
-    """Return a path in the form for messages: relative to the current folder if it is below it."""
+    """Return a path as messages show it: relative to the current folder if it is inside."""
     text = str(path)
     relative = os.path.relpath(text)
     return text if relative.startswith("..") else relative

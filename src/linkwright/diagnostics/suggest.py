@@ -1,4 +1,4 @@
-"""Searches for similar names, which hints suggest."""
+"""Search for similar names to suggest in hints."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-_LISTED = 8
+_MAX_LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
-_ADDRESS = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
-_MOST_COMPARED = 1_000
-"""Of more names than these, only those are compared that begin alike and are about as long."""
-_WORD = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
-_SHORT = 2
-"""Words of so few letters cannot be recognised after a typing error, except after two swapped letters."""
+_ADDRESS_PATTERN = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
+_MAX_COMPARED = 1_000
+"""The maximum number of names to compare; of more, only those with a similar beginning and length are used."""
+_WORD_PATTERN = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
+_MAX_SHORT_LENGTH = 2
+"""The length up to which a word counts as misspelt only if two of its letters are swapped."""
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
-    """Return the candidates that `name` may be meant to be, best first, ignoring case.
+    """Return the candidates that are most similar to a name, ignoring case, the best first.
 
-    A common word, as in the names of two robots' descriptions, is not enough: the names may only differ by typing
-    errors, missing words, or the order of words.
+    A common word, as in the names of two robots, is not enough: the names may only differ by typing errors, by missing
+    words, or in the order of words.
     """
     from difflib import get_close_matches  # imported here, because most commands need no hint
 
@@ -35,57 +35,57 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     for candidate in candidates:
         by_fold.setdefault(candidate.casefold(), candidate)
     folded = name.casefold()
-    near: Iterable[str] = by_fold
-    if len(by_fold) > _MOST_COMPARED:
-        near = [other for other in by_fold if abs(len(other) - len(folded)) < 3 and other[:2] == folded[:2]]
-        near = near[:_MOST_COMPARED]
-    close = get_close_matches(folded, near, n=4 * limit, cutoff=0.6)
-    return [by_fold[match] for match in close if _is_alike(name, by_fold[match])][:limit]
+    comparable: Iterable[str] = by_fold
+    if len(by_fold) > _MAX_COMPARED:
+        comparable = [other for other in by_fold if abs(len(other) - len(folded)) < 3 and other[:2] == folded[:2]]
+        comparable = comparable[:_MAX_COMPARED]
+    matches = get_close_matches(folded, comparable, n=4 * limit, cutoff=0.6)
+    return [by_fold[match] for match in matches if _is_similar(name, by_fold[match])][:limit]
 
 
 def words_of(name: str) -> list[str]:
     """Return the words of a name in lower case, split at separators, capitals and numbers."""
-    return [word.casefold() for word in re.findall(_WORD, name)]
+    return [word.casefold() for word in re.findall(_WORD_PATTERN, name)]
 
 
-def _is_alike(name: str, other: str) -> bool:
-    """Return whether one name may be meant to be another.
+def _is_similar(name: str, other: str) -> bool:
+    """Return whether a name may be a misspelling of another name.
 
-    The words that they do not share must be typing errors, or extra words of one of them.
+    The words that they do not share must be typing errors, or be extra words of one name.
     """
     words, others = words_of(name), words_of(other)
     if "".join(words) == "".join(others):
         return True
-    own = list(words)
-    theirs = []
+    only_in_name = list(words)
+    only_in_other = []
     for word in others:
-        if word in own:
-            own.remove(word)
+        if word in only_in_name:
+            only_in_name.remove(word)
         else:
-            theirs.append(word)
-    if not own or not theirs:
-        return len(own) + len(theirs) < len(words) + len(others)
-    if len(own) == len(theirs):
-        return all(any(_is_slip(word, meant) for meant in theirs) for word in own)
-    return _is_slip("".join(own), "".join(theirs))
+            only_in_other.append(word)
+    if not only_in_name or not only_in_other:
+        return len(only_in_name) + len(only_in_other) < len(words) + len(others)
+    if len(only_in_name) == len(only_in_other):
+        return all(any(_is_misspelling(word, other_word) for other_word in only_in_other) for word in only_in_name)
+    return _is_misspelling("".join(only_in_name), "".join(only_in_other))
 
 
-def _is_slip(word: str, meant: str) -> bool:
-    """Return whether a word is a misspelling or abbreviation of another; numbers never are."""
-    shorter, longer = sorted((word, meant), key=len)
-    if word.isdigit() or meant.isdigit():
+def _is_misspelling(word: str, other: str) -> bool:
+    """Return whether a word is a misspelling or an abbreviation of another word; a number never is."""
+    shorter, longer = sorted((word, other), key=len)
+    if word.isdigit() or other.isdigit():
         return False
-    if len(longer) == len(shorter) and sorted(word) == sorted(meant):
-        return _is_within(word, meant, 1 + len(word) // 4)
-    if word[0] == meant[0] and _is_abbreviation(shorter, longer):
+    if len(longer) == len(shorter) and sorted(word) == sorted(other):
+        return _is_within(word, other, 1 + len(word) // 4)
+    if word[0] == other[0] and _is_abbreviation(shorter, longer):
         return True
-    if len(shorter) <= _SHORT or (len(shorter) == len(longer) and word[0] != meant[0]):
+    if len(shorter) <= _MAX_SHORT_LENGTH or (len(shorter) == len(longer) and word[0] != other[0]):
         return False
-    return longer.startswith(shorter) or _is_within(word, meant, max(1, len(longer) // 3))
+    return longer.startswith(shorter) or _is_within(word, other, max(1, len(longer) // 3))
 
 
 def _is_abbreviation(shorter: str, longer: str) -> bool:
-    """Return whether a word is another one without some letters, such as ``cnt`` of ``count``.
+    """Return whether a word abbreviates another one by omitting letters, as ``cnt`` abbreviates ``count``.
 
     At most half of the letters may be omitted.
     """
@@ -94,58 +94,60 @@ def _is_abbreviation(shorter: str, longer: str) -> bool:
 
 
 def is_misspelt(name: str, names: Iterable[str]) -> bool:
-    """Return whether a name differs from another by a missing, extra, wrong or swapped letter.
+    """Return whether a name differs from one of some names by a missing, extra, wrong or swapped letter.
 
     Long names may have more errors, one more for every ten letters.
     """
     return any(_is_within(name, other, 1 + len(name) // 10) for other in names)
 
 
-def _is_within(one: str, other: str, most: int) -> bool:
-    """Return whether two texts differ by at most `most` errors.
+def _is_within(first: str, second: str, max_errors: int) -> bool:
+    """Return whether two texts differ by at most `max_errors` errors.
 
     Errors are counted by the optimal string alignment distance.
     """
-    if abs(len(one) - len(other)) > most:
+    if abs(len(first) - len(second)) > max_errors:
         return False
-    before: list[int] = []
-    row = list(range(len(other) + 1))
-    for i, letter in enumerate(one):
-        before_that, before, row = before, row, [i + 1]
-        for j, theirs in enumerate(other):
-            cost = min(before[j + 1] + 1, row[j] + 1, before[j] + (letter != theirs))
-            if i and j and letter == other[j - 1] and one[i - 1] == theirs:
-                cost = min(cost, before_that[j - 1] + 1)
+    previous_row: list[int] = []
+    row = list(range(len(second) + 1))
+    for i, letter in enumerate(first):
+        row_before_previous, previous_row, row = previous_row, row, [i + 1]
+        for j, other_letter in enumerate(second):
+            cost = min(previous_row[j + 1] + 1, row[j] + 1, previous_row[j] + (letter != other_letter))
+            if i and j and letter == second[j - 1] and first[i - 1] == other_letter:
+                cost = min(cost, row_before_previous[j - 1] + 1)
             row.append(cost)
-        if min(row) > most:
+        if min(row) > max_errors:
             return False
-    return row[-1] <= most
+    return row[-1] <= max_errors
 
 
 def did_you_mean(name: str, candidates: Iterable[str]) -> Phrase | None:
     """Return a hint such as ``did you mean 'radius'?``, or None if no candidate is similar."""
-    return _meant(nearest(name, candidates))
+    return _did_you_mean(nearest(name, candidates))
 
 
-def _meant(names: Sequence[str]) -> Phrase | None:
+def _did_you_mean(names: Sequence[str]) -> Phrase | None:
     return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
-def _like(name: str, names: Iterable[str]) -> list[str]:
-    """Return the file names that may be meant, compared without extension.
+def _similar_files(name: str, names: Iterable[str]) -> list[str]:
+    """Return the file names that are similar to a name, compared without extensions; at most three.
 
-    The extensions must match, too: 'a.urdf' is not like 'robot.urdf'.
+    The extensions must be similar as well: 'a.urdf' is not similar to 'robot.urdf'.
     """
-    stem, ending = _parts(name)
+    stem, extension = _split_extension(name)
     stems: dict[str, list[str]] = {}
     for other in names:
-        its_stem, its_ending = _parts(other)
-        if its_ending == ending or (ending and (is_misspelt(ending, [its_ending]) or its_ending.endswith(ending))):
-            stems.setdefault(its_stem, []).append(other)
-    return [other for near in nearest(stem, stems) for other in stems[near]][:3]
+        other_stem, other_extension = _split_extension(other)
+        if other_extension == extension or (
+            extension and (is_misspelt(extension, [other_extension]) or other_extension.endswith(extension))
+        ):
+            stems.setdefault(other_stem, []).append(other)
+    return [other for similar_stem in nearest(stem, stems) for other in stems[similar_stem]][:3]
 
 
-def _parts(name: str) -> tuple[str, str]:
+def _split_extension(name: str) -> tuple[str, str]:
     """Split the name of a file into stem and extension.
 
     The extension of 'robot.urdf.xacro' is '.urdf.xacro'.
@@ -155,23 +157,23 @@ def _parts(name: str) -> tuple[str, str]:
 
 
 def as_typed(path: str | os.PathLike[str]) -> str:
-    """Return a path as its user typed it.
+    """Return a path as the user typed it.
 
-    A URL that was treated as a path gets its second slash back.
+    A URL that was handled as a path gets its second slash back.
     """
-    shown = os.fspath(path)
-    address = re.search(_ADDRESS, shown)
-    return shown if address is None else f"{address[1]}//{address[2]}"
+    path_text = os.fspath(path)
+    match = re.search(_ADDRESS_PATTERN, path_text)
+    return path_text if match is None else f"{match[1]}//{match[2]}"
 
 
 def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:
-    """Return a hint for a missing file.
+    """Return a hint for a file that does not exist.
 
-    It names the missing folder, the nearest file names there, or all file names there.
+    It names the missing folder, or similar file names in the folder, or other files there.
 
     Args:
         path: the path of the missing file.
-        wanted: a predicate for names that may be meant; by default names with the same extension.
+        wanted: returns whether a file name in the folder can be suggested; None for names with the same extension.
     """
     if any(part in path.parts for part in _ADDRESSES):
         return phrase("files are not fetched from the network: download the file, and give its path")
@@ -189,10 +191,10 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
             folder=display_path(folder),
             current=os.getcwd(),  # noqa: PTH109 - pathlib takes long to import
         )
-    like = _meant(_like(path.name, names))
-    if like:
-        return like
-    there = [name for name in names if wanted(name)][:_LISTED]
-    if there:
-        return phrase("choose from {names}", names=joined(there))
+    suggestion = _did_you_mean(_similar_files(path.name, names))
+    if suggestion:
+        return suggestion
+    listed_names = [name for name in names if wanted(name)][:_MAX_LISTED]
+    if listed_names:
+        return phrase("choose from {names}", names=joined(listed_names))
     return phrase("the current folder is '{current}'", current=os.getcwd())  # noqa: PTH109 - as above

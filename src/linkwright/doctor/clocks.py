@@ -1,4 +1,4 @@
-"""Problems of time: stamps far from the current time, and simulated time in only some of the nodes."""
+"""Problems of time: stamps that differ from the current time, and simulated time in only some nodes."""
 
 from __future__ import annotations
 
@@ -8,55 +8,66 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.doctor.record import Observation, StampSeen, listed, nodes_of
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_FAR_NS = 5 * NANOSECONDS_PER_SECOND
-"""From here on a stamp is far from now: tf2 keeps transforms for ten seconds, and displays give up before."""
-_CLOCK = "/clock"
+_MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
+"""The difference from which a stamp is reported: tf2 keeps transforms for ten seconds, and displays wait less."""
+_CLOCK_TOPIC = "/clock"
 
 
-def examine_clocks(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on stamps and simulated time."""
-    yield from _simulated(seen)
-    yield from _stamps(seen)
+def examine_clocks(observation: Observation) -> Iterator[Diagnostic]:
+    """Yield findings about stamps and simulated time."""
+    yield from _examine_simulated_time(observation)
+    yield from _stamps(observation)
 
 
 def _is_hidden(node: str) -> bool:
     return node.rpartition("/")[2].startswith("_")
 
 
-def _simulated(seen: Observation) -> Iterator[Diagnostic]:
-    on = sorted(node for node, value in seen.sim_time.items() if value)
-    off = sorted(node for node, value in seen.sim_time.items() if not value)
-    senders = nodes_of(seen.publishers_of(_CLOCK))
-    off = [node for node in off if node not in senders and not _is_hidden(node)]  # publishers of /clock need not use it
-    if on and not senders:
+def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
+    simulated_nodes = sorted(node for node, value in observation.sim_time.items() if value)
+    other_nodes = sorted(node for node, value in observation.sim_time.items() if not value)
+    senders = nodes_of(observation.publishers_of(_CLOCK_TOPIC))
+    other_nodes = [
+        node for node in other_nodes if node not in senders and not _is_hidden(node)
+    ]  # publishers of /clock need not use it
+    if simulated_nodes and not senders:
         yield Diagnostic(
             "DOC602",
             phrase(
                 "use_sim_time is true for {on}, but no node publishes /clock, so their time does not advance",
-                on=listed(on),
+                on=listed(simulated_nodes),
             ),
             hint=phrase("start the simulation or play the bag with --clock, or set use_sim_time to false"),
         )
-    elif on and seen.clock is not None and seen.clock.ticks > 1 and seen.clock.first_ns == seen.clock.last_ns:
+    elif (
+        simulated_nodes
+        and observation.clock is not None
+        and observation.clock.ticks > 1
+        and observation.clock.first_ns == observation.clock.last_ns
+    ):
         yield Diagnostic(
             "DOC603",
-            phrase("/clock stays at {last_ns:.3f} s", last_ns=seen.clock.last_ns / NANOSECONDS_PER_SECOND),
+            phrase("/clock stays at {last_ns:.3f} s", last_ns=observation.clock.last_ns / NANOSECONDS_PER_SECOND),
             severity=Severity.WARNING,
             notes=(Note(phrase("it is published by {senders}", senders=listed(senders))),),
-            hint=phrase("is the simulation paused?"),
+            hint=phrase("check whether the simulation is paused"),
         )
-    elif on and seen.clock is None and seen.seconds:
+    elif simulated_nodes and observation.clock is None and observation.seconds:
         yield Diagnostic(
             "DOC603",
-            phrase("/clock had no message in {seconds:g} s", seconds=seen.seconds),
+            phrase("no message was received on /clock in {seconds:g} s", seconds=observation.seconds),
             severity=Severity.WARNING,
             notes=(Note(phrase("its publisher is {senders}", senders=listed(senders))),),
-            hint=phrase("is the simulation paused, or not started yet?"),
+            hint=phrase("check whether the simulation is paused or has not been started"),
         )
-    if on and off:
+    if simulated_nodes and other_nodes:
         yield Diagnostic(
             "DOC601",
-            phrase("use_sim_time is true for {on}, but false for {off}", on=listed(on), off=listed(off)),
+            phrase(
+                "use_sim_time is true for {on}, but false for {off}",
+                on=listed(simulated_nodes),
+                off=listed(other_nodes),
+            ),
             severity=Severity.WARNING,
             notes=(Note(phrase("their stamps are far apart, so transforms and messages do not match")),),
             hint=phrase("set it for all of them: SetParameter('use_sim_time', True) in the launch file"),
@@ -70,15 +81,15 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _stamps(seen: Observation) -> Iterator[Diagnostic]:
-    zero: dict[str, list[str]] = {}
-    far: dict[str, list[StampSeen]] = {}
-    for stamp in seen.stamps:
+def _stamps(observation: Observation) -> Iterator[Diagnostic]:
+    unset_topics: dict[str, list[str]] = {}
+    wrong_stamps: dict[str, list[StampSeen]] = {}
+    for stamp in observation.stamps:
         if stamp.zero:
-            zero.setdefault(stamp.sender, []).append(stamp.topic)
-        elif abs(stamp.behind_ns) > _FAR_NS:
-            far.setdefault(stamp.sender, []).append(stamp)
-    for sender, topics in sorted(zero.items()):
+            unset_topics.setdefault(stamp.sender, []).append(stamp.topic)
+        elif abs(stamp.behind_ns) > _MAX_DIFFERENCE_NS:
+            wrong_stamps.setdefault(stamp.sender, []).append(stamp)
+    for sender, topics in sorted(unset_topics.items()):
         yield Diagnostic(
             "DOC606",
             phrase(
@@ -90,31 +101,31 @@ def _stamps(seen: Observation) -> Iterator[Diagnostic]:
             ),
             hint=phrase("set header.stamp to the node's time: node.get_clock().now().to_msg()"),
         )
-    for sender, stamps in sorted(far.items()):
-        worst = max(stamps, key=lambda stamp: abs(stamp.behind_ns))
-        where = listed(sorted({stamp.topic for stamp in stamps}))
+    for sender, stamps in sorted(wrong_stamps.items()):
+        farthest = max(stamps, key=lambda stamp: abs(stamp.behind_ns))
+        topics_text = listed(sorted({stamp.topic for stamp in stamps}))
         yield Diagnostic(
             "DOC605",
             phrase(
                 "the stamps of '{sender}' on {where} are {seconds:.1f} s behind the clock here",
                 sender=sender,
-                where=where,
-                seconds=worst.behind_ns / NANOSECONDS_PER_SECOND,
+                where=topics_text,
+                seconds=farthest.behind_ns / NANOSECONDS_PER_SECOND,
             )
-            if worst.behind_ns > 0
+            if farthest.behind_ns > 0
             else phrase(
                 "the stamps of '{sender}' on {where} are {seconds:.1f} s ahead of the clock here",
                 sender=sender,
-                where=where,
-                seconds=-worst.behind_ns / NANOSECONDS_PER_SECOND,
+                where=topics_text,
+                seconds=-farthest.behind_ns / NANOSECONDS_PER_SECOND,
             ),
             severity=Severity.WARNING,
-            notes=_why(sender, seen),
+            notes=_notes(sender, observation),
             hint=phrase("synchronize the computers' clocks (chrony, timedatectl), or set use_sim_time for all nodes"),
         )
 
 
-def _why(sender: str, seen: Observation) -> tuple[Note, ...]:
-    if seen.sim_time.get(sender):
+def _notes(sender: str, observation: Observation) -> tuple[Note, ...]:
+    if observation.sim_time.get(sender):
         return (Note(phrase("'{sender}' uses simulated time", sender=sender)),)
     return ()

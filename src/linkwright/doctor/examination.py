@@ -1,4 +1,4 @@
-"""Runs all examinations of an observed graph."""
+"""Runs all examinations of an observation."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from linkwright.doctor.record import Observation
 from linkwright.doctor.robots import examine_robots, robots_in
 from linkwright.doctor.topics import examine_lifecycle, examine_topics
 
-_ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
+_SEVERITY_ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 
 
-def examine(seen: Observation) -> list[Diagnostic]:
-    """Run all examinations, and return the findings (codes ``DOC...``), most severe first."""
-    robots, found = robots_in(seen)
-    found += examine_environment(seen)
-    found += examine_frames(seen, robots)
-    found += examine_robots(seen, robots)
-    found += examine_topics(seen)
-    found += examine_clocks(seen)
-    found += examine_lifecycle(seen)
-    return sorted(found, key=lambda diagnostic: _ORDER.index(diagnostic.severity))
+def examine(observation: Observation) -> list[Diagnostic]:
+    """Return the findings of all examinations (codes ``DOC...``), the most severe ones first."""
+    robots, findings = robots_in(observation)
+    findings += examine_environment(observation)
+    findings += examine_frames(observation, robots)
+    findings += examine_robots(observation, robots)
+    findings += examine_topics(observation)
+    findings += examine_clocks(observation)
+    findings += examine_lifecycle(observation)
+    return sorted(findings, key=lambda diagnostic: _SEVERITY_ORDER.index(diagnostic.severity))

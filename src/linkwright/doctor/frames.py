@@ -1,4 +1,4 @@
-"""Problems of frames: no transform, several publishers, or no connection to the other frames."""
+"""Problems of frames: missing transforms, several publishers, and separate trees."""
 
 from __future__ import annotations
 
@@ -6,40 +6,42 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, did_you_mean, foreign, phrase
 from linkwright.doctor.record import Observation, TransformSeen, listed, nodes_of
-from linkwright.doctor.robots import MOVING, RobotSeen
+from linkwright.doctor.robots import MOVING_TYPES, RobotSeen
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.urdf import Joint
 
 _JOINT_STATE = "sensor_msgs/msg/JointState"
 _WORLD, _WORLD_POSES = "world", "/world_poses"
-"""The frame of a simulated world, and the topic that tells where its links are."""
-_OF_THE_WORLD = ("/world_rays", "/world_rays/others")
-"""Topics in frames of a simulated world, ``robot::link``, of which viewers learn by its own topic and not by tf."""
+"""The frame of a simulated world, and the topic with the poses of its links."""
+_WORLD_TOPICS = ("/world_rays", "/world_rays/others")
+"""Topics whose messages are in frames ``robot::link`` of a simulated world.
+
+Viewers receive the poses of these frames on a separate topic and not by tf."""
 
 
-def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Yield findings on frames and their transforms."""
-    yield from _contradictions(seen)
-    yield from _numbers(seen)
-    circle = _cycle(seen.transforms)
-    if circle:
+def examine_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    """Yield findings about frames and their transforms."""
+    yield from _examine_contradictions(observation)
+    yield from _examine_numbers(observation)
+    cycle = _find_cycle(observation.transforms)
+    if cycle:
         yield Diagnostic(
             "DOC307",
-            phrase("the parents of frames form a cycle: {circle}", circle=" -> ".join(circle)),
+            phrase("the parents of frames form a cycle: {circle}", circle=" -> ".join(cycle)),
             hint=phrase("two nodes disagree about the parents; publish each frame's transform from one node only"),
         )
     for robot in robots:
-        yield from _missing(seen, robot)
-    yield from _trees(seen, robots)
-    yield from _fixed_frames(seen, robots)
-    yield from _frames_of_messages(seen, robots)
+        yield from _examine_missing(observation, robot)
+    yield from _examine_trees(observation, robots)
+    yield from _examine_fixed_frames(observation, robots)
+    yield from _examine_message_frames(observation, robots)
 
 
-def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
+def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
     by_child: dict[str, list[TransformSeen]] = {}
-    for transform in seen.transforms:
+    for transform in observation.transforms:
         by_child.setdefault(transform.child, []).append(transform)
-    shared: dict[tuple[str, ...], list[str]] = {}
+    children_by_senders: dict[tuple[str, ...], list[str]] = {}
     for child, transforms in sorted(by_child.items()):
         parents = sorted({transform.parent for transform in transforms})
         senders = tuple(sorted({sender for transform in transforms for sender in transform.senders}))
@@ -66,14 +68,14 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
                 hint=phrase("a frame has one parent: remove one of the publishers, or invert one transform"),
             )
         elif len(senders) > 1:
-            shared.setdefault(senders, []).append(child)
-    for senders, children in sorted(shared.items()):
+            children_by_senders.setdefault(senders, []).append(child)
+    for senders, children in sorted(children_by_senders.items()):
         yield Diagnostic(
             "DOC302",
             phrase(
                 "{count} nodes publish the transform of {frames}: {senders}",
                 count=len(senders),
-                frames=_frames(children),
+                frames=_format_frames(children),
                 senders=listed(senders),
             ),
             notes=(Note(phrase("the frames jump between the poses that they publish")),),
@@ -83,8 +85,8 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _numbers(seen: Observation) -> Iterator[Diagnostic]:
-    for transform in seen.transforms:
+def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
+    for transform in observation.transforms:
         if not transform.valid:
             yield Diagnostic(
                 "DOC306",
@@ -99,41 +101,45 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
             )
 
 
-def _cycle(transforms: Sequence[TransformSeen]) -> list[str]:
-    """Return the frames of a cycle in the tree of frames, or an empty list if there is none.
+def _find_cycle(transforms: Sequence[TransformSeen]) -> list[str]:
+    """Return the frames of a cycle in the tree of frames, or an empty list if there is no cycle.
 
-    The first frame is repeated at the end.
+    The first frame is repeated as the last one.
     """
-    parent = {transform.child: transform.parent for transform in transforms}
-    done: set[str] = set()
-    for start in parent:
-        way: list[str] = []
+    parents = {transform.child: transform.parent for transform in transforms}
+    visited: set[str] = set()
+    for start in parents:
+        path: list[str] = []
         frame: str | None = start
-        while frame is not None and frame not in done:
-            if frame in way:
-                return [*way[way.index(frame) :], frame]
-            way.append(frame)
-            frame = parent.get(frame)
-        done.update(way)
+        while frame is not None and frame not in visited:
+            if frame in path:
+                return [*path[path.index(frame) :], frame]
+            path.append(frame)
+            frame = parents.get(frame)
+        visited.update(path)
     return []
 
 
-def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    """Yield findings on the frames of a robot's links that have no transform.
+def _examine_missing(observation: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
+    """Yield findings about the frames of a robot's links that have no transform.
 
-    Frames with the same cause share a finding.
+    Frames whose transforms are missing for the same reason share a finding.
     """
-    there = {transform.child for transform in seen.transforms}
-    without = [joint for joint in robot.joints if robot.frame(joint.child) not in there]
-    if not without:
+    existing_frames = {transform.child for transform in observation.transforms}
+    missing_joints = [joint for joint in robot.joints if robot.frame(joint.child) not in existing_frames]
+    if not missing_joints:
         return
-    if len(without) == len(robot.joints) and not any(
-        endpoint.name.rpartition("/")[2] in ("tf", "tf_static") for endpoint in seen.of_kind(EndpointKind.PUBLISHER)
+    if len(missing_joints) == len(robot.joints) and not any(
+        endpoint.name.rpartition("/")[2] in ("tf", "tf_static")
+        for endpoint in observation.endpoints_of_kind(EndpointKind.PUBLISHER)
     ):
-        frames = [robot.frame(joint.child) for joint in without]
+        frames = [robot.frame(joint.child) for joint in missing_joints]
         yield Diagnostic(
             "DOC301",
-            phrase("there is no transform of {frames}: no node publishes transforms", frames=_frames(frames)),
+            phrase(
+                ("there is no transform of {frames}, because no node publishes transforms"),
+                frames=_format_frames(frames),
+            ),
             notes=(
                 Note(
                     phrase(
@@ -146,26 +152,33 @@ def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
             hint=phrase("start robot_state_publisher with this description"),
         )
         return
-    fixed = [joint for joint in without if joint.type not in MOVING]
-    unstated = [joint for joint in without if joint.type in MOVING and not _has_state(seen, robot, joint)]
-    stated = [joint for joint in without if joint.type in MOVING and _has_state(seen, robot, joint)]
-    if fixed:
-        yield _never_sent(robot, fixed)
-    if unstated:
-        yield from _without_state(seen, robot, unstated)
-    if stated:
-        yield _not_followed(seen, robot, stated)
+    fixed_joints = [joint for joint in missing_joints if joint.type not in MOVING_TYPES]
+    joints_without_state = [
+        joint for joint in missing_joints if joint.type in MOVING_TYPES and not _has_state(observation, robot, joint)
+    ]
+    joints_with_state = [
+        joint for joint in missing_joints if joint.type in MOVING_TYPES and _has_state(observation, robot, joint)
+    ]
+    if fixed_joints:
+        yield _missing_static_finding(robot, fixed_joints)
+    if joints_without_state:
+        yield from _missing_state_findings(observation, robot, joints_without_state)
+    if joints_with_state:
+        yield _unused_state_finding(observation, robot, joints_with_state)
 
 
-def _has_state(seen: Observation, robot: RobotSeen, joint: Joint) -> bool:
-    return robot.leader(joint) in {joint.name for joint in seen.joints}
+def _has_state(observation: Observation, robot: RobotSeen, joint: Joint) -> bool:
+    return robot.leader(joint) in {joint.name for joint in observation.joints}
 
 
-def _never_sent(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
+def _missing_static_finding(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
     return Diagnostic(
         "DOC304",
-        phrase("there is no transform of {frames}: no static transform of it was published", frames=_frames(frames)),
+        phrase(
+            ("there is no transform of {frames}, because no static transform was published for it"),
+            frames=_format_frames(frames),
+        ),
         notes=(Note(phrase("fixed joints: {joints}", joints=listed(joint.name for joint in joints))),),
         hint=phrase(
             "robot_state_publisher publishes them once on /tf_static when it starts: check that it runs "
@@ -175,49 +188,61 @@ def _never_sent(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
     )
 
 
-def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Iterator[Diagnostic]:
+def _missing_state_findings(
+    observation: Observation, robot: RobotSeen, joints: Sequence[Joint]
+) -> Iterator[Diagnostic]:
     names = list(dict.fromkeys(robot.leader(joint) for joint in joints))
     frames = [robot.frame(joint.child) for joint in joints]
     senders = nodes_of(
-        endpoint for endpoint in seen.of_kind(EndpointKind.PUBLISHER) if endpoint.type_name == _JOINT_STATE
+        endpoint
+        for endpoint in observation.endpoints_of_kind(EndpointKind.PUBLISHER)
+        if endpoint.type_name == _JOINT_STATE
     )
-    published = [joint.name for joint in seen.joints]
+    published_joints = [joint.name for joint in observation.joints]
     if not senders:
         yield Diagnostic(
             "DOC401",
-            phrase("no node publishes joint states, so there is no transform of {frames}", frames=_frames(frames)),
+            phrase(
+                "no node publishes joint states, so there is no transform of {frames}", frames=_format_frames(frames)
+            ),
             notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
             hint=phrase("start joint_state_publisher, joint_state_publisher_gui, or the robot's driver"),
         )
-    elif not published:
+    elif not published_joints:
         yield Diagnostic(
             "DOC402",
             phrase(
                 "{senders} did not publish joint states in {seconds:g} s, so there is no transform of {frames}",
                 senders=listed(senders),
-                seconds=seen.seconds,
-                frames=_frames(frames),
+                seconds=observation.seconds,
+                frames=_format_frames(frames),
             ),
             notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
-            hint=phrase("is it waiting for a description, or for a controller that is not active?"),
+            hint=phrase("check whether it waits for a description, or for a controller that is not active"),
         )
     else:
         for name in names:
-            behind = [robot.frame(joint.child) for joint in joints if robot.leader(joint) == name]
-            near = did_you_mean(name, [other for other in published if other not in robot.joint_names])
+            affected_frames = [robot.frame(joint.child) for joint in joints if robot.leader(joint) == name]
+            suggestion = did_you_mean(
+                name, [candidate for candidate in published_joints if candidate not in robot.joint_names]
+            )
             yield Diagnostic(
                 "DOC403",
                 phrase(
                     "joint '{name}' is not in the joint states, so there is no transform of {frames}",
                     name=name,
-                    frames=_frames(behind),
+                    frames=_format_frames(affected_frames),
                 ),
                 notes=(
                     Note(
-                        phrase("{senders} publishes {published}", senders=listed(senders), published=listed(published))
+                        phrase(
+                            "{senders} publishes {published}",
+                            senders=listed(senders),
+                            published=listed(published_joints),
+                        )
                     ),
                 ),
-                hint=near
+                hint=suggestion
                 or phrase(
                     "configure its driver or controller to publish it (joint_state_broadcaster: joints), or run "
                     "joint_state_publisher with source_list"
@@ -225,99 +250,103 @@ def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint])
             )
 
 
-def _not_followed(seen: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
+def _unused_state_finding(observation: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
-    wanted = {robot.leader(joint) for joint in joints}
-    topics = sorted({topic for joint in seen.joints if joint.name in wanted for topic in joint.topics})
-    heard = nodes_of(
+    leader_names = {robot.leader(joint) for joint in joints}
+    topics = sorted({topic for joint in observation.joints if joint.name in leader_names for topic in joint.topics})
+    subscribers = nodes_of(
         endpoint
-        for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)
+        for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)
         if endpoint.name in topics and endpoint.type_name == _JOINT_STATE
     )
-    if not heard:
+    if not subscribers:
         hint = phrase(
             "no node subscribes to {topics}: remap robot_state_publisher's joint_states to it", topics=listed(topics)
         )
     else:
         hint = phrase(
-            "are the stamps of the joint states zero or going back? robot_state_publisher ignores such states"
+            "check the stamps of the joint states; robot_state_publisher ignores states whose stamp is zero or "
+            "goes back"
         )
     return Diagnostic(
         "DOC305",
         phrase(
             "joint {joints} is published, but there is no transform of {frames}",
             joints=listed(joint.name for joint in joints),
-            frames=_frames(frames),
+            frames=_format_frames(frames),
         ),
         notes=(Note(phrase("it is published on {topics}", topics=listed(topics))),),
         hint=hint,
     )
 
 
-def _frames(names: Sequence[str]) -> Phrase:
+def _format_frames(names: Sequence[str]) -> Phrase:
     if len(names) == 1:
         return phrase("frame {names}", names=listed(names))
     return phrase("{count} frames, {names}", count=len(names), names=listed(names))
 
 
-def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    children = {transform.child for transform in seen.transforms}
-    roots = sorted({transform.parent for transform in seen.transforms} - children)
+def _examine_trees(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    children = {transform.child for transform in observation.transforms}
+    roots = sorted({transform.parent for transform in observation.transforms} - children)
     if len(roots) < 2:
         return
-    # Missing transforms of robots are reported above, so leave them out here.
-    broken = {robot.frame(joint.child) for robot in robots for joint in robot.joints} - children
-    apart = [root for root in roots if root not in broken]
-    if len(apart) < 2:
+    # Missing transforms of robots are reported by other findings, so they are omitted here.
+    reported_frames = {robot.frame(joint.child) for robot in robots for joint in robot.joints} - children
+    separate_roots = [root for root in roots if root not in reported_frames]
+    if len(separate_roots) < 2:
         return
-    sizes = {root: _size(root, seen.transforms) for root in apart}
-    largest = max(apart, key=lambda root: sizes[root])
-    notes = tuple(Note(phrase("frames below '{root}': {sizes}", root=root, sizes=sizes[root])) for root in apart)
-    others = [root for root in apart if root != largest]
+    sizes = {root: _tree_size(root, observation.transforms) for root in separate_roots}
+    largest = max(separate_roots, key=lambda root: sizes[root])
+    notes = tuple(
+        Note(phrase("frames below '{root}': {sizes}", root=root, sizes=sizes[root])) for root in separate_roots
+    )
+    other_roots = [root for root in separate_roots if root != largest]
     yield Diagnostic(
         "DOC308",
-        phrase("the frames form {count} separate trees", count=len(apart)),
+        phrase("the frames form {count} separate trees", count=len(separate_roots)),
         severity=Severity.WARNING,
         notes=notes,
         hint=phrase(
             "publish a transform between them: ros2 run tf2_ros static_transform_publisher"
             " --frame-id {largest} --child-frame-id {others}",
             largest=largest,
-            others=others[0],
+            others=other_roots[0],
         ),
     )
 
 
-def _size(root: str, transforms: Sequence[TransformSeen]) -> int:
-    below: dict[str, set[str]] = {}
+def _tree_size(root: str, transforms: Sequence[TransformSeen]) -> int:
+    children_by_parent: dict[str, set[str]] = {}
     for transform in transforms:
-        below.setdefault(transform.parent, set()).add(transform.child)
-    found, pending = set(), [root]
+        children_by_parent.setdefault(transform.parent, set()).add(transform.child)
+    descendants, pending = set(), [root]
     while pending:
-        for child in below.get(pending.pop(), ()):
-            if child not in found:
-                found.add(child)
+        for child in children_by_parent.get(pending.pop(), ()):
+            if child not in descendants:
+                descendants.add(child)
                 pending.append(child)
-    return len(found)
+    return len(descendants)
 
 
-def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
-    known |= {robot.frame(robot.root) for robot in robots}
-    if seen.publishers_of(_WORLD_POSES):
-        known.add(_WORLD)  # in the viewer, the frames of tf are in the world frame
+def _examine_fixed_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    known_frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
+    known_frames |= {robot.frame(robot.root) for robot in robots}
+    if observation.publishers_of(_WORLD_POSES):
+        known_frames.add(_WORLD)  # in the viewer, the frames of tf are in the world frame
     roots = sorted(
-        {transform.parent for transform in seen.transforms} - {transform.child for transform in seen.transforms}
+        {transform.parent for transform in observation.transforms}
+        - {transform.child for transform in observation.transforms}
     )
-    for frame in seen.fixed_frames:
-        if frame.name in known:
+    for frame in observation.fixed_frames:
+        if frame.name in known_frames:
             continue
-        there = (
-            phrase("known frames: {known}", known=listed(sorted(known)))
-            if known
+        known_note = (
+            phrase("known frames: {known}", known=listed(sorted(known_frames)))
+            if known_frames
             else phrase("there are no frames at all")
         )
-        near = did_you_mean(frame.name, known)
+        suggestion = did_you_mean(frame.name, known_frames)
         yield Diagnostic(
             "DOC309",
             phrase(
@@ -325,22 +354,22 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
                 name=frame.name,
                 source=foreign(frame.source),
             ),
-            notes=(Note(there),),
-            hint=near or _another(roots),
+            notes=(Note(known_note),),
+            hint=suggestion or _other_frame_hint(roots),
         )
 
 
-def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Yield findings on message frames that have no transform and do not belong to a robot."""
-    if not seen.transforms:
+def _examine_message_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    """Yield findings about the frames of messages that have no transform and do not belong to a robot."""
+    if not observation.transforms:
         return
-    known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
+    known_frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
     robot_frames = {robot.frame(joint.child) for robot in robots for joint in robot.joints}
     robot_frames |= {robot.frame(robot.root) for robot in robots}
-    if seen.publishers_of(_WORLD_POSES):
-        known.add(_WORLD)
-    for frame in seen.frames:
-        if frame.topic not in _OF_THE_WORLD and frame.frame not in known | robot_frames:
+    if observation.publishers_of(_WORLD_POSES):
+        known_frames.add(_WORLD)
+    for frame in observation.frames:
+        if frame.topic not in _WORLD_TOPICS and frame.frame not in known_frames | robot_frames:
             yield Diagnostic(
                 "DOC310",
                 phrase(
@@ -349,8 +378,8 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
                     sender=listed([frame.sender]),
                     frame=frame.frame,
                 ),
-                notes=(Note(phrase("known frames: {known}", known=listed(sorted(known)))),),
-                hint=did_you_mean(frame.frame, known)
+                notes=(Note(phrase("known frames: {known}", known=listed(sorted(known_frames)))),),
+                hint=did_you_mean(frame.frame, known_frames)
                 or phrase(
                     "publish its transform, as static_transform_publisher does, or configure the node to use "
                     "another frame"
@@ -358,8 +387,8 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
             )
 
 
-def _another(roots: Sequence[str]) -> Phrase:
-    """Return a hint that names a frame to use instead of a fixed frame that does not exist."""
+def _other_frame_hint(roots: Sequence[str]) -> Phrase:
+    """Return a hint to choose another Fixed Frame, with the roots of the frame trees."""
     if not roots:
         return phrase("choose another Fixed Frame")
     if len(roots) == 1:

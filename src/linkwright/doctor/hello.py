@@ -1,4 +1,4 @@
-"""Greetings between computers, over a topic and by UDP multicast, and the table of received ones."""
+"""Greetings between computers, on a topic and by UDP multicast, and a table of the greetings received."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from linkwright.wire.multicast import GROUP, PORT
 
 _GREETING = "hello, it's me "
-_RULE = "-" * 60
+_SEPARATOR = "-" * 60
 
 
 def greeting(host: str) -> str:
@@ -17,7 +17,7 @@ def greeting(host: str) -> str:
 
 
 def host_of(text: str) -> str:
-    """Return the name of the computer that sent a greeting, or an empty string for an empty greeting.
+    """Return the name of the computer that sent a greeting, or an empty string if the greeting is empty.
 
     The name is the last word of the greeting.
     """
@@ -27,51 +27,51 @@ def host_of(text: str) -> str:
 
 @dataclass
 class Greetings:
-    """The greetings that were sent and received since the last table was printed.
+    """Counts of the greetings that were sent and received since the last table.
 
     Attributes:
-        own: the name of this computer, whose own greetings do not count.
+        own_host: the name of this computer; its own greetings are not counted.
         published: the number of messages published on the topic.
         sent: the number of multicast packets sent.
-        subscribed: the number of messages received on the topic, by computer.
-        received: the number of multicast packets received, by computer.
+        subscribed: the number of messages received on the topic, by the name of the sending computer.
+        received: the number of multicast packets received, by the name of the sending computer.
     """
 
-    own: str
+    own_host: str
     published: int = 0
     sent: int = 0
     subscribed: Counter[str] = field(default_factory=Counter)
     received: Counter[str] = field(default_factory=Counter)
 
-    def heard_on_topic(self, text: str) -> None:
+    def count_topic_greeting(self, text: str) -> None:
         """Count a greeting received on the topic."""
         self._count(self.subscribed, text)
 
-    def heard_by_multicast(self, text: str) -> None:
+    def count_multicast_greeting(self, text: str) -> None:
         """Count a greeting received by multicast."""
         self._count(self.received, text)
 
-    def _count(self, heard: Counter[str], text: str) -> None:
+    def _count(self, counts: Counter[str], text: str) -> None:
         host = host_of(text)
-        if host and host != self.own:
-            heard[host] += 1
+        if host and host != self.own_host:
+            counts[host] += 1
 
     def take_table(self, topic: str, period: float) -> str:
-        """Format the table as ``ros2 doctor hello`` does, and reset the counts.
+        """Return the table in the format of ``ros2 doctor hello``, and reset the counts.
 
         Args:
             topic: the name of the topic.
-            period: the time covered by one table, in seconds.
+            period: the time that the table covers, in seconds.
         """
         lines = [
             "MULTIMACHINE COMMUNICATION SUMMARY",
             f"Topic: {topic}, Published Msg Count: {self.published}",
             "Subscribed from:",
-            *_rows(self.subscribed, period),
+            *_format_rows(self.subscribed, period),
             f"Multicast Group/Port: {GROUP}/{PORT}, Sent Msg Count: {self.sent}",
             "Received from:",
-            *_rows(self.received, period),
-            _RULE,
+            *_format_rows(self.received, period),
+            _SEPARATOR,
         ]
         self.published = self.sent = 0
         self.subscribed.clear()
@@ -79,6 +79,6 @@ class Greetings:
         return "\n".join(lines)
 
 
-def _rows(heard: Counter[str], period: float) -> list[str]:
-    rows = [("Hostname", f"Msg Count /{period}s"), *((host, str(count)) for host, count in heard.items())]
+def _format_rows(counts: Counter[str], period: float) -> list[str]:
+    rows = [("Hostname", f"Msg Count /{period}s"), *((host, str(count)) for host, count in counts.items())]
     return [f"{'':<15} {host:<20} {count:<10}" for host, count in rows]

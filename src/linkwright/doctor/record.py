@@ -1,4 +1,4 @@
-"""Observations of a running graph, as plain data for the examinations."""
+"""The observation of a running graph, as plain data for the examinations."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from linkwright.graph.names.rules import join
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 UNKNOWN_NODE = "an unknown node"
-"""The name of a sender that discovery does not report."""
+"""The name of a publishing node that discovery does not report."""
 
 
 @dataclass(frozen=True, slots=True)
 class TransformSeen:
-    """The observed transforms from a frame to one of its parents.
+    """The transforms that were observed from a frame to one of its parents.
 
     Attributes:
         parent: the parent frame.
         child: the child frame.
         senders: the sorted full names of the nodes that published the transform.
-        static: whether the transform was published on a topic of static transforms.
-        valid: whether all numbers are finite and the quaternion is not zero.
+        static: whether the transform was published as a static transform.
+        valid: whether all numbers are finite, and the quaternion is not zero.
     """
 
     parent: str
@@ -35,7 +35,7 @@ class TransformSeen:
 
 @dataclass(frozen=True, slots=True)
 class JointSeen:
-    """The observed states of a joint.
+    """The states of a joint that were observed.
 
     Attributes:
         name: the name of the joint.
@@ -50,12 +50,12 @@ class JointSeen:
 
 @dataclass(frozen=True, slots=True)
 class DescriptionSeen:
-    """An observed robot description.
+    """A robot description that was observed.
 
     Attributes:
         topic: the topic on which the description was published.
         sender: the full name of the node that published the description.
-        text: the URDF.
+        text: the text of the description.
     """
 
     topic: str
@@ -65,14 +65,13 @@ class DescriptionSeen:
 
 @dataclass(frozen=True, slots=True)
 class StampSeen:
-    """The observed stamps of a node on a topic.
+    """The stamps that were observed of a node on a topic.
 
     Attributes:
         topic: the name of the topic.
         sender: the full name of the publishing node.
-        behind_ns: the difference between the clock on arrival and the last stamp, in nanoseconds; negative if the stamp
-            was in the future.
-        zero: whether the stamp was 0, which means that it was never set.
+        behind_ns: the clock at arrival minus the last stamp, in nanoseconds; negative if the stamp was in the future.
+        zero: whether the stamp was 0, so that it was probably never set.
     """
 
     topic: str
@@ -83,7 +82,7 @@ class StampSeen:
 
 @dataclass(frozen=True, slots=True)
 class FrameSeen:
-    """The observed frame of a node's messages on a topic.
+    """The frame that was observed in a node's messages on a topic.
 
     Attributes:
         topic: the topic on which the messages were published.
@@ -98,11 +97,11 @@ class FrameSeen:
 
 @dataclass(frozen=True, slots=True)
 class DriversSeen:
-    """Nodes that sent contradictory velocities on one topic at the same time.
+    """The nodes that published contradictory velocities on a topic at the same time.
 
     Attributes:
-        topic: the topic on which the velocities were published, as Twist or TwistStamped.
-        drivers: the sorted full names of the publishing nodes; a name occurs twice if two nodes have it.
+        topic: the topic of the velocities, with the type Twist or TwistStamped.
+        drivers: the sorted full names of the nodes; a name occurs twice if two nodes share it.
     """
 
     topic: str
@@ -111,7 +110,7 @@ class DriversSeen:
 
 @dataclass(frozen=True, slots=True)
 class ClockSeen:
-    """The observed messages of ``/clock``.
+    """The messages of ``/clock`` that were observed.
 
     Attributes:
         ticks: the number of messages.
@@ -126,11 +125,11 @@ class ClockSeen:
 
 @dataclass(frozen=True, slots=True)
 class FixedFrame:
-    """The fixed frame of a viewer.
+    """The Fixed Frame of a viewer.
 
     Attributes:
         name: the name of the frame.
-        source: the file or node that sets it.
+        source: the configuration file or node that sets the frame.
     """
 
     name: str
@@ -139,24 +138,25 @@ class FixedFrame:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """All observations of a graph.
+    """The observations of a graph.
 
     Attributes:
-        seconds: the duration of the observation.
-        nodes: the full names of the nodes; a name that several nodes share is repeated.
+        seconds: the duration of the observation in seconds.
+        nodes: the full names of the nodes; a name that several nodes share occurs several times.
         endpoints: the publishers, subscriptions, services and clients.
         transforms: the published transforms.
         joints: the published joint states.
         descriptions: the published robot descriptions.
         stamps: the stamps of messages with a header.
         frames: the frames of messages with a header.
-        disputed: the topics on which several nodes sent contradictory velocities.
-        clock: the observation of ``/clock``; None if no message was received.
-        sim_time: the value of ``use_sim_time`` of each node that responded, by full name.
+        disputed: the topics on which several nodes published contradictory velocities.
+        clock: the messages of ``/clock``; None if there were none.
+        sim_time: the values of ``use_sim_time`` by the full names of the nodes that responded.
         lifecycle: the states of the managed nodes, by full name.
-        fixed_frames: the Fixed Frames of viewers.
+        fixed_frames: the Fixed Frames of viewers and configuration files.
         environment: the environment variables that affect discovery.
-        over_zenoh: whether the graph was observed over Zenoh, where QoS does not separate endpoints, instead of DDS.
+        over_zenoh: whether the graph was observed over Zenoh, where QoS does not keep endpoints from matching, instead
+            of over DDS.
     """
 
     seconds: float = 0.0
@@ -175,13 +175,13 @@ class Observation:
     environment: Mapping[str, str] = field(default_factory=dict)
     over_zenoh: bool = False
 
-    def of_kind(self, kind: EndpointKind) -> list[EndpointInfo]:
-        """Return the endpoints of a kind."""
+    def endpoints_of_kind(self, kind: EndpointKind) -> list[EndpointInfo]:
+        """Return the endpoints of the given kind."""
         return [endpoint for endpoint in self.endpoints if endpoint.kind is kind]
 
     def publishers_of(self, topic: str) -> list[EndpointInfo]:
-        """Return the observed publishers of a topic."""
-        return [endpoint for endpoint in self.of_kind(EndpointKind.PUBLISHER) if endpoint.name == topic]
+        """Return the publishers of a topic that were observed."""
+        return [endpoint for endpoint in self.endpoints_of_kind(EndpointKind.PUBLISHER) if endpoint.name == topic]
 
 
 def node_of(endpoint: EndpointInfo) -> str:
@@ -195,10 +195,14 @@ def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
 
 
 def listed(names: Iterable[str], limit: int = 6) -> Phrase:
-    """Return names in quotation marks, separated by commas.
+    """Return the names in quotation marks, separated by commas.
 
-    If there are more than `limit` names, the result contains the first ones and the number of the others.
+    If there are more than `limit` names, only the first ones are listed, with the number of the remaining ones.
     """
-    every = list(names)
-    shown = quoted_names(every[:limit])
-    return phrase("{names} and {more} more", names=shown, more=len(every) - limit) if len(every) > limit else shown
+    all_names = list(names)
+    shown_names = quoted_names(all_names[:limit])
+    return (
+        phrase("{names} and {more} more", names=shown_names, more=len(all_names) - limit)
+        if len(all_names) > limit
+        else shown_names
+    )

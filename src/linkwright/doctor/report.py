@@ -14,32 +14,32 @@ from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
 
 Section = tuple[str, Sequence[tuple[str, str]]]
-"""A title, and names with values."""
+"""The title of a section, and its rows of a name and a value."""
 
-_PACKAGES = ("linkwright", "cyclonedds", "eclipse-zenoh", "rosbags", "numpy", "PyYAML", "colcon-core")
-_MARKS = ("ROS", "RMW", "RCUTILS", "CYCLONEDDS", "ZENOH", "LINKWRIGHT", "AMENT", "COLCON")
-_EVERYWHERE = frozenset({"/parameter_events", "/rosout"})
+_REPORTED_PACKAGES = ("linkwright", "cyclonedds", "eclipse-zenoh", "rosbags", "numpy", "PyYAML", "colcon-core")
+_VARIABLE_MARKS = ("ROS", "RMW", "RCUTILS", "CYCLONEDDS", "ZENOH", "LINKWRIGHT", "AMENT", "COLCON")
+_UNIVERSAL_TOPICS = frozenset({"/parameter_events", "/rosout"})
 _PADDING = 4
 
 
-def report(seen: Observation) -> str:
-    """Return the report with all its sections."""
+def report(observation: Observation) -> str:
+    """Return the report, with all its sections, on the computer and an observed graph."""
     return sections_text(
         [
-            ("NETWORK CONFIGURATION", _network()),
-            ("PACKAGE VERSIONS", _packages()),
-            ("PLATFORM INFORMATION", _platform()),
-            ("QOS COMPATIBILITY LIST", _compatibility(seen)),
-            ("RMW MIDDLEWARE", [("middleware name", _middleware())]),
-            ("ROS ENVIRONMENT", _environment(os.environ)),
-            ("TOPIC LIST", _topics(seen)),
-            ("NODE LIST", [("node", name) for name in seen.nodes] or [("node", "none")]),
+            ("NETWORK CONFIGURATION", _network_rows()),
+            ("PACKAGE VERSIONS", _package_rows()),
+            ("PLATFORM INFORMATION", _platform_rows()),
+            ("QOS COMPATIBILITY LIST", _compatibility_rows(observation)),
+            ("RMW MIDDLEWARE", [("middleware name", _middleware_name())]),
+            ("ROS ENVIRONMENT", _environment_rows(os.environ)),
+            ("TOPIC LIST", _topic_rows(observation)),
+            ("NODE LIST", [("node", name) for name in observation.nodes] or [("node", "none")]),
         ]
     )
 
 
 def sections_text(sections: Iterable[Section]) -> str:
-    """Format the sections of a report as ``ros2 doctor`` does."""
+    """Return the text of a report's sections in the format of ``ros2 doctor``."""
     lines = []
     for title, items in sections:
         lines.append(f"\n   {title}")
@@ -48,7 +48,7 @@ def sections_text(sections: Iterable[Section]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _network() -> list[tuple[str, str]]:
+def _network_rows() -> list[tuple[str, str]]:
     items = [("host", socket.gethostname())]
     try:
         names = [name for _, name in socket.if_nameindex()]
@@ -56,30 +56,30 @@ def _network() -> list[tuple[str, str]]:
         names = []
     for name in names:
         items.append(("device", name))
-        address = _address(name)
+        address = _ipv4_address(name)
         if address:
             items.append(("inet", address))
     return items
 
 
-def _address(interface: str) -> str:
-    """Return the IPv4 address of a network interface, or an empty string if it is not known."""
+def _ipv4_address(interface: str) -> str:
+    """Return the IPv4 address of a network interface, or an empty string if it is unknown."""
     if not sys.platform.startswith("linux"):
         return ""
     import fcntl
     import struct
 
-    get_address = 0x8915  # the ioctl request SIOCGIFADDR
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+    request = 0x8915  # the ioctl request SIOCGIFADDR
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
         try:
-            answer = fcntl.ioctl(probe.fileno(), get_address, struct.pack("256s", interface[:15].encode()))
+            response = fcntl.ioctl(connection.fileno(), request, struct.pack("256s", interface[:15].encode()))
         except OSError:
             return ""
-    return socket.inet_ntoa(answer[20:24])
+    return socket.inet_ntoa(response[20:24])
 
 
-def _packages() -> list[tuple[str, str]]:
-    return [(name, _version(name)) for name in _PACKAGES]
+def _package_rows() -> list[tuple[str, str]]:
+    return [(name, _version(name)) for name in _REPORTED_PACKAGES]
 
 
 def _version(package: str) -> str:
@@ -89,7 +89,7 @@ def _version(package: str) -> str:
         return "not installed"
 
 
-def _platform() -> list[tuple[str, str]]:
+def _platform_rows() -> list[tuple[str, str]]:
     items = [
         ("system", platform.system()),
         ("platform info", platform.platform()),
@@ -101,7 +101,7 @@ def _platform() -> list[tuple[str, str]]:
     return [*items, ("distribution name", distribution)] if distribution else items
 
 
-def _middleware() -> str:
+def _middleware_name() -> str:
     from linkwright.wire.joining import available, middleware, unavailable_reason
     from linkwright.wire.unfollowed import ZENOH
 
@@ -112,19 +112,19 @@ def _middleware() -> str:
     )
 
 
-def _environment(variables: Mapping[str, str]) -> list[tuple[str, str]]:
-    named = sorted(name for name in variables if any(mark in name for mark in _MARKS))
-    return [(name, variables[name]) for name in named] or [("variables", "none")]
+def _environment_rows(variables: Mapping[str, str]) -> list[tuple[str, str]]:
+    names = sorted(name for name in variables if any(mark in name for mark in _VARIABLE_MARKS))
+    return [(name, variables[name]) for name in names] or [("variables", "none")]
 
 
-def _compatibility(seen: Observation) -> list[tuple[str, str]]:
+def _compatibility_rows(observation: Observation) -> list[tuple[str, str]]:
     items = []
-    subscriptions = seen.of_kind(EndpointKind.SUBSCRIPTION)
-    for publisher in _shown(seen.of_kind(EndpointKind.PUBLISHER)):
+    subscriptions = observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)
+    for publisher in _reported_endpoints(observation.endpoints_of_kind(EndpointKind.PUBLISHER)):
         for subscription in subscriptions:
             if subscription.name == publisher.name:
                 compatibility, reason = qos_check_compatible(publisher.qos, subscription.qos)
-                status = "OK" if compatibility is QoSCompatibility.OK or seen.over_zenoh else reason
+                status = "OK" if compatibility is QoSCompatibility.OK or observation.over_zenoh else reason
                 items += [
                     ("topic [type]", f"{publisher.name} [{publisher.type_name}]"),
                     ("publisher node", node_of(publisher)),
@@ -134,10 +134,13 @@ def _compatibility(seen: Observation) -> list[tuple[str, str]]:
     return items or [("compatibility status", "No publisher/subscriber pairs found")]
 
 
-def _topics(seen: Observation) -> list[tuple[str, str]]:
-    publishers, subscriptions = seen.of_kind(EndpointKind.PUBLISHER), seen.of_kind(EndpointKind.SUBSCRIPTION)
+def _topic_rows(observation: Observation) -> list[tuple[str, str]]:
+    publishers, subscriptions = (
+        observation.endpoints_of_kind(EndpointKind.PUBLISHER),
+        observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION),
+    )
     items = []
-    for topic in sorted({endpoint.name for endpoint in _shown([*publishers, *subscriptions])}):
+    for topic in sorted({endpoint.name for endpoint in _reported_endpoints([*publishers, *subscriptions])}):
         items += [
             ("topic", topic),
             ("publisher count", str(sum(publisher.name == topic for publisher in publishers))),
@@ -146,6 +149,6 @@ def _topics(seen: Observation) -> list[tuple[str, str]]:
     return items or [("topic", "none")]
 
 
-def _shown(endpoints: Iterable[EndpointInfo]) -> list[EndpointInfo]:
-    found = (endpoint for endpoint in endpoints if endpoint.name not in _EVERYWHERE)
-    return sorted(found, key=lambda endpoint: (endpoint.name, node_of(endpoint)))
+def _reported_endpoints(endpoints: Iterable[EndpointInfo]) -> list[EndpointInfo]:
+    reported = (endpoint for endpoint in endpoints if endpoint.name not in _UNIVERSAL_TOPICS)
+    return sorted(reported, key=lambda endpoint: (endpoint.name, node_of(endpoint)))

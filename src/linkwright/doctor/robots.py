@@ -10,8 +10,8 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, for
 from linkwright.doctor.record import Observation, listed
 from linkwright.urdf import Joint, Robot
 
-MOVING = frozenset({"revolute", "continuous", "prismatic"})
-"""Joints whose transforms follow joint states; robot_state_publisher treats all others as fixed."""
+MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
+"""Types of joints whose transforms follow joint states; robot_state_publisher treats other joints as fixed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class RobotSeen:
         topic: the topic of the description.
         sender: the full name of the node that published the description.
         model: the parsed description.
-        prefix: the prefix of frame names, which precedes the names of links (``frame_prefix``).
+        prefix: the prefix of the robot's frames (``frame_prefix``), which precedes the names of links.
     """
 
     topic: str
@@ -32,7 +32,7 @@ class RobotSeen:
 
     @property
     def root(self) -> str:
-        """The name of the root link, which is not the child of a joint."""
+        """The name of the root link, which no joint has as its child."""
         return self.model.root
 
     @property
@@ -46,91 +46,91 @@ class RobotSeen:
         return frozenset(self.model.joints)
 
     def frame(self, link: str) -> str:
-        """Return the name of the frame of a link."""
+        """Return the name of the frame that belongs to a link."""
         return f"{self.prefix}{link}"
 
     def leader(self, joint: Joint) -> str:
         """Return the name of the joint whose state determines the position of a joint.
 
-        The result is the joint that it mimics, or else the joint itself.
+        For a mimic joint, the result is the joint that it mimics; for any other joint, the joint itself.
         """
-        followed: set[str] = set()
-        while joint.mimic is not None and joint.name not in followed and joint.mimic.joint in self.model.joints:
-            followed.add(joint.name)
+        visited: set[str] = set()
+        while joint.mimic is not None and joint.name not in visited and joint.mimic.joint in self.model.joints:
+            visited.add(joint.name)
             joint = self.model.joints[joint.mimic.joint]
         return joint.name
 
 
-def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
-    """Parse the observed descriptions.
+def robots_in(observation: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
+    """Return the robots whose descriptions were observed, and findings about invalid descriptions.
 
     Returns:
-        The robots, and findings on descriptions that cannot be parsed.
+        The robots, and findings about descriptions that cannot be parsed.
     """
     robots: dict[tuple[str, str], RobotSeen] = {}
-    found = []
-    for description in seen.descriptions:
-        reading = DescriptionLibrary().read(description.text)
-        if reading.robot is not None:
-            prefix = _prefix(reading.robot, seen)
+    findings = []
+    for description in observation.descriptions:
+        read_description = DescriptionLibrary().read(description.text)
+        if read_description.robot is not None:
+            prefix = _frame_prefix(read_description.robot, observation)
             robots[description.topic, description.text] = RobotSeen(
-                description.topic, description.sender, reading.robot, prefix
+                description.topic, description.sender, read_description.robot, prefix
             )
             continue
-        first = reading.diagnostics[0].message if reading.diagnostics else phrase("it is empty")
-        found.append(
+        error_text = read_description.diagnostics[0].message if read_description.diagnostics else phrase("it is empty")
+        findings.append(
             Diagnostic(
                 "DOC501",
                 phrase(
                     "the description that '{sender}' publishes on '{topic}' is not URDF: {first}",
                     sender=description.sender,
                     topic=description.topic,
-                    first=foreign(first),
+                    first=foreign(error_text),
                 ),
                 hint=phrase("it must be the text of the description, as `xacro FILE` prints it, not a file's name"),
             )
         )
-    return list(robots.values()), found
+    return list(robots.values()), findings
 
 
-def _prefix(robot: Robot, seen: Observation) -> str:
-    """Return the prefix with which most links of a robot occur in the observed frames.
+def _frame_prefix(robot: Robot, observation: Observation) -> str:
+    """Return the prefix of a robot's frames with which most of its links occur in the observed transforms.
 
-    The result is empty if the frames have no prefix.
+    The prefix is empty if the observed frames have none.
     """
-    frames = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
+    frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
     if any(link in frames for link in robot.links):
         return ""
     prefixes = {frame.removesuffix(robot.root) for frame in frames if frame.endswith(robot.root)}
     return max(prefixes, key=lambda prefix: sum(prefix + link in frames for link in robot.links), default="")
 
 
-def examine_robots(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Yield findings on descriptions and joint states."""
-    yield from _several_descriptions(seen)
-    yield from _contradictions(seen)
+def examine_robots(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    """Yield findings about robot descriptions and joint states."""
+    yield from _examine_descriptions(observation)
+    yield from _examine_joint_senders(observation)
     if len(robots) == 1:
-        yield from _unknown_joints(seen, robots[0])
+        yield from _examine_unknown_joints(observation, robots[0])
 
 
-def _several_descriptions(seen: Observation) -> Iterator[Diagnostic]:
+def _examine_descriptions(observation: Observation) -> Iterator[Diagnostic]:
     by_topic: dict[str, dict[str, str]] = {}
-    for description in seen.descriptions:
+    for description in observation.descriptions:
         by_topic.setdefault(description.topic, {})[description.sender] = description.text
     for topic, texts in sorted(by_topic.items()):
         if len(texts) < 2:
             continue
-        differ = len(set(texts.values())) > 1
+        are_different = len(set(texts.values())) > 1
         yield Diagnostic(
             "DOC502",
             phrase(
                 "{count} nodes publish '{topic}': {texts}", count=len(texts), topic=topic, texts=listed(sorted(texts))
             ),
-            severity=Severity.ERROR if differ else Severity.WARNING,
+            severity=Severity.ERROR if are_different else Severity.WARNING,
             notes=(
                 Note(
-                    phrase("the descriptions differ; subscribers use the last one")
-                    if differ
+                    phrase("the descriptions differ, and subscribers use the last one")
+                    if are_different
                     else phrase("the descriptions are the same")
                 ),
             ),
@@ -138,12 +138,12 @@ def _several_descriptions(seen: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
-    shared: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
-    for joint in seen.joints:
+def _examine_joint_senders(observation: Observation) -> Iterator[Diagnostic]:
+    names_by_senders: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
+    for joint in observation.joints:
         if len(joint.senders) > 1 and len(joint.topics) == 1:
-            shared.setdefault((joint.senders, joint.topics), []).append(joint.name)
-    for (senders, topics), names in sorted(shared.items()):
+            names_by_senders.setdefault((joint.senders, joint.topics), []).append(joint.name)
+    for (senders, topics), names in sorted(names_by_senders.items()):
         yield Diagnostic(
             "DOC404",
             phrase(
@@ -156,27 +156,29 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot jumps between their values")),),
             hint=phrase(
-                "stop one of them: joint_state_publisher_gui is for descriptions without a robot; if a "
-                "driver runs too, let it publish to another topic"
+                "stop one of them; joint_state_publisher_gui is only for descriptions without a running robot, "
+                "and a second driver must publish to another topic"
             ),
         )
 
 
-def _unknown_joints(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    stated = {joint.name for joint in seen.joints}
-    unstated = [joint.name for joint in robot.joints if joint.type in MOVING and joint.name not in stated]
-    for joint in seen.joints:
+def _examine_unknown_joints(observation: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
+    published_names = {joint.name for joint in observation.joints}
+    unpublished_names = [
+        joint.name for joint in robot.joints if joint.type in MOVING_TYPES and joint.name not in published_names
+    ]
+    for joint in observation.joints:
         if joint.name in robot.joint_names:
             continue
-        near = did_you_mean(joint.name, unstated) or did_you_mean(joint.name, robot.joint_names)
+        suggestion = did_you_mean(joint.name, unpublished_names) or did_you_mean(joint.name, robot.joint_names)
         yield Diagnostic(
             "DOC405",
             phrase(
-                "{senders} publishes joint '{name}', which robot '{model_name}' does not have",
+                "{senders} publishes the state of joint '{name}', which robot '{model_name}' does not have",
                 senders=listed(joint.senders),
                 name=joint.name,
                 model_name=robot.model.name,
             ),
             severity=Severity.WARNING,
-            hint=near or phrase("its joints are {joint_names}", joint_names=listed(sorted(robot.joint_names))),
+            hint=suggestion or phrase("its joints are {joint_names}", joint_names=listed(sorted(robot.joint_names))),
         )

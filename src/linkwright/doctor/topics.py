@@ -1,6 +1,6 @@
 """Problems of nodes, topics and services.
 
-The problems concern names, types, quality of service, and managed nodes that are not active.
+The problems are wrong names and types, incompatible QoS, and managed nodes that are not active.
 """
 
 from __future__ import annotations
@@ -14,49 +14,60 @@ from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
 
-_COMMAND = "cmd_vel"
-"""The last part of the names of topics for velocity commands; other topics may well lack a subscriber."""
-_VELOCITIES = (TWIST, TWIST_STAMPED)
-_EVERYWHERE = frozenset({"/parameter_events", "/rosout", "/clock"})
-"""Topics that nodes subscribe to whether or not a node publishes them."""
-_MOST_DIFFERENT = 3
-"""The greatest difference in length between a name and its misspelling."""
+_COMMAND_TOPIC = "cmd_vel"
+"""The last component of topic names for velocity commands; other topics often have no subscriber."""
+_VELOCITY_TYPES = (TWIST, TWIST_STAMPED)
+_UNIVERSAL_TOPICS = frozenset({"/parameter_events", "/rosout", "/clock"})
+"""Topics that nodes subscribe to even if no node publishes them."""
+_MAX_LENGTH_DIFFERENCE = 3
+"""The maximum difference in length between a name and its misspelling."""
 
 
-def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on nodes, topics and services."""
-    yield from _same_names(seen)
-    yield from _types(seen)
-    yield from _qos(seen)
-    yield from _unpublished(seen)
-    yield from _unheard_commands(seen)
-    yield from _two_drivers(seen)
-    yield from _unserved(seen)
+def examine_topics(observation: Observation) -> Iterator[Diagnostic]:
+    """Yield findings about nodes, topics and services."""
+    yield from _examine_names(observation)
+    yield from _examine_types(observation)
+    yield from _examine_qos(observation)
+    yield from _examine_misnamed_topics(observation)
+    yield from _examine_commands(observation)
+    yield from _examine_drivers(observation)
+    yield from _examine_clients(observation)
 
 
-def _same_names(seen: Observation) -> Iterator[Diagnostic]:
-    for name, count in sorted(Counter(seen.nodes).items()):
+def _examine_names(observation: Observation) -> Iterator[Diagnostic]:
+    for name, count in sorted(Counter(observation.nodes).items()):
         if count > 1:
             yield Diagnostic(
                 "DOC101",
                 phrase("{count} nodes have the name '{name}'", count=count, name=name),
                 severity=Severity.WARNING,
                 notes=(
-                    Note(phrase("their parameter services answer in turn, and commands reach one of them by chance")),
+                    Note(
+                        phrase(
+                            "their parameter services respond in turn, so it is a matter of chance which node a "
+                            "command reaches"
+                        )
+                    ),
                 ),
-                hint=phrase("stop the node that was left running, or rename one: --ros-args -r __node:=OTHER"),
+                hint=phrase(
+                    "stop the node that is still running from before, or rename one of them: --ros-args -r "
+                    "__node:=OTHER"
+                ),
             )
 
 
-def _types(seen: Observation) -> Iterator[Diagnostic]:
+def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
     by_topic: dict[str, dict[str, list[EndpointInfo]]] = {}
-    for endpoint in (*seen.of_kind(EndpointKind.PUBLISHER), *seen.of_kind(EndpointKind.SUBSCRIPTION)):
+    for endpoint in (
+        *observation.endpoints_of_kind(EndpointKind.PUBLISHER),
+        *observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION),
+    ):
         by_topic.setdefault(endpoint.name, {}).setdefault(endpoint.type_name, []).append(endpoint)
     for topic, all_types in sorted(by_topic.items()):
         types = _without_universal_subscribers(all_types)
         if len(types) < 2:
             continue
-        notes = tuple(note for name, endpoints in sorted(types.items()) for note in _who(endpoints, name))
+        notes = tuple(note for name, endpoints in sorted(types.items()) for note in _endpoint_notes(endpoints, name))
         if set(types) == {TWIST, TWIST_STAMPED}:
             yield Diagnostic(
                 "DOC202",
@@ -66,8 +77,8 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
                 ),
                 notes=notes,
                 hint=phrase(
-                    "make both sides the same: many controllers have a parameter for it (use_stamped_vel, "
-                    "enable_stamped_cmd_vel, stamped), teleop_twist_keyboard has stamped:=true"
+                    "use one of the two types; many controllers have a parameter for it (use_stamped_vel, "
+                    "enable_stamped_cmd_vel, stamped), and teleop_twist_keyboard has stamped:=true"
                 ),
             )
         else:
@@ -85,28 +96,30 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
-    """Return a topic's endpoints by type, without the subscriptions of nodes that subscribe to all published types.
+    """Return a topic's endpoints by type, without the subscriptions of nodes that accept all published types.
 
-    Only a node that subscribes to more than one type counts as such a node. Its publishers remain. The result is empty
-    if no other node subscribes.
+    A node accepts all types if it subscribes to more than one type, and to all published ones. Its publishers remain.
+    The result is empty if no other node subscribes.
     """
-    every = [endpoint for endpoints in types.values() for endpoint in endpoints]
-    published = {endpoint.type_name for endpoint in every if endpoint.kind is EndpointKind.PUBLISHER}
-    heard: dict[str, set[str]] = {}
-    for endpoint in every:
+    all_endpoints = [endpoint for endpoints in types.values() for endpoint in endpoints]
+    published_types = {endpoint.type_name for endpoint in all_endpoints if endpoint.kind is EndpointKind.PUBLISHER}
+    subscribed_types: dict[str, set[str]] = {}
+    for endpoint in all_endpoints:
         if endpoint.kind is EndpointKind.SUBSCRIPTION:
-            heard.setdefault(node_of(endpoint), set()).add(endpoint.type_name)
-    takers = {node for node, names in heard.items() if len(names) > 1 and names >= published}
-    if takers and takers == set(heard):
+            subscribed_types.setdefault(node_of(endpoint), set()).add(endpoint.type_name)
+    universal_subscribers = {
+        node for node, names in subscribed_types.items() if len(names) > 1 and names >= published_types
+    }
+    if universal_subscribers and universal_subscribers == set(subscribed_types):
         return {}
-    kept: dict[str, list[EndpointInfo]] = {}
-    for endpoint in every:
-        if endpoint.kind is EndpointKind.PUBLISHER or node_of(endpoint) not in takers:
-            kept.setdefault(endpoint.type_name, []).append(endpoint)
-    return kept
+    remaining: dict[str, list[EndpointInfo]] = {}
+    for endpoint in all_endpoints:
+        if endpoint.kind is EndpointKind.PUBLISHER or node_of(endpoint) not in universal_subscribers:
+            remaining.setdefault(endpoint.type_name, []).append(endpoint)
+    return remaining
 
 
-def _who(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
+def _endpoint_notes(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
     publishers = nodes_of(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.PUBLISHER)
     if publishers:
         yield Note(
@@ -121,12 +134,12 @@ def _who(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
         )
 
 
-def _qos(seen: Observation) -> Iterator[Diagnostic]:
-    if seen.over_zenoh:
+def _examine_qos(observation: Observation) -> Iterator[Diagnostic]:
+    if observation.over_zenoh:
         return
-    publishers = seen.of_kind(EndpointKind.PUBLISHER)
+    publishers = observation.endpoints_of_kind(EndpointKind.PUBLISHER)
     reported = set()
-    for subscription in seen.of_kind(EndpointKind.SUBSCRIPTION):
+    for subscription in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION):
         for publisher in publishers:
             if publisher.name != subscription.name or publisher.type_name != subscription.type_name:
                 continue
@@ -134,15 +147,17 @@ def _qos(seen: Observation) -> Iterator[Diagnostic]:
             key = (publisher.name, node_of(publisher), node_of(subscription), policies)
             if policies and key not in reported:
                 reported.add(key)
-                yield _mismatch(publisher, subscription, policies)
+                yield _qos_finding(publisher, subscription, policies)
 
 
-def _mismatch(publisher: EndpointInfo, subscription: EndpointInfo, policies: tuple[QoSPolicyKind, ...]) -> Diagnostic:
+def _qos_finding(
+    publisher: EndpointInfo, subscription: EndpointInfo, policies: tuple[QoSPolicyKind, ...]
+) -> Diagnostic:
     sender, receiver = node_of(publisher), node_of(subscription)
     notes = []
     for policy in policies:
         name = policy.name.lower()
-        offered, requested = _terms(publisher, policy), _terms(subscription, policy)
+        offered, requested = _policy_text(publisher, policy), _policy_text(subscription, policy)
         notes.append(
             Note(
                 phrase(
@@ -158,17 +173,18 @@ def _mismatch(publisher: EndpointInfo, subscription: EndpointInfo, policies: tup
     return Diagnostic(
         "DOC203",
         phrase(
-            "'{receiver}' gets nothing from '{sender}' on topic '{name}': their quality of service differs",
+            "'{receiver}' receives nothing from '{sender}' on topic '{name}', because their quality of service "
+            "is incompatible",
             receiver=receiver,
             sender=sender,
             name=publisher.name,
         ),
         notes=tuple(notes),
-        hint=_remedy(policies[0]),
+        hint=_qos_hint(policies[0]),
     )
 
 
-def _remedy(policy: QoSPolicyKind) -> Phrase:
+def _qos_hint(policy: QoSPolicyKind) -> Phrase:
     if policy is QoSPolicyKind.RELIABILITY:
         return phrase(
             "make the publisher reliable, or the subscription best effort (in RViz: the display's Reliability Policy)"
@@ -181,94 +197,106 @@ def _remedy(policy: QoSPolicyKind) -> Phrase:
     return phrase("let the publisher offer more, or the subscription request less")
 
 
-def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
-    """Return the value of a QoS policy of an endpoint as text, such as ``RELIABLE``."""
+def _policy_text(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
+    """Return the value of an endpoint's QoS policy as text, such as ``RELIABLE``."""
     value = getattr(endpoint.qos, policy.name.lower())
     if policy is QoSPolicyKind.LIVELINESS:
         return f"{value.name} ({endpoint.qos.liveliness_lease_duration})"
     return str(getattr(value, "name", value))
 
 
-def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
-    """Yield topics without a publisher whose subscribers probably mean another, published topic.
+def _find_misnamed_topics(observation: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
+    """Yield topics without a publisher whose subscribers probably mean another topic, which is published.
 
     Yields:
-        The topic, its type, its subscriptions, and the published topic.
+        The topic, its type, its subscriptions, and the name of the published topic.
     """
-    published: dict[str, set[str]] = {}
+    published_types: dict[str, set[str]] = {}
     senders: dict[str, set[str]] = {}
-    for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
-        published.setdefault(endpoint.name, set()).add(endpoint.type_name)
+    for endpoint in observation.endpoints_of_kind(EndpointKind.PUBLISHER):
+        published_types.setdefault(endpoint.name, set()).add(endpoint.type_name)
         senders.setdefault(endpoint.name, set()).add(node_of(endpoint))
-    wanting: dict[tuple[str, str], list[EndpointInfo]] = {}
-    for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION):
-        if endpoint.name not in published and endpoint.name not in _EVERYWHERE and "/_action/" not in endpoint.name:
-            wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
-    heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
-    for (topic, type_name), endpoints in sorted(wanting.items()):
-        # A published topic that already has a subscriber is probably meant for it, and no node means to subscribe to
-        # itself.
-        takers = set(nodes_of(endpoints))
-        unheard = [
+    subscriptions: dict[tuple[str, str], list[EndpointInfo]] = {}
+    for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION):
+        if (
+            endpoint.name not in published_types
+            and endpoint.name not in _UNIVERSAL_TOPICS
+            and "/_action/" not in endpoint.name
+        ):
+            subscriptions.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
+    subscribed_topics = {endpoint.name for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)}
+    for (topic, type_name), endpoints in sorted(subscriptions.items()):
+        # A published topic with a subscriber is probably meant for that one. In addition, no node means to subscribe
+        # to its own topic.
+        subscribers = set(nodes_of(endpoints))
+        unsubscribed_topics = [
             name
-            for name, types in published.items()
-            if type_name in types and name not in heard and not takers & senders[name]
+            for name, types in published_types.items()
+            if type_name in types and name not in subscribed_topics and not subscribers & senders[name]
         ]
-        like = _alike(topic, unheard)
-        if like is not None:
-            yield topic, type_name, endpoints, like
+        published_topic = _find_similar(topic, unsubscribed_topics)
+        if published_topic is not None:
+            yield topic, type_name, endpoints, published_topic
 
 
-def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
-    for topic, type_name, endpoints, like in _misnamed(seen):
-        senders = nodes_of(seen.publishers_of(like))
+def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
+    for topic, type_name, endpoints, published_topic in _find_misnamed_topics(observation):
+        senders = nodes_of(observation.publishers_of(published_topic))
         yield Diagnostic(
             "DOC204",
             phrase(
                 "no node publishes topic '{topic}', which {nodes_of} subscribes to, but '{like}' is published",
                 topic=topic,
                 nodes_of=listed(nodes_of(endpoints)),
-                like=like,
+                like=published_topic,
             ),
             severity=Severity.WARNING,
             notes=(
                 Note(
                     phrase(
                         "'{like}' has the same type, {type_name}, and is published by {senders}",
-                        like=like,
+                        like=published_topic,
                         type_name=type_name,
                         senders=listed(senders),
                     )
                 ),
             ),
             hint=phrase(
-                "if they belong together, remap one of them: --ros-args -r {topic}:={like}", topic=topic, like=like
+                "if they belong together, remap one of them: --ros-args -r {topic}:={like}",
+                topic=topic,
+                like=published_topic,
             ),
         )
 
 
-def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on velocity commands that no node subscribes to."""
-    heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
-    misnamed = {like for _, _, _, like in _misnamed(seen)}
-    accepting = {
-        endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION) if endpoint.type_name in _VELOCITIES
+def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
+    """Yield findings about velocity commands to which no node subscribes."""
+    subscribed_topics = {endpoint.name for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)}
+    misnamed_topics = {like for _, _, _, like in _find_misnamed_topics(observation)}
+    command_topics = {
+        endpoint.name
+        for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)
+        if endpoint.type_name in _VELOCITY_TYPES
     }
-    unheard: dict[str, list[EndpointInfo]] = {}
-    for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
+    unsubscribed: dict[str, list[EndpointInfo]] = {}
+    for endpoint in observation.endpoints_of_kind(EndpointKind.PUBLISHER):
         name = endpoint.name
-        if endpoint.type_name in _VELOCITIES and name.rpartition("/")[2] == _COMMAND and name not in heard | misnamed:
-            unheard.setdefault(name, []).append(endpoint)
-    for topic, publishers in sorted(unheard.items()):
+        if (
+            endpoint.type_name in _VELOCITY_TYPES
+            and name.rpartition("/")[2] == _COMMAND_TOPIC
+            and name not in subscribed_topics | misnamed_topics
+        ):
+            unsubscribed.setdefault(name, []).append(endpoint)
+    for topic, publishers in sorted(unsubscribed.items()):
         hint = (
             phrase(
-                "nodes accept velocities on {topics}; remap one side: --ros-args -r {topic}:={other}",
-                topics=listed(sorted(accepting)),
+                "nodes accept velocities on {topics}; remap the topic: --ros-args -r {topic}:={other}",
+                topics=listed(sorted(command_topics)),
                 topic=topic,
-                other=min(accepting),
+                other=min(command_topics),
             )
-            if accepting
-            else phrase("is the robot, its simulation or its controller running, and in the same ROS_DOMAIN_ID?")
+            if command_topics
+            else phrase("check that the robot, its simulation or its controller runs in the same ROS_DOMAIN_ID")
         )
         yield Diagnostic(
             "DOC207",
@@ -282,13 +310,13 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on nodes that sent contradictory velocities on one topic."""
-    for drivers_seen in seen.disputed:
+def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
+    """Yield findings about nodes that published contradictory velocities on a topic."""
+    for drivers_seen in observation.disputed:
         yield Diagnostic(
             "DOC208",
             phrase(
-                "two nodes drive the robot: {drivers} publish velocities on '{topic}'",
+                "two nodes drive the robot: {drivers} publish contradictory velocities on '{topic}'",
                 drivers=listed(drivers_seen.drivers),
                 topic=drivers_seen.topic,
             ),
@@ -298,26 +326,30 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _alike(name: str, candidates: list[str]) -> str | None:
-    """Return the candidate that is probably meant by a name, or None.
+def _find_similar(name: str, candidates: list[str]) -> str | None:
+    """Return the candidate that a name probably means, or None.
 
-    A candidate matches if only its namespace differs, or if its spelling is similar.
+    A candidate is suitable if only its namespace differs, or if its spelling is similar.
     """
-    last = name.rpartition("/")[2]
-    same_end = [candidate for candidate in candidates if candidate.rpartition("/")[2] == last]
-    near = nearest(name, [candidate for candidate in candidates if abs(len(candidate) - len(name)) <= _MOST_DIFFERENT])
-    return next(iter((*same_end, *near)), None)
+    base_name = name.rpartition("/")[2]
+    same_base_name = [candidate for candidate in candidates if candidate.rpartition("/")[2] == base_name]
+    similar_names = nearest(
+        name, [candidate for candidate in candidates if abs(len(candidate) - len(name)) <= _MAX_LENGTH_DIFFERENCE]
+    )
+    return next(iter((*same_base_name, *similar_names)), None)
 
 
-def _unserved(seen: Observation) -> Iterator[Diagnostic]:
-    served = {endpoint.name: endpoint.type_name for endpoint in seen.of_kind(EndpointKind.SERVICE)}
-    wanting: dict[tuple[str, str], list[EndpointInfo]] = {}
-    for endpoint in seen.of_kind(EndpointKind.CLIENT):
-        if served.get(endpoint.name) != endpoint.type_name and "/_action/" not in endpoint.name:
-            wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
-    for (name, type_name), clients in sorted(wanting.items()):
+def _examine_clients(observation: Observation) -> Iterator[Diagnostic]:
+    service_types = {
+        endpoint.name: endpoint.type_name for endpoint in observation.endpoints_of_kind(EndpointKind.SERVICE)
+    }
+    clients_by_service: dict[tuple[str, str], list[EndpointInfo]] = {}
+    for endpoint in observation.endpoints_of_kind(EndpointKind.CLIENT):
+        if service_types.get(endpoint.name) != endpoint.type_name and "/_action/" not in endpoint.name:
+            clients_by_service.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
+    for (name, type_name), clients in sorted(clients_by_service.items()):
         callers = listed(nodes_of(clients))
-        if name in served:
+        if name in service_types:
             yield Diagnostic(
                 "DOC205",
                 phrase(
@@ -325,40 +357,46 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
                     name=name,
                     callers=callers,
                     type_name=type_name,
-                    served=served[name],
+                    served=service_types[name],
                 ),
                 hint=phrase("client and server must have the same type"),
             )
             continue
-        same_type = [each for each, kind in served.items() if kind == type_name]
-        last = name.rpartition("/")[2]
-        near = [item for item in same_type if item.rpartition("/")[2] == last] or nearest(name, same_type)
+        same_type = [service for service, service_type in service_types.items() if service_type == type_name]
+        base_name = name.rpartition("/")[2]
+        similar_services = [item for item in same_type if item.rpartition("/")[2] == base_name] or nearest(
+            name, same_type
+        )
         yield Diagnostic(
             "DOC206",
-            phrase("no node provides '{name}', which {callers} calls", name=name, callers=callers),
+            phrase("no node provides service '{name}', which {callers} calls", name=name, callers=callers),
             severity=Severity.WARNING,
             notes=(Note(phrase("it is of type {type_name}", type_name=type_name)),),
             hint=phrase(
-                "'{near}' has that type; remap one of them: --ros-args -r {name}:={near}",
-                near=near[0],
+                "service '{near}' has the same type; remap one of them: --ros-args -r {name}:={near}",
+                near=similar_services[0],
                 name=name,
             )
-            if near
+            if similar_services
             else phrase("start the node that provides it, or check its name and namespace"),
         )
 
 
-def examine_lifecycle(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on managed nodes that are not active."""
-    waiting: dict[str, list[str]] = {}
-    for node, state in seen.lifecycle.items():
+def examine_lifecycle(observation: Observation) -> Iterator[Diagnostic]:
+    """Yield findings about managed nodes that are not active."""
+    nodes_by_state: dict[str, list[str]] = {}
+    for node, state in observation.lifecycle.items():
         if state in ("unconfigured", "inactive"):
-            waiting.setdefault(state, []).append(node)
-    for state, nodes in sorted(waiting.items()):
-        next_one = "configure" if state == "unconfigured" else "activate"
+            nodes_by_state.setdefault(state, []).append(node)
+    for state, nodes in sorted(nodes_by_state.items()):
+        transition = "configure" if state == "unconfigured" else "activate"
         yield Diagnostic(
             "DOC701",
             phrase("managed node {nodes} is {state}, so it does nothing yet", nodes=listed(sorted(nodes)), state=state),
             severity=Severity.WARNING,
-            hint=phrase("bring it up: ros2 lifecycle set {node} {transition}", node=min(nodes), transition=next_one),
+            hint=phrase(
+                ("request the next transition: ros2 lifecycle set {node} {transition}"),
+                node=min(nodes),
+                transition=transition,
+            ),
         )

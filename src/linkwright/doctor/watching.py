@@ -26,7 +26,7 @@ from linkwright.doctor.record import (
     node_of,
 )
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
-from linkwright.graph.endpoints.drivers import Dispute, drivers_of, publishers_of
+from linkwright.graph.endpoints.drivers import Dispute, find_drivers, find_publishers
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -39,12 +39,12 @@ if TYPE_CHECKING:
 
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 _TRANSFORMS = ("tf", "tf_static")
-_MODELS = "/model/"
-"""The prefix of topics of gz, which are not ROS's before a bridge carries them."""
+_MODEL_PREFIX = "/model/"
+"""The prefix of gz's topics, which ROS nodes receive only through a bridge."""
 _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
 _BOND = "bond/msg/Status"
-"""Bonds stamp by a steady clock, which no other clock is compared with."""
-_ENVIRONMENT = (
+"""The type of bond messages, whose stamps are those of a steady clock and cannot be compared with other clocks."""
+_DISCOVERY_VARIABLES = (
     "ROS_DOMAIN_ID",
     "ROS_LOCALHOST_ONLY",
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
@@ -56,23 +56,23 @@ _ENVIRONMENT = (
     "ZENOH_CONFIG_OVERRIDE",
     "ZENOH_SESSION_CONFIG_URI",
 )
-_ANSWER_WITHIN = 1.0
-"""Seconds for a node to answer what is asked of it; one that hangs is passed over."""
-_NAMED_WITHIN = 1.0
-"""Seconds for a process to announce the nodes of its endpoints; those of other programs never have one."""
+_RESPONSE_TIMEOUT_SECONDS = 1.0
+"""The maximum seconds to wait for the response of a node; a node that does not respond is skipped."""
+_NAMING_TIMEOUT_SECONDS = 1.0
+"""The maximum seconds to wait for the nodes of endpoints; the endpoints of some programs never have one."""
 _FIXED_FRAME = "fixed_frame"
-_LOOK_AGAIN = 0.01
+_POLL_SECONDS = 0.01
 _TRANSFORMS_WITHIN = 5.0
-"""How much longer than asked for it looks, in seconds, where transforms are published and none came."""
+"""The maximum additional seconds to observe if transforms are published and none was received."""
 _LENGTH_TOLERANCE = 1e-3
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
-"""The stamp of a header that comes first, by the second byte of the CDR header, which tells the order of bytes."""
+"""The stamp of a header at the start of a message, by the byte order in the second byte of the CDR header."""
 _CDR_HEADER = 4
 _TWIST_BYTES = 48
-"""Six numbers, at the end of a Twist and of a TwistStamped."""
-_DISPUTED_S = 1.5
-"""For how long drivers must contradict each other: less than a drive asks for, as one looks for a few seconds."""
-_DISPUTED_TIMES = 2
+"""The size of the six numbers at the end of a Twist or TwistStamped."""
+_MIN_DISPUTE_SECONDS = 1.5
+"""The seconds for which drivers must contradict each other; short, because observations are short."""
+_MIN_DISPUTE_COUNT = 2
 
 
 async def observe(
@@ -83,12 +83,12 @@ async def observe(
     fixed_frames: Sequence[FixedFrame] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Observation:
-    """Observe a graph, and return the observations.
+    """Observe a graph for some seconds, and return the observations.
 
     Args:
-        graph: the graph, joined with other processes, on the running event loop.
-        node: the observing node of this graph, which is excluded from the observations.
-        seconds: the duration of the observation.
+        graph: the graph on the running event loop, which has joined other processes.
+        node: the observing node of this graph, which the observation omits.
+        seconds: the duration of the observation in seconds.
         fixed_frames: the Fixed Frames of viewers that do not declare them as parameters.
         environment: the environment variables; None for the environment of this process.
     """
@@ -96,14 +96,14 @@ async def observe(
     end = time.monotonic() + seconds
     while True:
         watcher.subscribe()
-        left = end - time.monotonic()
-        if left <= (-_TRANSFORMS_WITHIN if watcher.waits_for_transforms() else 0):
+        remaining_seconds = end - time.monotonic()
+        if remaining_seconds <= (-_TRANSFORMS_WITHIN if watcher.waits_for_transforms() else 0):
             break
-        await asyncio.sleep(min(left, 0.25) if left > 0 else _LOOK_AGAIN)
-    sim_time, lifecycle, shown_in = await asyncio.gather(
+        await asyncio.sleep(min(remaining_seconds, 0.25) if remaining_seconds > 0 else _POLL_SECONDS)
+    sim_time, lifecycle, viewer_frames = await asyncio.gather(
         watcher.sim_time(), watcher.lifecycle(), watcher.fixed_frames()
     )
-    await watcher.until_named()
+    await watcher.wait_for_node_names()
     variables = os.environ if environment is None else environment
     return Observation(
         over_zenoh=middleware() == ZENOH,
@@ -119,13 +119,13 @@ async def observe(
         clock=watcher.clock,
         sim_time=sim_time,
         lifecycle=lifecycle,
-        fixed_frames=(*fixed_frames, *shown_in),
-        environment={name: variables[name] for name in _ENVIRONMENT if name in variables},
+        fixed_frames=(*fixed_frames, *viewer_frames),
+        environment={name: variables[name] for name in _DISCOVERY_VARIABLES if name in variables},
     )
 
 
 class _Watcher:
-    """Subscribes to the topics that the examinations need, and records observations."""
+    """Subscribes to the topics that the examinations need, and records what it receives."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph
@@ -135,59 +135,59 @@ class _Watcher:
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
         self._latched: set[str] = set()
-        self._awaited: set[str] = set()
+        self._transform_topics: set[str] = set()
         self._frames: dict[tuple[str, str], str] = {}
         self._disputes: dict[str, Dispute] = {}
         self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
         self.clock: ClockSeen | None = None
 
     def nodes(self) -> list[str]:
-        """Return the full names of the nodes.
+        """Return the full names of the nodes in the graph.
 
-        The observing node and the hidden nodes of other tools are excluded.
+        The observing node and the hidden nodes of commands are excluded.
         """
         names = (join(identity.namespace, identity.name) for identity in self._graph.identities())
-        return sorted(name for name in names if not _is_tool(name) and name != self._own)
+        return sorted(name for name in names if not _is_tool(name) and name != self._own_name)
 
     def endpoints(self) -> list[EndpointInfo]:
         """Return the endpoints of the graph.
 
-        Endpoints of the observing node and of the hidden nodes of other tools are excluded.
+        Endpoints of the observing node and of the hidden nodes of commands are excluded.
         """
         return [
             endpoint
             for endpoint in self._graph.endpoints()
-            if not _is_tool(node_of(endpoint)) and node_of(endpoint) != self._own
+            if not _is_tool(node_of(endpoint)) and node_of(endpoint) != self._own_name
         ]
 
-    async def until_named(self) -> None:
+    async def wait_for_node_names(self) -> None:
         """Wait until the node of every endpoint is known.
 
-        A node is discovered shortly after its endpoints. Until then, the endpoints of another command would be treated
-        as a part of the graph.
+        A node is discovered shortly after its endpoints. Before that, the endpoints of another command would be
+        mistaken for a part of the graph.
         """
-        end = time.monotonic() + _NAMED_WITHIN
+        end = time.monotonic() + _NAMING_TIMEOUT_SECONDS
         while time.monotonic() < end:
             if all(endpoint.node is not None for endpoint in self._graph.endpoints()):
                 break
-            await asyncio.sleep(_LOOK_AGAIN)
+            await asyncio.sleep(_POLL_SECONDS)
 
     def waits_for_transforms(self) -> bool:
-        """Return whether a topic with publishers of transforms has not delivered any transform yet.
+        """Return whether a topic with a publisher of transforms has not delivered any transform yet.
 
-        On a busy machine, the first transforms take seconds to arrive.
+        On a busy computer, the first transforms take seconds to arrive.
         """
-        heard = {topic for senders, _, _ in self._transforms.values() for topic in senders}
-        return not self._awaited <= heard
+        topics_with_transforms = {topic for senders, _, _ in self._transforms.values() for topic in senders}
+        return not self._transform_topics <= topics_with_transforms
 
     @property
-    def _own(self) -> str:
+    def _own_name(self) -> str:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
-        """Subscribe to new topics that the examinations need.
+        """Subscribe to the topics that the examinations need and that have appeared since the last call.
 
-        A topic of a tool such as ``topic pub`` is included only if it carries velocities.
+        Topics of a command such as ``topic pub`` are included only if they carry velocities.
         """
         for endpoint in self._graph.endpoints():
             key = (endpoint.name, endpoint.type_name)
@@ -195,47 +195,49 @@ class _Watcher:
                 continue
             if (
                 endpoint.kind is EndpointKind.PUBLISHER
-                and node_of(endpoint) != self._own
+                and node_of(endpoint) != self._own_name
                 and key not in self._subscribed
             ):
                 self._subscribed.add(key)
                 self._subscribe(endpoint)
 
     def _subscribe(self, endpoint: EndpointInfo) -> None:
-        topic, kind = endpoint.name, endpoint.type_name
-        last = topic.rpartition("/")[2]
-        if kind == _TF:
-            if last not in _TRANSFORMS or topic.startswith(_MODELS):
+        topic, type_name = endpoint.name, endpoint.type_name
+        base_name = topic.rpartition("/")[2]
+        if type_name == _TF:
+            if base_name not in _TRANSFORMS or topic.startswith(_MODEL_PREFIX):
                 return  # poses in a simulated world are not frames; a bridge publishes gz's model poses on /tf
-            is_static = last == _TRANSFORMS[1]
-            self._awaited.add(topic)
+            is_static = base_name == _TRANSFORMS[1]
+            self._transform_topics.add(topic)
             self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
-        elif kind == _JOINT_STATE:
+        elif type_name == _JOINT_STATE:
             self._listen(endpoint, lambda message, info: self._on_joints(topic, message, info))
-        elif kind == _STRING and last == "robot_description":
+        elif type_name == _STRING and base_name == "robot_description":
             self._listen(endpoint, lambda message, info: self._on_description(topic, message, info))
-        elif kind == _CLOCK and topic == "/clock":
+        elif type_name == _CLOCK and topic == "/clock":
             self._listen(endpoint, lambda message, _info: self._on_clock(message))
-        elif kind == TWIST:
+        elif type_name == TWIST:
             self._listen(endpoint, lambda data, info: self._on_velocity(topic, data, info), raw=True)
-        elif kind != _BOND and _begins_with_header(kind):
-            driving = kind == TWIST_STAMPED
-            self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
+        elif type_name != _BOND and _begins_with_header(type_name):
+            is_velocity = type_name == TWIST_STAMPED
+            self._listen(
+                endpoint, lambda data, info: self._on_stamped(topic, data, info, is_velocity=is_velocity), raw=True
+            )
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
-        """Subscribe to a topic with a QoS profile that is compatible with every publisher.
+        """Subscribe to a topic with a QoS profile that is compatible with all its publishers.
 
-        The last messages of a latched topic are received, too.
+        From a latched topic, the last messages are also received.
         """
         offers = [publisher.qos for publisher in self._publishers(endpoint.name)]
-        latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
-        reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
-        if latched:
+        is_latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
+        is_reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
+        if is_latched:
             self._latched.add(endpoint.name)
         qos = QoSProfile(
             100,
-            ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-            DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+            ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+            DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE,
         )
 
         def listen(message: Any, info: MessageInfo) -> None:
@@ -267,11 +269,11 @@ class _Watcher:
             senders.setdefault(topic, set()).add(sender)
             self._transforms[key] = (senders, is_static, valid and _is_transform(transform.transform))
             if not is_static:
-                self._note_stamp(topic, sender, transform.header.stamp.sec, transform.header.stamp.nanosec)
+                self._record_stamp(topic, sender, transform.header.stamp.sec, transform.header.stamp.nanosec)
 
     def _on_joints(self, topic: str, message: Any, info: MessageInfo) -> None:
         sender = self._sender(topic, info)
-        self._note_stamp(topic, sender, message.header.stamp.sec, message.header.stamp.nanosec)
+        self._record_stamp(topic, sender, message.header.stamp.sec, message.header.stamp.nanosec)
         for name in message.name if len(message.position) else ():
             senders, topics = self._joints.setdefault(name, (set(), set()))
             senders.add(sender)
@@ -283,27 +285,29 @@ class _Watcher:
 
     def _on_clock(self, message: Any) -> None:
         now_ns = message.clock.nanoseconds
-        before = self.clock
+        previous = self.clock
         self.clock = (
-            ClockSeen(1, now_ns, now_ns) if before is None else ClockSeen(before.ticks + 1, before.first_ns, now_ns)
+            ClockSeen(1, now_ns, now_ns)
+            if previous is None
+            else ClockSeen(previous.ticks + 1, previous.first_ns, now_ns)
         )
 
     def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
-        dispute = self._disputes.setdefault(topic, Dispute(_DISPUTED_S, _DISPUTED_TIMES))
+        dispute = self._disputes.setdefault(topic, Dispute(_MIN_DISPUTE_SECONDS, _MIN_DISPUTE_COUNT))
         dispute.note_command(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
 
-    def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, driving: bool) -> None:
-        if driving:
+    def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, is_velocity: bool) -> None:
+        if is_velocity:
             self._on_velocity(topic, data, info)
         seconds, nanoseconds = _STAMP[data[1] & 1].unpack_from(data, _CDR_HEADER)
         sender = self._sender(topic, info)
-        self._note_stamp(topic, sender, seconds, nanoseconds)
-        self._frames[topic, sender] = _frame_of(data)
+        self._record_stamp(topic, sender, seconds, nanoseconds)
+        self._frames[topic, sender] = _read_frame(data)
 
-    def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
+    def _record_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
         """Record the stamp of a message.
 
-        On a latched topic such as a map, only a stamp of 0 is recorded, because other stamps can be of any age.
+        On a latched topic, such as a map, only a stamp of 0 is recorded, because messages may be of any age.
         """
         if topic in self._latched and (seconds or nanoseconds):
             return
@@ -314,7 +318,8 @@ class _Watcher:
     def transforms(self) -> tuple[TransformSeen, ...]:
         """Return the transforms, sorted by parent and child.
 
-        The senders of a transform are those on one topic, because a bridge may forward the transforms of another topic.
+        The senders of a transform are those on a single topic, because a bridge may forward transforms to another
+        topic.
         """
         return tuple(
             TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
@@ -322,91 +327,99 @@ class _Watcher:
         )
 
     def joints(self) -> tuple[JointSeen, ...]:
-        """Return the joint states, sorted by the name of the joint."""
+        """Return the observed joints, sorted by name."""
         return tuple(
             JointSeen(name, tuple(sorted(senders)), tuple(sorted(topics)))
             for name, (senders, topics) in sorted(self._joints.items())
         )
 
     def disputed(self) -> tuple[DriversSeen, ...]:
-        """Return the nodes that sent contradictory velocities, by topic."""
-        found = []
+        """Return the nodes that published contradictory velocities, by topic."""
+        drivers_by_topic = []
         for topic, dispute in sorted(self._disputes.items()):
-            drivers = drivers_of(self._graph, publishers_of(self._graph, dispute.parties))
+            drivers = find_drivers(self._graph, find_publishers(self._graph, dispute.parties))
             if len(drivers) > 1:
-                found.append(DriversSeen(topic, tuple(drivers)))
-        return tuple(found)
+                drivers_by_topic.append(DriversSeen(topic, tuple(drivers)))
+        return tuple(drivers_by_topic)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """Return the stamps relative to the clock of their senders.
+        """Return the age of the last stamps, which is measured with the clock of their senders.
 
-        The clock is simulated time if the sender uses or publishes simulated time. Any other sender may forward the
-        stamps of other nodes, so the clock that is closer to the stamp is used.
+        This clock is simulated time if the sender uses or publishes it. Any other sender may forward the stamps of
+        other nodes, so the age is measured with the clock that is closer to the stamp.
         """
-        found = []
-        makers = {node_of(publisher) for publisher in self._publishers("/clock")}
+        stamps = []
+        clock_nodes = {node_of(publisher) for publisher in self._publishers("/clock")}
         for (topic, sender), (stamp_ns, now_ns) in sorted(self._stamps.items()):
-            if sim_time.get(sender) or sender in makers:
+            if sim_time.get(sender) or sender in clock_nodes:
                 if self.clock is None:
                     continue
                 now_ns = self.clock.last_ns
             behind_ns = now_ns - stamp_ns
             if self.clock is not None:  # bridges and robot_state_publisher forward stamps of simulated time
                 behind_ns = min(behind_ns, self.clock.last_ns - stamp_ns, key=abs)
-            found.append(StampSeen(topic, sender, behind_ns, zero=stamp_ns == 0))
-        return tuple(found)
+            stamps.append(StampSeen(topic, sender, behind_ns, zero=stamp_ns == 0))
+        return tuple(stamps)
 
     def frames_seen(self) -> tuple[FrameSeen, ...]:
-        """Return the frames of messages, by topic and sender; empty frames are omitted."""
-        named = sorted(item for item in self._frames.items() if item[1])
-        return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named)
+        """Return the frames of messages by topic and sender, without empty frames."""
+        named_frames = sorted(item for item in self._frames.items() if item[1])
+        return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named_frames)
 
     # --- service calls -----------------------------------------------------------------------------------------------
 
     async def sim_time(self) -> dict[str, bool]:
-        """Return the value of ``use_sim_time`` of each node that responds, by full name."""
-        kind = "rcl_interfaces/srv/GetParameters"
-        answers = await self._ask_all(kind, "get_parameters", names=["use_sim_time"])
-        return {node: bool(answer.values[0].bool_value) for node, answer in answers.items() if answer.values}
+        """Return the values of ``use_sim_time`` by the full names of the nodes that responded in time."""
+        service_type = "rcl_interfaces/srv/GetParameters"
+        responses = await self._call_all(service_type, "get_parameters", names=["use_sim_time"])
+        return {node: bool(response.values[0].bool_value) for node, response in responses.items() if response.values}
 
     async def lifecycle(self) -> dict[str, str]:
-        """Return the state of each managed node that responds, by full name."""
-        answers = await self._ask_all("lifecycle_msgs/srv/GetState", "get_state")
-        return {node: answer.current_state.label for node, answer in answers.items()}
+        """Return the states of managed nodes by the full names of the nodes that responded in time."""
+        responses = await self._call_all("lifecycle_msgs/srv/GetState", "get_state")
+        return {node: response.current_state.label for node, response in responses.items()}
 
     async def fixed_frames(self) -> list[FixedFrame]:
-        """Return the Fixed Frame of each viewer that declares it as a parameter, as ours does."""
+        """Return the Fixed Frames of the viewers that declare it as a parameter, as Linkwright's viewer does."""
         subscriptions = [endpoint for endpoint in self.endpoints() if endpoint.kind is EndpointKind.SUBSCRIPTION]
         viewers = {node_of(subscription) for subscription in subscriptions if subscription.type_name == _TF}
         package = "rcl_interfaces/srv"
-        listed = await self._ask_all(f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME])
-        # Do not request the parameter from other nodes, which would log an error.
-        with_frame = {node for node, answer in listed.items() if _FIXED_FRAME in answer.result.names}
-        answers = await self._ask_all(f"{package}/GetParameters", "get_parameters", with_frame, names=[_FIXED_FRAME])
-        return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
+        parameter_lists = await self._call_all(
+            f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME]
+        )
+        # The parameter is not requested from other nodes, because they would log an error.
+        nodes_with_frame = {node for node, answer in parameter_lists.items() if _FIXED_FRAME in answer.result.names}
+        responses = await self._call_all(
+            f"{package}/GetParameters", "get_parameters", nodes_with_frame, names=[_FIXED_FRAME]
+        )
+        return [
+            FixedFrame(response.values[0].string_value, f"'{node}'") for node, response in sorted(responses.items())
+        ]
 
-    async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:
-        """Call a service of all nodes that offer it.
+    async def _call_all(
+        self, kind: str, service: str, candidates: set[str] | None = None, **fields: Any
+    ) -> dict[str, Any]:
+        """Call a service of all nodes that offer it, and return the responses.
 
         Returns:
-            The responses that arrived in time, by full name of the node.
+            The responses that arrived in time, by the full name of the node.
         """
         from linkwright.messages import get_service
 
-        served = {
+        service_names = {
             endpoint.name
             for endpoint in self.endpoints()
             if endpoint.kind is EndpointKind.SERVICE and endpoint.type_name == kind
         }
-        nodes = [node for node in dict.fromkeys(self.nodes()) if f"{node}/{service}" in served]
-        if among is not None:
-            nodes = [node for node in nodes if node in among]
+        nodes = [node for node in dict.fromkeys(self.nodes()) if f"{node}/{service}" in service_names]
+        if candidates is not None:
+            nodes = [node for node in nodes if node in candidates]
         clients = {node: self._node.create_client(kind, f"{node}/{service}") for node in nodes}
         request = get_service(kind).Request(**fields)
         futures = {node: client.call_async(request) for node, client in clients.items()}
-        tasks = {node: asyncio.ensure_future(_result(future)) for node, future in futures.items()}
+        tasks = {node: asyncio.ensure_future(_await_result(future)) for node, future in futures.items()}
         if tasks:
-            await asyncio.wait(tasks.values(), timeout=_ANSWER_WITHIN)
+            await asyncio.wait(tasks.values(), timeout=_RESPONSE_TIMEOUT_SECONDS)
         for node, client in clients.items():
             tasks[node].cancel()
             client.remove_pending_request(futures[node])
@@ -414,19 +427,19 @@ class _Watcher:
         return {node: future.result() for node, future in futures.items() if future.done()}
 
 
-async def _result(future: Future[Any]) -> Any:
+async def _await_result(future: Future[Any]) -> Any:
     return await future
 
 
-def _frame_of(data: bytes) -> str:
-    """Return the frame in the header of a serialized message, without reading the rest."""
+def _read_frame(data: bytes) -> str:
+    """Return the frame in the header of a serialized message, without deserializing the rest."""
     start = _CDR_HEADER + _STAMP[0].size
     size = int.from_bytes(data[start : start + 4], "little" if data[1] & 1 else "big")
     return data[start + 4 : start + 4 + size].rstrip(b"\0").decode(errors="replace").lstrip("/")
 
 
 def _is_tool(full_name: str) -> bool:
-    """Return whether a node belongs to a command that only inspects the graph."""
+    """Return whether a node belongs to a command that only observes the graph."""
     return full_name.rpartition("/")[2].startswith("_ros2cli")
 
 
@@ -442,6 +455,9 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 def _is_transform(transform: Any) -> bool:
-    turn, shift = transform.rotation, transform.translation
-    numbers = (turn.x, turn.y, turn.z, turn.w, shift.x, shift.y, shift.z)
-    return all(map(math.isfinite, numbers)) and math.hypot(turn.x, turn.y, turn.z, turn.w) > _LENGTH_TOLERANCE
+    rotation, translation = transform.rotation, transform.translation
+    numbers = (rotation.x, rotation.y, rotation.z, rotation.w, translation.x, translation.y, translation.z)
+    return (
+        all(map(math.isfinite, numbers))
+        and math.hypot(rotation.x, rotation.y, rotation.z, rotation.w) > _LENGTH_TOLERANCE
+    )

@@ -1,1 +1,1 @@
-"""Files and folders of the user, and the locations of the program's own data."""
+"""Functions for files and folders of the user, and the folders for the program's own data."""

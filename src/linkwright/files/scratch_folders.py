@@ -1,9 +1,9 @@
 """Temporary folders that are removed even if their process is killed.
 
-A folder is removed when it is closed, or when Python ends. A process that is killed leaves its folder behind, so the
-next process that creates a folder removes those of processes that have ended. A folder in use is marked by a lock
-(flock(2)), which ends with the process. A process ID in the name would not be sufficient, because containers that share
-``/tmp`` have separate process IDs.
+A folder is removed when it is closed, or when Python ends. A process that is killed leaves its folder behind.
+Therefore, the next process that creates a folder removes the folders of processes that have ended. A lock (flock(2)),
+which ends with the process, marks a folder in use. A process ID in the name would not be sufficient, because
+containers that share ``/tmp`` have separate process IDs.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ if sys.platform != "win32":
     import fcntl
 
 _PREFIX = "linkwright_"
-_YOUNG_SECONDS = 60.0
-"""An empty folder without a lock may be one that is just being made, for so long."""
+_MIN_AGE_SECONDS = 60.0
+"""The age in seconds below which an empty folder without a lock may still be in the process of creation."""
 
 
 class ScratchFolder(TemporaryDirectory[str]):
-    """A temporary folder.
+    """A temporary folder with a lock.
 
     Args:
-        purpose: a word for the folder's name.
-        place: the parent folder; by default the system's folder for temporary files.
+        purpose: a word for the name of the folder.
+        parent: the parent folder; None for the system's folder for temporary files.
     """
 
     def __init__(self, purpose: str, place: Path | None = None) -> None:
         remove_abandoned(place or Path(gettempdir()))
         super().__init__(prefix=f"{_PREFIX}{purpose}_", dir=place)
-        lock = _locked(Path(self.name))
+        lock = _lock(Path(self.name))
         self._unlock = None if lock is None else weakref.finalize(self, os.close, lock)
 
     def cleanup(self) -> None:
@@ -47,7 +47,7 @@ class ScratchFolder(TemporaryDirectory[str]):
 
 
 def remove_abandoned(place: Path) -> None:
-    """Remove the scratch folders of processes that have ended.
+    """Remove the scratch folders, in a parent folder, of processes that have ended.
 
     A folder that cannot be removed is skipped.
     """
@@ -55,8 +55,8 @@ def remove_abandoned(place: Path) -> None:
         return
     with suppress(OSError):
         with os.scandir(place) as entries:
-            ours = [entry for entry in entries if entry.name.startswith(_PREFIX)]
-        for entry in ours:
+            own_entries = [entry for entry in entries if entry.name.startswith(_PREFIX)]
+        for entry in own_entries:
             with suppress(OSError):
                 _remove_if_abandoned(entry)
 
@@ -64,21 +64,21 @@ def remove_abandoned(place: Path) -> None:
 def _remove_if_abandoned(entry: os.DirEntry[str]) -> None:
     if not entry.is_dir(follow_symlinks=False) or entry.stat(follow_symlinks=False).st_uid != os.getuid():
         return
-    lock = _locked(Path(entry.path))
+    lock = _lock(Path(entry.path))
     if lock is None:
         return
     try:
-        changed = time.time() - entry.stat(follow_symlinks=False).st_mtime
-        if changed > _YOUNG_SECONDS or any(Path(entry.path).iterdir()):
+        age_seconds = time.time() - entry.stat(follow_symlinks=False).st_mtime
+        if age_seconds > _MIN_AGE_SECONDS or any(Path(entry.path).iterdir()):
             shutil.rmtree(entry.path, ignore_errors=True)
     finally:
         os.close(lock)
 
 
-def _locked(folder: Path) -> int | None:
+def _lock(folder: Path) -> int | None:
     """Lock a folder, and return a file descriptor that holds the lock until it is closed.
 
-    The result is None if the folder is already locked, or if the file system does not support such locks.
+    The result is None if the folder is locked already, or if the file system does not support such locks.
     """
     if sys.platform == "win32":
         return None

@@ -1,6 +1,6 @@
 """Files that must be completed before the process ends, such as recordings.
 
-Code that ends a process without waiting for the event loop, which may hang, calls `finish_all` first.
+Code that ends the process without waiting for the event loop, which may hang, first calls `finish_all`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from weakref import WeakValueDictionary
 
 
 class Unfinished(Protocol):
-    """The interface of a writer whose file must be completed, if necessary by another thread."""
+    """The interface of a writer whose file must be completed, possibly by another thread."""
 
     def finish(self) -> object:
         """Complete the file, and ignore later writes.
@@ -19,22 +19,22 @@ class Unfinished(Protocol):
         """
 
 
-_unfinished: WeakValueDictionary[int, Unfinished] = WeakValueDictionary()
+_writers: WeakValueDictionary[int, Unfinished] = WeakValueDictionary()
 
 
-def register_unfinished(what: Unfinished) -> None:
+def register_unfinished(writer: Unfinished) -> None:
     """Register a writer whose file must be completed before the process ends."""
-    _unfinished[id(what)] = what
+    _writers[id(writer)] = writer
 
 
-def unregister_finished(what: Unfinished) -> None:
+def unregister_finished(writer: Unfinished) -> None:
     """Unregister a writer whose file is complete."""
-    _unfinished.pop(id(what), None)
+    _writers.pop(id(writer), None)
 
 
 def finish_all() -> None:
     """Complete the files of all registered writers."""
-    for reference in _unfinished.valuerefs():
-        what = reference()
-        if what is not None:
-            what.finish()
+    for reference in _writers.valuerefs():
+        writer = reference()
+        if writer is not None:
+            writer.finish()

@@ -1,4 +1,4 @@
-"""The folders in which the program stores a user's data.
+"""The folders in which the program stores data of the user.
 
 Source: the XDG Base Directory Specification.
 """
@@ -8,8 +8,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-SHARES = "shares"
-"""Where in the cache the share folders of packages are that are not built; see `linkwright.packages.share_layout`."""
+SHARES_SUBFOLDER = "shares"
+"""The cache subfolder for share folders of packages that are not built; see `linkwright.packages.share_layout`."""
 
 _DEFAULTS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "STATE": ".local/state"}
 
@@ -47,5 +47,5 @@ def state_folder() -> Path:
 
 
 def _folder(kind: str) -> Path:
-    base = os.environ.get(f"XDG_{kind}_HOME")
-    return (Path(base) if base else Path.home() / _DEFAULTS[kind]) / "linkwright"
+    base_folder = os.environ.get(f"XDG_{kind}_HOME")
+    return (Path(base_folder) if base_folder else Path.home() / _DEFAULTS[kind]) / "linkwright"

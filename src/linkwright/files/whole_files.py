@@ -1,6 +1,7 @@
-"""Writes files atomically: if writing fails, the existing file is unchanged.
+"""Writes files atomically: if writing fails, the existing file does not change.
 
-All commands write their files with this module. It imports neither pathlib nor secrets, because short commands load it.
+All commands write their files with this module. It imports neither pathlib nor secrets, because short commands load
+it.
 """
 
 from __future__ import annotations
@@ -9,23 +10,23 @@ import errno
 import os
 import stat
 
-NO_SPACE = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
-"""A disk that is full, a quota or limit that is reached, a disk that is broken: writing in place would only destroy."""
+DISK_ERRORS = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
+"""Errors of a full or defective disk, or an exceeded limit, after which writing in place would destroy the file."""
 
-_LONGEST_NAME = 200  # in bytes; file systems allow 255, and the name of the temporary file is a little longer
+_MAX_NAME_BYTES = 200  # in bytes; file systems allow 255, and the name of the temporary file is a little longer
 
 
 def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: int | None = None) -> None:
     """Write a file atomically, by replacing the existing file with a temporary one.
 
-    A symbolic link remains a link. If the folder does not permit another file, or the file is a mount of its own, as in
-    Docker, the file is written in place. In that case, a copy of the old contents is stored beside the file or in the
-    system's temporary folder until writing is complete.
+    A symbolic link remains a link. If the folder does not permit another file, or if the file is a separate mount, as
+    in Docker, the file is written in place. In that case, a copy of the old contents exists next to the file, or in
+    the system's folder for temporary files, until writing is complete.
 
     Args:
-        path: the file, whose folder must exist. Devices and pipes are written to directly.
+        path: the path of the file, whose folder must exist. Devices and pipes are written directly.
         data: the new contents. A string is encoded as UTF-8, without converting its line ends.
-        mode: the permissions; by default those of the existing file, or the usual permissions of a new file.
+        mode: the permissions; None for those of the existing file, or the usual ones of a new file.
 
     Raises:
         OSError: the file cannot be written; its contents are unchanged.
@@ -41,76 +42,76 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
     try:
         _replace(target, content, mode)
     except OSError as error:
-        if permissions is None or error.errno in NO_SPACE:
+        if permissions is None or error.errno in DISK_ERRORS:
             raise
         _write_in_place(target, content)
 
 
 def _permissions(path: str) -> int | None:
-    """Return the permissions of an existing regular file, otherwise None."""
+    """Return the permissions of an existing regular file, or None for anything else."""
     try:
-        facts = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return None
-    return stat.S_IMODE(facts.st_mode) if stat.S_ISREG(facts.st_mode) else None
+    return stat.S_IMODE(status.st_mode) if stat.S_ISREG(status.st_mode) else None
 
 
 def _replace(target: str, content: bytes, mode: int | None) -> None:
-    draft = _beside(target, "draft")
-    _create(draft, content, 0o666 if mode is None else mode)
+    draft_path = _temporary_path(target, "draft")
+    _create(draft_path, content, 0o666 if mode is None else mode)
     try:
         if mode is not None:
-            os.chmod(draft, mode)
-        os.replace(draft, target)
+            os.chmod(draft_path, mode)
+        os.replace(draft_path, target)
     except BaseException:
-        _remove(draft)
+        _remove(draft_path)
         raise
 
 
 def _write_in_place(target: str, content: bytes) -> None:
     """Overwrite a file, and restore its old contents if writing fails.
 
-    If the old contents cannot be restored either, the copy of them is not deleted.
+    If the old contents cannot be restored either, the copy of them is kept.
     """
     with open(target, "r+b", buffering=0) as file:
-        before = file.readall()
-        copy = _copy(target, before)
+        old_content = file.readall()
+        copy_path = _create_copy(target, old_content)
         try:
             _overwrite(file.fileno(), content)
         except BaseException as error:
             try:
-                _overwrite(file.fileno(), before)
+                _overwrite(file.fileno(), old_content)
             except OSError:
                 if isinstance(error, OSError):
-                    error.strerror = f"{error.strerror}; its former content is now in '{copy}'"
+                    error.strerror = f"{error.strerror}; its former content is now in '{copy_path}'"
                 raise error from None
-            _remove(copy)
+            _remove(copy_path)
             raise
-        _remove(copy)
+        _remove(copy_path)
 
 
-def _copy(target: str, content: bytes) -> str:
+def _create_copy(target: str, content: bytes) -> str:
     import tempfile
 
-    copy = _beside(target, "before")
+    copy_path = _temporary_path(target, "before")
     try:
-        _create(copy, content)
+        _create(copy_path, content)
     except OSError:
-        copy = os.path.join(tempfile.gettempdir(), os.path.basename(copy))
-        _create(copy, content)
-    return copy
+        copy_path = os.path.join(tempfile.gettempdir(), os.path.basename(copy_path))
+        _create(copy_path, content)
+    return copy_path
 
 
-def _beside(target: str, what: str) -> str:
+def _temporary_path(target: str, purpose: str) -> str:
     folder, name = os.path.split(target)
-    name = os.fsdecode(os.fsencode(name)[:_LONGEST_NAME])
-    return os.path.join(folder, f".{name}.{what}-{os.urandom(4).hex()}")
+    name = os.fsdecode(os.fsencode(name)[:_MAX_NAME_BYTES])
+    return os.path.join(folder, f".{name}.{purpose}-{os.urandom(4).hex()}")
 
 
 def _create(path: str, content: bytes, mode: int = 0o666) -> None:
-    """Create a file and flush it to the disk, or remove it if writing fails.
+    """Create a file with some content and flush it to the disk; remove it if writing fails.
 
-    The process's umask is applied to `mode`.
+    The umask of the process is applied to `mode`.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
     try:
@@ -132,9 +133,9 @@ def _overwrite(descriptor: int, content: bytes) -> None:
 
 
 def _write_all(descriptor: int, content: bytes) -> None:
-    rest = memoryview(content)
-    while rest:
-        rest = rest[os.write(descriptor, rest) :]
+    remaining = memoryview(content)
+    while remaining:
+        remaining = remaining[os.write(descriptor, remaining) :]
 
 
 def _remove(path: str) -> None:

@@ -1,4 +1,4 @@
-"""YAML files of the user, as nodes with their locations, for diagnostics about mistakes."""
+"""YAML files of the user as nodes with locations, for findings about mistakes in them."""
 
 from __future__ import annotations
 
@@ -21,73 +21,78 @@ from linkwright.diagnostics import (
 from linkwright.files.input_files import read_text
 
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_DEEPEST = 50
+_MAX_DEPTH = 50
 
 
-def read_source(path: Path, what: Phrase, code: str) -> SourceText:
-    """Read a file that a user names.
+def read_source(path: Path, file_kind: Phrase, code: str) -> SourceText:
+    """Return the text of a file that the user has named.
 
     Args:
         path: the path of the file.
-        what: the kind of file, for the error message.
+        file_kind: the kind of the file, for the error message.
         code: the code of the error.
 
     Raises:
-        LinkwrightError: the file does not exist, or cannot be read.
+        LinkwrightError: the file does not exist, or it cannot be read.
     """
-    shown = display_path(path)
+    shown_path = display_path(path)
     try:
         return SourceText(str(path), read_text(path))
     except FileNotFoundError:
-        message = phrase("{what} '{shown}' does not exist", what=what, shown=shown)
+        message = phrase("{what} '{shown}' does not exist", what=file_kind, shown=shown_path)
         raise LinkwrightError(Diagnostic(code, message, hint=missing_file_hint(path))) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("{what} '{shown}' cannot be read: {reason}", what=what, shown=shown, reason=reason)
+        message = phrase("{what} '{shown}' cannot be read: {reason}", what=file_kind, shown=shown_path, reason=reason)
         raise LinkwrightError(Diagnostic(code, message)) from None
 
 
 class YamlDocument:
-    """A YAML document.
+    """A YAML document as a tree of nodes.
 
     Args:
         source: the text of the document.
-        code: the code of diagnostics about the document.
+        code: the code of findings about the document.
 
     Attributes:
-        root: the root node; None for an empty document.
+        root: the root node; None if the document is empty.
 
     Raises:
-        LinkwrightError: the text is not YAML, or nested too deeply.
+        LinkwrightError: the text is not valid YAML, or it is nested too deeply.
     """
 
     def __init__(self, source: SourceText, code: str) -> None:
         self.source = source
         self._code = code
-        self.root: yaml.Node | None = self._composed()
+        self.root: yaml.Node | None = self._compose()
 
     def error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
-        """Return an error about a node, or about the document if `node` is None."""
+        """Return an error about a node, or about the entire document if `node` is None."""
         return LinkwrightError(Diagnostic(self._code, message, self.span(node), hint=hint, source=self.source))
 
     def span(self, node: yaml.Node | None) -> Span:
-        """Return the span of a node, or the beginning of the document if `node` is None."""
+        """Return the location of a node, or the start of the document if `node` is None."""
         if node is None or node.start_mark is None or node.end_mark is None:
             return self.source.span(0, 0)
         start, end = node.start_mark, node.end_mark
         return Span(self.source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
 
-    def _composed(self) -> yaml.Node | None:
+    def _compose(self) -> yaml.Node | None:
         try:
             depth = 0
             for event in yaml.parse(self.source.text, Loader=_LOADER):
                 depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-                if depth > _DEEPEST:
-                    raise self.error(phrase("nested deeper than {maximum_depth} levels", maximum_depth=_DEEPEST), None)
+                if depth > _MAX_DEPTH:
+                    raise self.error(
+                        phrase(
+                            ("the document is nested more than {maximum_depth} levels deep"), maximum_depth=_MAX_DEPTH
+                        ),
+                        None,
+                    )
             return yaml.compose(self.source.text, Loader=_LOADER)
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
-            problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
+            reason = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
             span = None if mark is None else self.source.span(self.source.offset(mark.line + 1, mark.column + 1))
-            message = phrase("not valid YAML: {problem}", problem=foreign(problem))
+            message = phrase("the file is not valid YAML: {problem}", problem=foreign(reason))
             raise LinkwrightError(Diagnostic(self._code, message, span, source=self.source)) from None

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from linkwright.geometry.single import Pose, quaternion_of
+from linkwright.geometry.single import Pose, pose_quaternion
 
 Array = NDArray[np.float64]
 
@@ -20,20 +20,20 @@ IDENTITY.flags.writeable = False
 """The pose of a frame in itself; shape (7,)."""
 
 _PARALLEL = 0.9995
-"""Quaternions whose dot product is larger than this are mixed in a straight line."""
+"""Quaternions with a larger dot product than this are interpolated linearly."""
 
 
-def as_array(values: ArrayLike, length: int, what: str) -> Array:
+def as_array(values: ArrayLike, length: int, name: str) -> Array:
     """Convert values to a float64 array, after checking the length of the last axis.
 
-    `what` names the values in the error.
+    `name` names the values in the error.
 
     Raises:
         ValueError: the last axis has another length.
     """
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != length:
-        raise ValueError(f"{what} of shape {array.shape}; (..., {length}) is expected")
+        raise ValueError(f"{name} of shape {array.shape}; (..., {length}) is expected")
     return array
 
 
@@ -121,16 +121,16 @@ def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
         Shape (n, 4).
     """
     begin, end = as_array(first, 4, "a quaternion"), as_array(last, 4, "a quaternion")
-    parts = np.asarray(ratios)[:, np.newaxis]
+    fractions = np.asarray(ratios)[:, np.newaxis]
     dot = float(np.dot(begin, end))
     if dot < 0.0:
         end, dot = -end, -dot
     if dot > _PARALLEL:
-        mixed = begin + parts * (end - begin)
+        interpolated = begin + fractions * (end - begin)
     else:
         angle = np.arccos(dot)
-        mixed = (np.sin((1.0 - parts) * angle) * begin + np.sin(parts * angle) * end) / np.sin(angle)
-    unit: Array = mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
+        interpolated = (np.sin((1.0 - fractions) * angle) * begin + np.sin(fractions * angle) * end) / np.sin(angle)
+    unit: Array = interpolated / np.linalg.norm(interpolated, axis=1, keepdims=True)
     return unit
 
 
@@ -195,21 +195,21 @@ def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
 
 def invert(b_in_a: ArrayLike) -> Array:
     """Return the poses of frame A in frame B, given B in A; shape (..., 7) to (..., 7)."""
-    given = as_array(b_in_a, 7, "a pose")
-    back = quaternion_inverse(given[..., 3:])
-    return np.concatenate((-rotate(back, given[..., :3]), back), axis=-1)
+    poses = as_array(b_in_a, 7, "a pose")
+    inverse = quaternion_inverse(poses[..., 3:])
+    return np.concatenate((-rotate(inverse, poses[..., :3]), inverse), axis=-1)
 
 
 def row_from_pose(pose: Pose) -> Array:
     """Convert a description's pose to a row x, y, z, qx, qy, qz, qw; shape (7,)."""
-    return np.array((*pose.xyz, *quaternion_of(pose)))
+    return np.array((*pose.xyz, *pose_quaternion(pose)))
 
 
 def matrix_from_pose(pose: ArrayLike) -> Array:
     """Convert poses to homogeneous matrices; shape (..., 7) to (..., 4, 4)."""
-    given = as_array(pose, 7, "a pose")
-    matrix = np.zeros((*given.shape[:-1], 4, 4))
-    matrix[..., :3, :3] = rotation_matrix(given[..., 3:])
-    matrix[..., :3, 3] = given[..., :3]
+    poses = as_array(pose, 7, "a pose")
+    matrix = np.zeros((*poses.shape[:-1], 4, 4))
+    matrix[..., :3, :3] = rotation_matrix(poses[..., 3:])
+    matrix[..., :3, 3] = poses[..., :3]
     matrix[..., 3, 3] = 1.0
     return matrix

@@ -27,8 +27,8 @@ class Arrays:
 
     def moved(self, matrix: Array, tag: str, text: str | None) -> Array:
         """Return the product of a matrix and the matrix of a transform element."""
-        moved: Array = matrix @ _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
-        return moved
+        apply_transform: Array = matrix @ _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
+        return apply_transform
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""

@@ -17,26 +17,26 @@ _Triangle = tuple[int, int, int]
 _Mesh = tuple[list[Vector3], list[_Triangle]]
 
 
-def read_triangles(data: bytes, most: int) -> _Mesh | None:
+def read_triangles(data: bytes, max_triangles: int) -> _Mesh | None:
     """Return the vertices (in m) and triangles of a file's scene.
 
-    Returns None if there are more than `most` triangles, and in the cases described at `read_scene`.
+    Returns None if there are more than `max_triangles` triangles, and in the cases described at `read_scene`.
     """
     file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, Lists())
-    if file is None or sum(len(faces) for (_, faces), _ in file.placed) > most:
+    if file is None or sum(len(faces) for (_, faces), _ in file.placed_meshes) > max_triangles:
         return None
     corners: list[Vector3] = []
     triangles: list[_Triangle] = []
-    for (points, faces), ((a, b, c, u), (d, e, f, v), (g, h, i, w), _) in file.placed:
+    for (points, faces), ((a, b, c, u), (d, e, f, v), (g, h, i, w), _) in file.placed_meshes:
         is_mirrored = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0
-        first, unit = len(corners), file.unit
+        first_index, unit = len(corners), file.unit
         corners += [
             ((a * x + b * y + c * z + u) * unit, (d * x + e * y + f * z + v) * unit, (g * x + h * y + i * z + w) * unit)
             for x, y, z in points
         ]
         for face in faces:
             one, two, three = reversed(face) if is_mirrored else face
-            triangles.append((first + one, first + two, first + three))
+            triangles.append((first_index + one, first_index + two, first_index + three))
     return corners, triangles
 
 
@@ -72,31 +72,31 @@ class Lists:
             if indices and not 0 <= min(indices[offset::width]) <= max(indices[offset::width]) < limit:
                 raise UnsupportedContent
         corners = iter(indices[column::width])
-        found = []
+        triangles = []
         for count in counts:
-            first, *others = (next(corners) for _ in range(count))
-            found += [(first, second, third) for second, third in pairwise(others)]
-        return found
+            first_corner, *other_corners = (next(corners) for _ in range(count))
+            triangles += [(first_corner, second, third) for second, third in pairwise(other_corners)]
+        return triangles
 
     def mesh(self, text: str, faces: list[list[_Triangle]]) -> _Mesh:
         """Return a mesh from the text of its vertices and the triangles of its elements."""
         numbers = _numbers(text)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
-        return points, [item for part in faces for item in part]
+        return points, [item for triangle_group in faces for item in triangle_group]
 
 
 def _numbers(text: str) -> list[float]:
     """Parse numbers separated by whitespace, rounded to 32 bits."""
     if "_" in text:
         raise UnsupportedContent
-    words = text.split()
+    tokens = text.split()
     try:
-        found = unpack(f"{len(words)}f", pack(f"{len(words)}f", *map(float, words)))
+        numbers = unpack(f"{len(tokens)}f", pack(f"{len(tokens)}f", *map(float, tokens)))
     except (OverflowError, error):
         raise UnsupportedContent from None
-    if not all(map(math.isfinite, found)):
+    if not all(map(math.isfinite, numbers)):
         raise UnsupportedContent
-    return list(found)
+    return list(numbers)
 
 
 def _integers(text: str) -> list[int]:
@@ -115,10 +115,10 @@ def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
         x, y, z, degrees = values
         cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
         cross = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))
-        for row, first in enumerate((x, y, z)):
-            for column, second in enumerate((x, y, z)):
-                own = cosine if row == column else 0.0
-                matrix[row][column] = (1 - cosine) * (first * second) + own + sine * cross[row][column]
+        for row, row_value in enumerate((x, y, z)):
+            for column, column_value in enumerate((x, y, z)):
+                diagonal = cosine if row == column else 0.0
+                matrix[row][column] = (1 - cosine) * (row_value * column_value) + diagonal + sine * cross[row][column]
         return matrix
     if len(values) != 3:
         raise UnsupportedContent

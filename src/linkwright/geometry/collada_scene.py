@@ -1,4 +1,4 @@
-"""Reading of the scene in COLLADA files without unusual content.
+"""Reading of the scene of COLLADA files that have only common content.
 
 This module reads the XML tree, which is faster than importing trimesh. Numbers are read into arrays (`collada`) or, for
 small files, in plain Python (`collada_lists`).
@@ -19,13 +19,13 @@ _TRANSFORMS = ("matrix", "translate", "rotate", "scale")
 _NO_FACES = ("source", "vertices", "lines", "extra")
 _WITHOUT_TRIANGLES = ("instance_camera", "instance_light", "instance_controller", "extra", "asset")
 _DECLARATION = lazy_pattern(rb"<!(?!--)")
-"""The beginning of a document type, which may hold entities, and of quoted text."""
-_MOST_PLACES = 20_000
-"""Nodes at their places, of which a few can make any number by naming each other."""
+"""The beginning of a document type, which may define entities, or of a CDATA section."""
+_MAX_INSTANCES = 20_000
+"""The maximum number of node instances, because a few nodes that refer to each other can create any number."""
 
 
 Limits = list[tuple[int, int]]
-"""Columns of indices, and below which number each stays."""
+"""Columns of indices, each with the number that its indices must stay below."""
 FacesT = TypeVar("FacesT")
 MeshT = TypeVar("MeshT")
 MadeT_co = TypeVar("MadeT_co", covariant=True)
@@ -83,12 +83,12 @@ class ColladaFile(Generic[MeshT, MatrixT]):
 
     Attributes:
         unit: metres per unit.
-        placed: each mesh with the matrix of its frame in the frame of the file; shape (4, 4).
+        placed_meshes: each mesh with the matrix of its frame in the frame of the file; shape (4, 4).
     """
 
-    def __init__(self, unit: float, placed: list[tuple[MeshT, MatrixT]]) -> None:
+    def __init__(self, unit: float, placed_meshes: list[tuple[MeshT, MatrixT]]) -> None:
         self.unit = unit
-        self.placed = placed
+        self.placed_meshes = placed_meshes
 
 
 def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
@@ -116,16 +116,16 @@ class _File(Generic[MeshT, MatrixT]):
         self._geometries = self._by_id("library_geometries", "geometry")
         self._nodes = self._by_id("library_nodes", "node")
         self._meshes: dict[str, tuple[MeshT, bool]] = {}
-        self._places = 0
+        self._instance_count = 0
 
     def read(self) -> ColladaFile[MeshT, MatrixT]:
         instance = self._only(self._only(self._root, "scene"), "instance_visual_scene")
         scene = self._by_id("library_visual_scenes", "visual_scene")[_reference(instance)]
         root = self._numbers.identity()
-        placed = [item for node in self._all(scene, "node") for item in self._placed(node, root)]
-        if not placed:
+        placed_meshes = [item for node in self._all(scene, "node") for item in self._placed_meshes(node, root)]
+        if not placed_meshes:
             raise UnsupportedContent
-        return ColladaFile(self._unit(), placed)
+        return ColladaFile(self._unit(), placed_meshes)
 
     # --- tree -------------------------------------------------------------------------------------------------
 
@@ -133,20 +133,20 @@ class _File(Generic[MeshT, MatrixT]):
         return node.findall(self._space + tag)
 
     def _only(self, node: _Node, tag: str) -> _Node:
-        found = self._all(node, tag)
-        if len(found) != 1:
+        children = self._all(node, tag)
+        if len(children) != 1:
             raise UnsupportedContent
-        return found[0]
+        return children[0]
 
     def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
-        found: dict[str, _Node] = {}
+        nodes: dict[str, _Node] = {}
         for element in self._all(self._root, library):
             for node in self._all(element, tag):
                 name = node.get("id", "")
-                if not name or name in found:
+                if not name or name in nodes:
                     raise UnsupportedContent
-                found[name] = node
-        return found
+                nodes[name] = node
+        return nodes
 
     def _tag(self, node: _Node) -> str:
         if not node.tag.startswith(self._space):
@@ -162,23 +162,23 @@ class _File(Generic[MeshT, MatrixT]):
 
     # --- scene ------------------------------------------------------------------------------------------------
 
-    def _placed(self, node: _Node, above: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
+    def _placed_meshes(self, node: _Node, parent_matrix: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
         """Iterate over the meshes in a node, with their frames as matrices in the file's frame."""
-        self._places += 1
-        if self._places > _MOST_PLACES:
+        self._instance_count += 1
+        if self._instance_count > _MAX_INSTANCES:
             raise UnsupportedContent
-        matrix = above
-        for part in node:
-            if (tag := self._tag(part)) in _TRANSFORMS:
-                matrix = self._numbers.moved(matrix, tag, part.text)
-        for part in node:
-            tag = self._tag(part)
+        matrix = parent_matrix
+        for child in node:
+            if (tag := self._tag(child)) in _TRANSFORMS:
+                matrix = self._numbers.moved(matrix, tag, child.text)
+        for child in node:
+            tag = self._tag(child)
             if tag == "node":
-                yield from self._placed(part, matrix)
+                yield from self._placed_meshes(child, matrix)
             elif tag == "instance_node":
-                yield from self._placed(self._nodes[_reference(part)], matrix)
+                yield from self._placed_meshes(self._nodes[_reference(child)], matrix)
             elif tag == "instance_geometry":
-                mesh, has_faces = self._mesh(_reference(part))
+                mesh, has_faces = self._mesh(_reference(child))
                 if has_faces:
                     yield mesh, matrix
             elif tag not in _TRANSFORMS and tag not in _WITHOUT_TRIANGLES:
@@ -188,10 +188,10 @@ class _File(Generic[MeshT, MatrixT]):
 
     def _mesh(self, name: str) -> tuple[MeshT, bool]:
         if name not in self._meshes:
-            self._meshes[name] = self._of_geometry(self._only(self._geometries[name], "mesh"))
+            self._meshes[name] = self._read_mesh(self._only(self._geometries[name], "mesh"))
         return self._meshes[name]
 
-    def _of_geometry(self, mesh: _Node) -> tuple[MeshT, bool]:
+    def _read_mesh(self, mesh: _Node) -> tuple[MeshT, bool]:
         """Return the mesh of a ``<mesh>`` element, and whether it has triangles."""
         sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all(mesh, "source")}
         vertices = self._only(mesh, "vertices")
@@ -202,34 +202,34 @@ class _File(Generic[MeshT, MatrixT]):
         if corners.width != 3:
             raise UnsupportedContent
         name = f"#{vertices.get('id', '')}"
-        rows = {name: corners.rows, **{source: each.rows for source, each in sources.items()}}
-        parts = [part for part in mesh if self._tag(part) not in _NO_FACES]
-        faces = [self._faces(part, self._tag(part), rows, name) for part in parts]
+        rows = {name: corners.rows, **{source: source_data.rows for source, source_data in sources.items()}}
+        primitives = [part for part in mesh if self._tag(part) not in _NO_FACES]
+        faces = [self._faces(part, self._tag(part), rows, name) for part in primitives]
         return self._numbers.mesh(corners.text, faces), any(len(face) for face in faces)
 
     def _source(self, source: _Node) -> _Source:
-        numbers_of = self._only(source, "float_array")
+        float_array = self._only(source, "float_array")
         accessor = self._only(self._only(source, "technique_common"), "accessor")
         width = len(self._all(accessor, "param"))
-        text = numbers_of.text or ""
+        text = float_array.text or ""
         count = len(text.split())
         stride, offset = int(accessor.get("stride", "1")), int(accessor.get("offset", "0"))
-        if stride != width or offset or count != int(numbers_of.get("count", "-1")) or count % width:
+        if stride != width or offset or count != int(float_array.get("count", "-1")) or count % width:
             raise UnsupportedContent
         return _Source(count // width, width, text)
 
-    def _faces(self, part: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
+    def _faces(self, primitive: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         inputs = [
             (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
-            for element in self._all(part, "input")
+            for element in self._all(primitive, "input")
         ]
         width = max(offset for _, _, offset in inputs) + 1
-        texts = [element.text or "" for element in self._all(part, "p")]
-        is_polygons = tag == "polygons" and texts and not self._all(part, "ph")
+        texts = [element.text or "" for element in self._all(primitive, "p")]
+        is_polygons = tag == "polygons" and texts and not self._all(primitive, "ph")
         if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
             raise UnsupportedContent
-        counted = (self._only(part, "vcount").text or "") if tag == "polylist" else ""
+        counted = (self._only(primitive, "vcount").text or "") if tag == "polylist" else ""
         (column,) = [offset for semantic, source, offset in inputs if semantic == "VERTEX" and source == corners]
         limits = [(offset, rows[source]) for _, source, offset in inputs]
         return self._numbers.faces(tag, texts, counted, width, column, limits)

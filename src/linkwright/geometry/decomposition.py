@@ -10,28 +10,28 @@ from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 
 THICKNESS = 0.02
-"""The thickness in m of a face that becomes a piece of its own."""
+"""The thickness, in m, of a face that becomes a separate piece."""
 
 _NEARLY_CONVEX = 0.95
-"""A closed surface that fills so much of its hull is taken for its hull."""
+"""A closed surface that fills at least this fraction of its hull counts as convex."""
 _ONE_PLANE = 1e-4
 """Two triangles are coplanar if the cosine between their normals differs from 1 by at most this."""
-_MOST_CORNERS = 2000
-"""A hull with more corners is not examined: it is neither a box nor a wall."""
+_MAX_CORNERS = 2000
+"""A part with more corners is not tested for convexity, because it is neither a box nor a wall."""
 
 
-def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
+def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]:
     """Decompose a static surface into convex pieces.
 
     A connected part that is nearly convex becomes one piece, its hull. In all other parts, each flat face becomes a
-    plate that extends `THICKNESS` inwards; if the face is not convex, each of its triangles becomes a plate. Thus
-    rooms stay hollow, and tables keep their legs. If that would result in too many pieces, the parts with the most
-    plates become hulls.
+    plate that extends `THICKNESS` inwards; if the face is not convex, each of its triangles becomes a plate. Rooms
+    therefore stay hollow, and tables keep their legs. If there would be too many pieces, the parts with the most plates
+    become hulls.
 
     Args:
         vertices: corners in m, shape (vertices, 3).
         faces: indices of corners, shape (faces, 3), counterclockwise from outside.
-        most: the maximum number of pieces.
+        max_pieces: the maximum number of pieces.
 
     Returns:
         The corners of each piece, shape (corners, 3).
@@ -39,21 +39,21 @@ def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
     vertices, faces = merged(vertices, faces)
     if not len(faces):
         return []
-    parts = [faces[component] for component in _components(faces, len(vertices))]
+    components = [faces[component] for component in _components(faces, len(vertices))]
     pieces: list[Array] = []
     concave: list[tuple[Array, list[Array]]] = []
-    for part in parts:
-        corners = vertices[np.unique(part)]
-        if _is_nearly_convex(vertices, part, corners):
+    for component_faces in components:
+        corners = vertices[np.unique(component_faces)]
+        if _is_nearly_convex(vertices, component_faces, corners):
             pieces.append(corners)
         else:
-            concave.append((corners, _plates(vertices, part, most)))
+            concave.append((corners, _plates(vertices, component_faces, max_pieces)))
     concave.sort(key=lambda item: len(item[1]))
-    left = most - len(pieces) - len(concave)
+    remaining = max_pieces - len(pieces) - len(concave)
     for corners, plates in concave:
-        if len(plates) - 1 <= left:
+        if len(plates) - 1 <= remaining:
             pieces += plates
-            left -= len(plates) - 1
+            remaining -= len(plates) - 1
         else:
             pieces.append(corners)
     return pieces
@@ -72,54 +72,54 @@ def thicken(corners: Array) -> Array:
 
 def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
     """Return the indices of the faces in each connected component."""
-    labels = _joined(faces, count)[faces[:, 0]]
+    labels = _connected_labels(faces, count)[faces[:, 0]]
     order = np.argsort(labels, kind="stable")
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     return np.split(order, starts[1:])
 
 
-def _joined(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _connected_labels(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     """Return, for each index below a count, the smallest index connected to it.
 
     Each row of `groups` connects its indices with each other.
     """
     labels = np.arange(count)
     while True:
-        least = labels[groups].min(axis=1)
-        new = labels.copy()
-        np.minimum.at(new, groups.reshape(-1), np.repeat(least, groups.shape[1]))
-        new = new[new]
-        if np.array_equal(new, labels):
+        smallest = labels[groups].min(axis=1)
+        new_labels = labels.copy()
+        np.minimum.at(new_labels, groups.reshape(-1), np.repeat(smallest, groups.shape[1]))
+        new_labels = new_labels[new_labels]
+        if np.array_equal(new_labels, labels):
             return labels
-        labels = new
+        labels = new_labels
 
 
 def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
-    if len(corners) > _MOST_CORNERS or not is_closed(faces):
+    if len(corners) > _MAX_CORNERS or not is_closed(faces):
         return False
     hull = convex_hull(corners)
     if hull is None:
         return False
-    inside = abs(polyhedron_properties(vertices, faces).mass)
-    return inside >= _NEARLY_CONVEX * polyhedron_properties(corners, hull).mass
+    volume = abs(polyhedron_properties(vertices, faces).mass)
+    return volume >= _NEARLY_CONVEX * polyhedron_properties(corners, hull).mass
 
 
-def _plates(vertices: Array, faces: Faces, most: int) -> list[Array]:
-    """Return plates for the flat faces of a part, but stop once there are more than `most`."""
+def _plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
+    """Return plates for the flat faces of a part, but stop once there are more than `max_plates`."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     faces, normals = faces[lengths > 0], normals[lengths > 0] / lengths[lengths > 0, None]
     plates: list[Array] = []
     for group in _flat_groups(faces, normals):
-        if len(plates) > most:
+        if len(plates) > max_plates:
             break
         ring = vertices[np.unique(faces[group])]
         triangles = vertices[faces[group]]
         area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
         normal = normals[group[0]]
-        whole = _area_of_hull(ring, normal)
-        if area.sum() / 2 >= _NEARLY_CONVEX * whole:
+        hull_area = _area_of_hull(ring, normal)
+        if area.sum() / 2 >= _NEARLY_CONVEX * hull_area:
             plates.append(_plate(ring, normal))
         else:
             plates += [_plate(triangle, normal) for triangle in triangles]
@@ -136,24 +136,24 @@ def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
     owner = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
     edges, owner = edges[order], owner[order]
-    same = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
-    pairs = np.stack([owner[same], owner[same + 1]], axis=1)
-    flat = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) > 1.0 - _ONE_PLANE
-    labels = _joined(pairs[flat], len(faces)) if flat.any() else np.arange(len(faces))
+    shared = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
+    pairs = np.stack([owner[shared], owner[shared + 1]], axis=1)
+    is_flat = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) > 1.0 - _ONE_PLANE
+    labels = _connected_labels(pairs[is_flat], len(faces)) if is_flat.any() else np.arange(len(faces))
     order = np.argsort(labels, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(labels[order], prepend=-1))[1:])
 
 
 def _area_of_hull(points: Array, normal: Array) -> float:
     """Return the area of the convex hull of coplanar points (Andrew's monotone chain)."""
-    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    first /= np.linalg.norm(first)
-    plane = np.stack([points @ first, points @ np.cross(normal, first)], axis=1)
+    first_axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    first_axis /= np.linalg.norm(first_axis)
+    plane = np.stack([points @ first_axis, points @ np.cross(normal, first_axis)], axis=1)
     ordered = plane[np.lexsort((plane[:, 1], plane[:, 0]))].tolist()
     ring: list[list[float]] = []
-    for way in (ordered, ordered[::-1]):
+    for direction in (ordered, ordered[::-1]):
         start = len(ring)
-        for x, y in way:
+        for x, y in direction:
             while len(ring) >= start + 2:
                 (ax, ay), (bx, by) = ring[-2], ring[-1]
                 if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:

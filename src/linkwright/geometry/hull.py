@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.polyhedron import Faces
 
-_NEAR = 1e-9
-"""Points nearer to a face than this part of the whole size are on it."""
+_TOLERANCE = 1e-9
+"""Points within this fraction of the size of all points from a face count as points of the face."""
 
 Indices = NDArray[np.int64]
 Triangle = tuple[int, int, int]
@@ -36,8 +36,8 @@ def convex_hull(points: Array) -> Faces | None:
     size = float(np.ptp(points, axis=0).max())
     if not (size > 0 and np.isfinite(size)):
         return None
-    start = _tetrahedron(points, _NEAR * size)
-    return None if start is None else _Hull(points, start, _NEAR * size).grown()
+    start = _tetrahedron(points, _TOLERANCE * size)
+    return None if start is None else _Hull(points, start, _TOLERANCE * size).grow()
 
 
 class _Hull:
@@ -60,7 +60,7 @@ class _Hull:
         a, b, c, d = start
         self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
-    def grown(self) -> Faces:
+    def grow(self) -> Faces:
         """Add points until none is outside the hull, and return the faces."""
         while self.outside:
             face, candidates = self.outside.popitem()
@@ -71,33 +71,33 @@ class _Hull:
         return np.array(list(self.faces.values()), dtype=np.int64)
 
     def _add_point(self, face: int, apex: int) -> None:
-        seen, rim = self._seen_from(face, self.points[apex])
-        loose = [self._remove(value) for value in seen]
-        left = np.concatenate(loose)
-        self._add([(a, b, apex) for a, b in rim], left[left != apex])
+        visible, horizon = self._visible_from(face, self.points[apex])
+        freed_points = [self._remove(visible_face) for visible_face in visible]
+        remaining = np.concatenate(freed_points)
+        self._add([(a, b, apex) for a, b in horizon], remaining[remaining != apex])
 
-    def _seen_from(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
+    def _visible_from(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
         """Return the faces that are visible from a point, and the edges around them.
 
         `face` is one of the visible faces, from which the search starts.
         """
-        seen, hidden = {face}, set()
-        waiting = [face]
-        rim = []
-        while waiting:
-            for edge in _edges(self.faces[waiting.pop()]):
+        visible, hidden = {face}, set()
+        pending = [face]
+        horizon = []
+        while pending:
+            for edge in _edges(self.faces[pending.pop()]):
                 neighbour = self.edges[edge[1], edge[0]]
-                if neighbour in seen:
+                if neighbour in visible:
                     continue
                 if neighbour not in hidden:
                     normal, level = self.planes[neighbour]
                     if float(point @ normal) - level > self.near:
-                        seen.add(neighbour)
-                        waiting.append(neighbour)
+                        visible.add(neighbour)
+                        pending.append(neighbour)
                         continue
                     hidden.add(neighbour)
-                rim.append(edge)
-        return seen, rim
+                horizon.append(edge)
+        return visible, horizon
 
     def _remove(self, face: int) -> Indices:
         for edge in _edges(self.faces.pop(face)):
@@ -106,8 +106,8 @@ class _Hull:
         del self.planes[face]
         return self.outside.pop(face, _NONE)
 
-    def _add(self, triangles: list[Triangle], loose: Indices) -> None:
-        """Add faces, and assign loose points to them.
+    def _add(self, triangles: list[Triangle], unassigned: Indices) -> None:
+        """Add faces, and assign the points that have no face to them.
 
         A point is assigned to the face that it is farthest outside of, or dropped if it is inside all of them.
         """
@@ -116,20 +116,20 @@ class _Hull:
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
         levels = np.einsum("ij,ij->i", normals, corners[:, 0])
-        names = range(self._next, self._next + len(triangles))
+        face_ids = range(self._next, self._next + len(triangles))
         self._next += len(triangles)
-        for name, triangle, normal, level in zip(names, triangles, normals, levels, strict=True):
-            self.faces[name] = triangle
-            self.planes[name] = (normal, float(level))
+        for face_id, triangle, normal, level in zip(face_ids, triangles, normals, levels, strict=True):
+            self.faces[face_id] = triangle
+            self.planes[face_id] = (normal, float(level))
             for edge in _edges(triangle):
-                self.edges[edge] = name
-        if len(loose):
-            heights = self.points[loose] @ normals.T - levels
+                self.edges[edge] = face_id
+        if len(unassigned):
+            heights = self.points[unassigned] @ normals.T - levels
             best = heights.argmax(axis=1)
-            out = heights[np.arange(len(loose)), best] > self.near
-            loose, best = loose[out], best[out]
-            for place in np.unique(best):
-                self.outside[names[int(place)]] = loose[best == place]
+            is_outside = heights[np.arange(len(unassigned)), best] > self.near
+            unassigned, best = unassigned[is_outside], best[is_outside]
+            for index in np.unique(best):
+                self.outside[face_ids[int(index)]] = unassigned[best == index]
 
 
 _NONE: Indices = np.empty(0, dtype=np.int64)
@@ -147,14 +147,14 @@ def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None
     """
     axis = int(np.ptp(points, axis=0).argmax())
     a, b = int(points[:, axis].argmin()), int(points[:, axis].argmax())
-    along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
-    arms = points - points[a]
-    distances = np.linalg.norm(arms - np.outer(arms @ along, along), axis=1)
+    direction = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
+    offsets = points - points[a]
+    distances = np.linalg.norm(offsets - np.outer(offsets @ direction, direction), axis=1)
     c = int(distances.argmax())
     if distances[c] <= near:
         return None
     normal = np.cross(points[b] - points[a], points[c] - points[a])
-    heights = arms @ (normal / np.linalg.norm(normal))
+    heights = offsets @ (normal / np.linalg.norm(normal))
     d = int(np.abs(heights).argmax())
     if abs(heights[d]) <= near:
         return None

@@ -12,8 +12,8 @@ from linkwright.geometry.shapes import rotation as rotation_of
 from linkwright.geometry.single import Pose
 from linkwright.loading.lean_dataclasses import dataclass, field
 
-LEAST_MASS = 1e-30
-"""A mass in kg below this, some electrons, is none."""
+MIN_MASS = 1e-30
+"""A body with less mass than this, in kg, counts as a body without mass."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +55,7 @@ class MassProperties:
         Raises:
             ValueError: the body has no mass that could be scaled.
         """
-        if not self.mass > LEAST_MASS:
+        if not self.mass > MIN_MASS:
             raise ValueError("a body without mass has no shape to spread another mass over")
         return self.times(mass / self.mass)
 
@@ -70,8 +70,8 @@ class MassProperties:
 
         The parallel axis theorem (Steiner) is used.
         """
-        arm = self.center - np.asarray(point, dtype=np.float64)
-        return self.inertia + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        offset = self.center - np.asarray(point, dtype=np.float64)
+        return self.inertia + self.mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
 
     def principal(self) -> PrincipalAxes:
         """Return the principal moments and axes."""
@@ -87,7 +87,7 @@ class MassProperties:
         12`` and so on, which is solved for the edges. Returns None for a body that has no mass, or for a tensor that no
         body can have.
         """
-        if not self.mass > LEAST_MASS:
+        if not self.mass > MIN_MASS:
             return None
         moments = self.principal().moments
         squares = 6.0 / self.mass * (moments.sum() - 2.0 * moments)

@@ -24,9 +24,9 @@ _WEB_PAGE = lazy_pattern(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)
 _HEADER, _TRIANGLE = 84, 50  # Sizes in a binary STL, in bytes.
 _GLB_HEADER, _CHUNK_HEADER = 12, 8
 _JSON_CHUNK = 0x4E4F534A
-_COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
-_PARTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-_NUMBERS_OF = {"matrix": 16, "translate": 3, "scale": 3, "rotate": 4}
+_COMPONENT_SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+_COMPONENT_COUNTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_NUMBER_COUNTS = {"matrix": 16, "translate": 3, "scale": 3, "rotate": 4}
 
 
 def find_fault(data: bytes, kind: str) -> Phrase | None:
@@ -57,66 +57,75 @@ def _stl_faults(data: bytes) -> Iterator[Phrase]:
             "it ends after {count} bytes, but the header of an STL has {header}", count=len(data), header=_HEADER
         )
         return
-    (said,) = struct.unpack_from("<I", data, _HEADER - 4)
-    there = (len(data) - _HEADER) // _TRIANGLE
-    if said > there:
-        yield phrase("its header declares {said} triangles, but the file has {there}", said=said, there=there)
+    (declared_count,) = struct.unpack_from("<I", data, _HEADER - 4)
+    triangle_count = (len(data) - _HEADER) // _TRIANGLE
+    if declared_count > triangle_count:
+        yield phrase(
+            "its header declares {said} triangles, but the file has {there}", said=declared_count, there=triangle_count
+        )
 
 
 def _text_stl_faults(data: bytes) -> Iterator[Phrase]:
     corners = 0
-    for number, words in _lines(data):
-        if words[0] == "vertex":
+    for number, tokens in _lines(data):
+        if tokens[0] == "vertex":
             corners += 1
-            yield from _number_faults(number, words[1:], 3)
-        elif words[0] == "endloop":
+            yield from _number_faults(number, tokens[1:], 3)
+        elif tokens[0] == "endloop":
             if corners != 3:
-                yield _at(number, phrase("a facet has {count} corners, not 3", count=corners))
+                yield _with_line(number, phrase("a facet has {count} corners, not 3", count=corners))
             corners = 0
 
 
 def _obj_faults(data: bytes) -> Iterator[Phrase]:
-    vertices = sum(words[0] == "v" for _, words in _lines(data))
+    vertices = sum(tokens[0] == "v" for _, tokens in _lines(data))
     for number, words in _lines(data):
         if words[0] == "v":
             yield from _number_faults(number, words[1:4], 3)
         elif words[0] == "f":
-            for word in words[1:]:
+            for token in words[1:]:
                 try:
-                    index = int(word.partition("/")[0])
+                    index = int(token.partition("/")[0])
                 except ValueError:
-                    yield _at(number, phrase("'{word}' is not the number of a vertex", word=word))
+                    yield _with_line(number, phrase("'{word}' is not a vertex number", word=token))
                     continue
                 if not 1 <= abs(index) <= vertices:
-                    yield _at(
-                        number, phrase("there is no vertex {index}; the mesh has {count}", index=index, count=vertices)
+                    yield _with_line(
+                        number,
+                        phrase(
+                            ("there is no vertex {index}: the mesh has {count} vertices"), index=index, count=vertices
+                        ),
                     )
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
-        words = line.split()
-        if words:
-            yield number, words
+        tokens = line.split()
+        if tokens:
+            yield number, tokens
 
 
 def _number_faults(line: int, words: list[str], count: int) -> Iterator[Phrase]:
     yield from (
-        _at(line, phrase("'{word}' is not a finite number", word=word)) for word in words if not _is_number(word)
+        _with_line(line, phrase("'{word}' is not a finite number", word=token))
+        for token in words
+        if not _is_number(token)
     )
     if len(words) != count:
-        yield _at(line, phrase("{count} numbers are needed, but there are {there}", there=len(words), count=count))
+        yield _with_line(
+            line, phrase("{count} numbers are needed, but there are {there}", there=len(words), count=count)
+        )
 
 
-def _is_number(word: str) -> bool:
+def _is_number(token: str) -> bool:
     try:
-        return isfinite(float(word))
+        return isfinite(float(token))
     except ValueError:
         return False
 
 
-def _at(line: int, what: Phrase) -> Phrase:
-    return phrase("line {line}: {what}", line=line, what=what)
+def _with_line(line: int, fault: Phrase) -> Phrase:
+    return phrase("line {line}: {what}", line=line, what=fault)
 
 
 # --- COLLADA -------------------------------------------------------------------------------------------------------
@@ -126,16 +135,16 @@ def _collada_faults(data: bytes) -> Iterator[Phrase]:
     try:
         root = parse(data, "<mesh>").root
     except LinkwrightError as error:
-        found = error.diagnostics[0]
-        yield _at(found.span.line, found.message) if found.span else found.message
+        diagnostic = error.diagnostics[0]
+        yield _with_line(diagnostic.span.line, diagnostic.message) if diagnostic.span else diagnostic.message
         return
     if root.tag != "COLLADA":
-        yield _of(root, phrase("the file begins with <{tag}>, not with <COLLADA>", tag=root.tag))
+        yield _with_element_line(root, phrase("the file begins with <{tag}>, not with <COLLADA>", tag=root.tag))
         return
     elements = list(root.walk())
-    known = {element.attributes["id"] for element in elements if "id" in element.attributes}
+    ids = {element.attributes["id"] for element in elements if "id" in element.attributes}
     for element in elements:
-        yield from _element_faults(element, known)
+        yield from _element_faults(element, ids)
         if element.tag == "mesh":
             yield from _index_faults(element)
     if not any(element.tag == "geometry" for element in elements):
@@ -144,28 +153,28 @@ def _collada_faults(data: bytes) -> Iterator[Phrase]:
         yield phrase("none of its <node> elements shows a geometry: there is no <instance_geometry>")
 
 
-def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
+def _element_faults(element: Element, ids: set[str]) -> Iterator[Phrase]:
     for name in ("source", "url"):
         value = element.attributes.get(name, "")
-        if value.startswith("#") and value[1:] not in known:
-            message = phrase("<{tag}> names '{value}', which is not in the file", tag=element.tag, value=value)
-            yield _of(element, message)
+        if value.startswith("#") and value[1:] not in ids:
+            message = phrase("<{tag}> refers to '{value}', which is not in the file", tag=element.tag, value=value)
+            yield _with_element_line(element, message)
     if element.tag in ("triangles", "polylist", "polygons"):
         for child in element.elements("input"):
             if "offset" not in child.attributes:
-                yield _of(child, phrase("<{tag}> has no attribute '{name}'", tag="input", name="offset"))
-    if element.tag == "float_array" or element.tag in _NUMBERS_OF:
+                yield _with_element_line(child, phrase("<{tag}> has no attribute '{name}'", tag="input", name="offset"))
+    if element.tag == "float_array" or element.tag in _NUMBER_COUNTS:
         yield from _list_faults(element, _is_number, phrase("a finite number"))
-        count = element.attributes.get("count") if element.tag == "float_array" else str(_NUMBERS_OF[element.tag])
-        there = len(element.text().split())
-        if count != str(there):
+        count = element.attributes.get("count") if element.tag == "float_array" else str(_NUMBER_COUNTS[element.tag])
+        number_count = len(element.text().split())
+        if count != str(number_count):
             message = phrase(
                 "<{tag}> has {there} numbers, but {count} are needed",
                 tag=element.tag,
-                there=there,
+                there=number_count,
                 count=count or "?",
             )
-            yield _of(element, message)
+            yield _with_element_line(element, message)
     elif element.tag in ("p", "vcount"):
         yield from _list_faults(element, str.isdecimal, phrase("an index"))
 
@@ -173,26 +182,31 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
 def _index_faults(mesh: Element) -> Iterator[Phrase]:
     """Iterate over the faults of indices that are out of range of the mesh's lists."""
     counts = [element.attributes.get("count", "") for element in mesh.walk() if element.tag == "accessor"]
-    longest = max((int(count) for count in counts if count.isdecimal()), default=0)
+    vertex_count = max((int(count) for count in counts if count.isdecimal()), default=0)
     for element in mesh.walk():
         if element.tag == "p":
-            largest = max((int(word) for word in element.text().split() if word.isdecimal()), default=0)
-            if largest >= longest:
-                yield _of(
-                    element, phrase("there is no vertex {index}; the mesh has {count}", index=largest, count=longest)
+            max_index = max((int(word) for word in element.text().split() if word.isdecimal()), default=0)
+            if max_index >= vertex_count:
+                yield _with_element_line(
+                    element,
+                    phrase(
+                        ("there is no vertex {index}: the mesh has {count} vertices"),
+                        index=max_index,
+                        count=vertex_count,
+                    ),
                 )
 
 
-def _list_faults(element: Element, is_good: Callable[[str], bool], what: Phrase) -> Iterator[Phrase]:
-    for word in element.text().split():
-        if not is_good(word):
-            message = phrase("'{word}' in <{tag}> is not {what}", word=word, tag=element.tag, what=what)
-            yield _of(element, message)
+def _list_faults(element: Element, is_valid: Callable[[str], bool], expected: Phrase) -> Iterator[Phrase]:
+    for token in element.text().split():
+        if not is_valid(token):
+            message = phrase("'{word}' in <{tag}> is not {what}", word=token, tag=element.tag, what=expected)
+            yield _with_element_line(element, message)
 
 
-def _of(element: Element, what: Phrase) -> Phrase:
+def _with_element_line(element: Element, fault: Phrase) -> Phrase:
     span = element.span()
-    return what if span is None else _at(span.line, what)
+    return fault if span is None else _with_line(span.line, fault)
 
 
 # --- glTF ----------------------------------------------------------------------------------------------------------
@@ -208,16 +222,16 @@ def _glb_faults(data: bytes) -> Iterator[Phrase]:
             "it ends after {count} bytes, but the header of a .glb has {header}", count=len(data), header=header
         )
         return
-    version, length, size, kind = struct.unpack_from("<IIII", data, 4)
+    version, length, size, chunk_type = struct.unpack_from("<IIII", data, 4)
     if version != 2:
-        yield phrase("it is glTF {version}, but only glTF 2 is read", version=version)
+        yield phrase("it is glTF {version}, but only glTF 2 is supported", version=version)
     if length > len(data):
         yield phrase("its header declares {said} bytes, but the file has {there}", said=length, there=len(data))
-    if kind != _JSON_CHUNK:
+    if chunk_type != _JSON_CHUNK:
         yield phrase("its first chunk is not JSON")
         return
-    rest = len(data) - (_GLB_HEADER + 2 * _CHUNK_HEADER + size)
-    yield from _document_faults(data[_GLB_HEADER + _CHUNK_HEADER :][:size], max(rest, 0))
+    binary_size = len(data) - (_GLB_HEADER + 2 * _CHUNK_HEADER + size)
+    yield from _document_faults(data[_GLB_HEADER + _CHUNK_HEADER :][:size], max(binary_size, 0))
 
 
 def _gltf_faults(data: bytes) -> Iterator[Phrase]:
@@ -241,37 +255,39 @@ def _document_faults(text: bytes, binary: int | None) -> Iterator[Phrase]:
         yield from _reference_faults(document)
         yield from _range_faults(document, binary)
     except (AttributeError, TypeError, KeyError, IndexError):
-        yield phrase("its JSON does not have the form of glTF")
+        yield phrase("its JSON does not have the structure of glTF")
 
 
 def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
     for number, node in enumerate(document.get("nodes", ())):
-        yield from _missing(document, f"nodes[{number}].mesh", "meshes", node.get("mesh"))
+        yield from _missing_reference_faults(document, f"nodes[{number}].mesh", "meshes", node.get("mesh"))
     for number, mesh in enumerate(document.get("meshes", ())):
         for index, primitive in enumerate(mesh["primitives"]):
-            place = f"meshes[{number}].primitives[{index}]"
+            location = f"meshes[{number}].primitives[{index}]"
             attributes = primitive["attributes"]
             if "POSITION" not in attributes:
-                yield phrase("{place} has no attribute '{name}'", place=place, name="POSITION")
+                yield phrase("{place} has no attribute '{name}'", place=location, name="POSITION")
             for name, accessor in attributes.items():
-                yield from _missing(document, f"{place}.attributes.{name}", "accessors", accessor)
-            yield from _missing(document, f"{place}.indices", "accessors", primitive.get("indices"))
+                yield from _missing_reference_faults(document, f"{location}.attributes.{name}", "accessors", accessor)
+            yield from _missing_reference_faults(document, f"{location}.indices", "accessors", primitive.get("indices"))
     for number, accessor in enumerate(document.get("accessors", ())):
-        place = f"accessors[{number}]"
-        yield from _missing(document, f"{place}.bufferView", "bufferViews", accessor.get("bufferView"))
-        for name, values in (("componentType", _COMPONENTS), ("type", _PARTS)):
+        location = f"accessors[{number}]"
+        yield from _missing_reference_faults(
+            document, f"{location}.bufferView", "bufferViews", accessor.get("bufferView")
+        )
+        for name, values in (("componentType", _COMPONENT_SIZES), ("type", _COMPONENT_COUNTS)):
             if accessor.get(name) not in values:
                 yield phrase(
                     "{place}.{name} is {value}, which glTF does not have",
-                    place=place,
+                    place=location,
                     name=name,
                     value=str(accessor.get(name)),
                 )
     for number, view in enumerate(document.get("bufferViews", ())):
-        yield from _missing(document, f"bufferViews[{number}].buffer", "buffers", view["buffer"])
+        yield from _missing_reference_faults(document, f"bufferViews[{number}].buffer", "buffers", view["buffer"])
 
 
-def _missing(document: dict[str, Any], place: str, kind: str, index: int | None) -> Iterator[Phrase]:
+def _missing_reference_faults(document: dict[str, Any], place: str, kind: str, index: int | None) -> Iterator[Phrase]:
     count = len(document.get(kind, ()))
     if index is not None and not 0 <= index < count:
         yield phrase(
@@ -283,16 +299,18 @@ def _range_faults(document: dict[str, Any], binary: int | None) -> Iterator[Phra
     views = document.get("bufferViews", [])
     for number, view in enumerate(views):
         buffer = document["buffers"][view["buffer"]]
-        there = binary if binary is not None and "uri" not in buffer else buffer["byteLength"]
-        if view.get("byteOffset", 0) + view["byteLength"] > there:
+        buffer_size = binary if binary is not None and "uri" not in buffer else buffer["byteLength"]
+        if view.get("byteOffset", 0) + view["byteLength"] > buffer_size:
             yield phrase(
-                "{place} reaches beyond the {there} bytes of its buffer", place=f"bufferViews[{number}]", there=there
+                "{place} reaches beyond the {there} bytes of its buffer",
+                place=f"bufferViews[{number}]",
+                there=buffer_size,
             )
     for number, accessor in enumerate(document.get("accessors", ())):
         if "bufferView" in accessor:
-            each = _COMPONENTS[accessor["componentType"]] * _PARTS[accessor["type"]]
-            needed = accessor.get("byteOffset", 0) + each * accessor["count"]
-            if needed > views[accessor["bufferView"]]["byteLength"]:
+            element_size = _COMPONENT_SIZES[accessor["componentType"]] * _COMPONENT_COUNTS[accessor["type"]]
+            end = accessor.get("byteOffset", 0) + element_size * accessor["count"]
+            if end > views[accessor["bufferView"]]["byteLength"]:
                 yield phrase("{place} reaches beyond its bufferView", place=f"accessors[{number}]")
 
 

@@ -26,7 +26,7 @@ from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
-"""The formats that are read, as RViz and Gazebo read them."""
+"""The extensions of the supported formats, which RViz and Gazebo read, too."""
 _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
 """The beginning of the line that occurs once for each triangle, or polygon, in text files."""
 
@@ -60,12 +60,12 @@ class BadMeshError(Exception):
     """Raised when a mesh file cannot be used; the message gives the reason.
 
     Attributes:
-        why: the reason, a phrase in the terms of the file.
+        reason: the reason, a phrase in terms of the file.
     """
 
-    def __init__(self, why: Phrase) -> None:
-        super().__init__(why)
-        self.why = why
+    def __init__(self, reason: Phrase) -> None:
+        super().__init__(reason)
+        self.reason = reason
 
 
 def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
@@ -90,7 +90,7 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found = (_plain(data, kind) if is_plain else None) or list(_parsed(data, kind, **options))
+            meshes = (_read_plain(data, kind) if is_plain else None) or list(_read_meshes(data, kind, **options))
     except ModuleNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
@@ -98,18 +98,18 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
         if repaired is not None:
             return placed_meshes(repaired, kind, is_plain=is_plain, **options)
         raise BadMeshError(find_fault(data, kind) or parser_fault(error)) from None
-    if not found:
+    if not meshes:
         raise BadMeshError(find_fault(data, kind) or phrase("it has no triangles"))
-    for placed in found:
-        vertices = placed.mesh.vertices
-        if np.shape(vertices)[1] != 3 or not (np.isfinite(vertices).all() and np.isfinite(placed.matrix).all()):
+    for placed_mesh in meshes:
+        vertices = placed_mesh.mesh.vertices
+        if np.shape(vertices)[1] != 3 or not (np.isfinite(vertices).all() and np.isfinite(placed_mesh.matrix).all()):
             raise BadMeshError(find_fault(data, kind) or phrase("a coordinate is not a finite number"))
-        corner, count = int(placed.mesh.faces.max()), len(vertices)
+        corner, count = int(placed_mesh.mesh.faces.max()), len(vertices)
         if corner >= count:
             raise BadMeshError(
                 phrase("a triangle refers to vertex {corner}, but there are {count}", corner=corner, count=count)
             )
-    return found
+    return meshes
 
 
 def declared_triangles(path: Path) -> int | None:
@@ -123,26 +123,30 @@ def declared_triangles(path: Path) -> int | None:
         with path.open("rb") as file:
             head = file.read(STL_HEADER)
             if kind == ".stl" and len(head) == STL_HEADER:
-                (declared,) = struct.unpack_from("<I", head, STL_HEADER - 4)
-                if path.stat().st_size == STL_HEADER + declared * STL_TRIANGLE:
-                    return int(declared)
-            mark = _FACE_LINES.get(kind)
-            return None if mark is None else (head + file.read()).count(mark)
+                (declared_count,) = struct.unpack_from("<I", head, STL_HEADER - 4)
+                if path.stat().st_size == STL_HEADER + declared_count * STL_TRIANGLE:
+                    return int(declared_count)
+            line_start = _FACE_LINES.get(kind)
+            return None if line_start is None else (head + file.read()).count(line_start)
     except OSError:
         return None
 
 
-def _plain(data: bytes, kind: str) -> list[PlacedMesh] | None:
+def _read_plain(data: bytes, kind: str) -> list[PlacedMesh] | None:
     """Return the meshes of a simple STL, COLLADA or OBJ file, or None for other files."""
-    nameless: frozenset[str] = frozenset()
+    no_names: frozenset[str] = frozenset()
     if kind == "dae":
         file = read_collada(data)
-        return None if file is None else [PlacedMesh(each, place, file.unit, nameless) for each, place in file.placed]
+        return (
+            None
+            if file is None
+            else [PlacedMesh(plain_mesh, matrix, file.unit, no_names) for plain_mesh, matrix in file.placed_meshes]
+        )
     mesh = read_stl(data, is_plain=True) if kind == "stl" else read_obj(data) if kind == "obj" else None
-    return None if mesh is None else [PlacedMesh(mesh, np.eye(4), 1.0, nameless)]
+    return None if mesh is None else [PlacedMesh(mesh, np.eye(4), 1.0, no_names)]
 
 
-def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
+def _read_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
     if kind == "stl" and (stl := read_stl(data)) is not None:
         yield PlacedMesh(stl, np.eye(4), 1.0, frozenset((stl.name,)))
         return
@@ -182,16 +186,16 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
 
 
 def _repair_xml(data: bytes) -> bytes | None:
-    """Return a COLLADA file with mistakes that Gazebo and RViz tolerate as well-formed XML.
+    """Return a COLLADA file as well-formed XML, without the mistakes that Gazebo and RViz tolerate.
 
-    Returns None if the file has no such mistakes, or others. Exporters write such files: assimp names the nodes of an
-    STL ``<STL_BINARY>``.
+    Returns None if the file has no such mistakes, or has other mistakes. Exporters write such files: assimp names the
+    nodes of an STL ``<STL_BINARY>``.
     """
     try:
-        document, forgiven = parse_as_tinyxml(decode(data, "<mesh>"), "<mesh>", foreign(""))
+        document, tolerated_mistakes = parse_as_tinyxml(decode(data, "<mesh>"), "<mesh>", foreign(""))
     except LinkwrightError:
         return None
-    if not forgiven:
+    if not tolerated_mistakes:
         return None
     for element in document.root.walk():
         element.children = [child for child in element.children if not isinstance(child, Comment)]
@@ -204,20 +208,20 @@ def _without_broken_materials(data: bytes) -> bytes:
     from collada.common import DaeError
 
     document = Collada(BytesIO(data), ignore=[DaeError])
-    known = {f"#{material.id}" for material in document.materials}
-    for bound in document.xmlnode.iter(document.tag("technique_common")):
-        for material in bound.findall(document.tag("instance_material")):
-            if material.get("target") not in known:
-                bound.remove(material)
-    written = BytesIO()
-    document.xmlnode.write(written)
-    return written.getvalue()
+    material_ids = {f"#{material.id}" for material in document.materials}
+    for bindings in document.xmlnode.iter(document.tag("technique_common")):
+        for material in bindings.findall(document.tag("instance_material")):
+            if material.get("target") not in material_ids:
+                bindings.remove(material)
+    output = BytesIO()
+    document.xmlnode.write(output)
+    return output.getvalue()
 
 
 def parser_fault(error: Exception) -> Phrase:
     """Return a description of a parser's error, for faults without a better description."""
     if isinstance(error, FileNotFoundError):
-        return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))
+        return phrase("it refers to the file '{name}', which does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
     return phrase("the parser reports: {said}", said=foreign(lines[0] if lines else type(error).__name__))
 
@@ -239,5 +243,5 @@ def _collada_unit(mesh: Any) -> float:
 
     trimesh stores the unit with the meshes, and does not apply it to the numbers.
     """
-    words = str(mesh.metadata.get("units", "meters")).split(" * ")
-    return float(words[0]) if len(words) == 2 else 1.0
+    fields = str(mesh.metadata.get("units", "meters")).split(" * ")
+    return float(fields[0]) if len(fields) == 2 else 1.0

@@ -41,8 +41,8 @@ class Triangles:
 UNCOLOURED = 0.6
 """The grey of a mesh without a colour."""
 
-_UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
-"""glTF's y up turned to z up."""
+_Y_UP_TO_Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+"""The matrix that converts glTF's axes, with y up, to axes with z up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +64,12 @@ class MeshPart:
 
     Attributes:
         triangles: the triangles.
-        own: the material from the file; None to use the material of the description.
+        file_material: the material from the file; None to use the material of the description.
         names: the names of the part in the file.
     """
 
     triangles: Triangles
-    own: FileMaterial | None
+    file_material: FileMaterial | None
     names: frozenset[str] = frozenset()
 
     def moved(self, offset: Array) -> MeshPart:
@@ -90,7 +90,7 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
     """
     kind = path.suffix.lower().removeprefix(".")
     try:
-        return _parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
+        return _read_parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
     except ModuleNotFoundError as error:
         raise missing_extra("INR104", error) from None
     except BadMeshError:
@@ -99,20 +99,26 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
         raise BadMeshError(parser_fault(error)) from None
 
 
-def _parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
+def _read_parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
     parts = []
-    for placed in placed_meshes(data, kind, resolver=resolver):
-        matrix = placed.matrix
+    for placed_mesh in placed_meshes(data, kind, resolver=resolver):
+        matrix = placed_mesh.matrix
         if kind == "dae":
-            matrix = np.diag([*[placed.unit] * 3, 1.0]) @ matrix
+            matrix = np.diag([*[placed_mesh.unit] * 3, 1.0]) @ matrix
         elif kind in ("glb", "gltf"):
-            matrix = _UPRIGHT @ matrix
-        parts.append(MeshPart(_triangles(placed, matrix, smooth=kind != "stl"), _own(placed.mesh, kind), placed.names))
+            matrix = _Y_UP_TO_Z_UP @ matrix
+        parts.append(
+            MeshPart(
+                _triangles(placed_mesh, matrix, smooth=kind != "stl"),
+                _file_material(placed_mesh.mesh, kind),
+                placed_mesh.names,
+            )
+        )
     return parts
 
 
-def _triangles(placed: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
-    mesh, faces = placed.mesh, placed.faces
+def _triangles(placed_mesh: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
+    mesh, faces = placed_mesh.mesh, placed_mesh.faces
     positions = np.asarray(mesh.vertices, dtype=np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     normals = _normals(mesh, positions, faces, matrix) if smooth else None
     uv = getattr(mesh.visual, "uv", None)
@@ -131,10 +137,10 @@ def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | 
         normals = np.asarray(mesh.vertex_normals, dtype=np.float64) @ np.linalg.pinv(matrix[:3, :3])
     else:
         a, b, c = (positions[faces[:, corner]] for corner in range(3))
-        areas = np.cross(b - a, c - a)
+        area_vectors = np.cross(b - a, c - a)
         normals = np.zeros_like(positions)
         for corner in range(3):
-            np.add.at(normals, faces[:, corner], areas)
+            np.add.at(normals, faces[:, corner], area_vectors)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     return normals / lengths if np.isfinite(lengths).all() and (lengths > 0).all() else None
 
@@ -146,7 +152,7 @@ def _vertex_colors(mesh: Any, count: int) -> Array | None:
     return colors if colors.shape == (count, 4) else None
 
 
-def _own(mesh: Any, kind: str) -> FileMaterial | None:
+def _file_material(mesh: Any, kind: str) -> FileMaterial | None:
     if kind == "stl":
         return None
     if mesh.visual.kind == "vertex":
@@ -156,26 +162,26 @@ def _own(mesh: Any, kind: str) -> FileMaterial | None:
         return FileMaterial((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default is white.
     if kind == "obj":
         color = material.kwargs.get("kd", np.asarray(material.diffuse[:3]) / 255.0)
-        return FileMaterial(_rgb(color), _png(getattr(material, "image", None)))
+        return FileMaterial(_rgb(color), _image_to_png(getattr(material, "image", None)))
     factor = material.baseColorFactor
     color = np.ones(3) if factor is None else np.asarray(factor, dtype=np.float64)[:3] / 255.0
-    return FileMaterial(_rgb(color), _png(material.baseColorTexture))
+    return FileMaterial(_rgb(color), _image_to_png(material.baseColorTexture))
 
 
 def _rgb(color: Any) -> tuple[float, float, float]:
-    red, green, blue = (min(1.0, max(0.0, float(part))) for part in list(color)[:3])
+    red, green, blue = (min(1.0, max(0.0, float(component))) for component in list(color)[:3])
     return red, green, blue
 
 
 def read_png(path: Path) -> bytes | None:
     """Return an image file as PNG, or None if it is not an image or Pillow is missing."""
     try:
-        return _as_png(path.read_bytes())
+        return _to_png(path.read_bytes())
     except (ModuleNotFoundError, OSError, ValueError, SyntaxError):
         return None
 
 
-def _png(image: Any) -> bytes | None:
+def _image_to_png(image: Any) -> bytes | None:
     """Return an image as PNG data, or None if the image is None.
 
     The data that the image was read from is reused if it is PNG, because encoding is slow.
@@ -183,22 +189,22 @@ def _png(image: Any) -> bytes | None:
     if image is None:
         return None
     source = getattr(image, "fp", None)  # Pillow keeps the file until the pixels are decoded.
-    return _as_png(source.getvalue()) if isinstance(source, BytesIO) else _encoded(image)
+    return _to_png(source.getvalue()) if isinstance(source, BytesIO) else _encode_png(image)
 
 
 @lru_cache(maxsize=8)
-def _as_png(data: bytes) -> bytes:
+def _to_png(data: bytes) -> bytes:
     """Convert image data to PNG; results are cached, because many meshes share an image."""
     from PIL import Image  # Pillow is an optional extra.
 
     image = Image.open(BytesIO(data))
     if image.format != "PNG":
-        return _encoded(image)
+        return _encode_png(image)
     image.verify()
     return data
 
 
-def _encoded(image: Any) -> bytes:
+def _encode_png(image: Any) -> bytes:
     file = BytesIO()
     image.convert("RGBA" if image.mode in ("RGBA", "LA", "PA", "P") else "RGB").save(file, "PNG")
     return file.getvalue()

@@ -23,12 +23,12 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver, placed_meshes
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
-from linkwright.geometry.shapes import FARTHEST, Bounds
+from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
 from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Any
 
-LARGEST_FILE = 1 << 29
-"""A mesh file of more bytes is not read."""
+MAX_FILE_SIZE = 1 << 29
+"""The maximum size of a mesh file that is read, in bytes."""
 
 
 class TriangleMesh:
@@ -51,8 +51,11 @@ class TriangleMesh:
             return Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         is_used = np.zeros(len(self.vertices), dtype=bool)
         is_used[self.faces.ravel()] = True
-        used = self.vertices[is_used]
-        (left, front, bottom), (right, back, top) = used.min(axis=0).tolist(), used.max(axis=0).tolist()
+        used_vertices = self.vertices[is_used]
+        (left, front, bottom), (right, back, top) = (
+            used_vertices.min(axis=0).tolist(),
+            used_vertices.max(axis=0).tolist(),
+        )
         return Bounds((left, front, bottom), (right, back, top))
 
     @property
@@ -63,7 +66,7 @@ class TriangleMesh:
     @cached_property
     def is_watertight(self) -> bool:
         """Whether the triangles bound a volume, without holes and with consistent orientation."""
-        return is_closed(self._merged[1])
+        return is_closed(self._merged_surface[1])
 
     @cached_property
     def solid(self) -> MassProperties:
@@ -71,11 +74,11 @@ class TriangleMesh:
 
         If the mesh is not watertight, its convex hull is used. The mass is 0 if all triangles are coplanar.
         """
-        vertices, faces = self._merged
+        vertices, faces = self._merged_surface
         if self.is_watertight:
-            inside = polyhedron_properties(vertices, faces)
-            if inside.mass > 0:
-                return inside
+            properties = polyhedron_properties(vertices, faces)
+            if properties.mass > 0:
+                return properties
         hull = convex_hull(vertices)
         return MassProperties(0.0) if hull is None else polyhedron_properties(vertices, hull)
 
@@ -86,13 +89,13 @@ class TriangleMesh:
         """
         if scale == (1.0, 1.0, 1.0):
             return self
-        found = self._scaled.get(scale)
-        if found is None:
-            found = self._scaled[scale] = TriangleMesh(self.vertices * np.asarray(scale), self.faces)
-        return found
+        mesh = self._scaled.get(scale)
+        if mesh is None:
+            mesh = self._scaled[scale] = TriangleMesh(self.vertices * np.asarray(scale), self.faces)
+        return mesh
 
     @cached_property
-    def _merged(self) -> tuple[Array, Faces]:
+    def _merged_surface(self) -> tuple[Array, Faces]:
         return merged(self.vertices, self.faces)
 
 
@@ -107,20 +110,26 @@ def read_mesh(path: Path) -> TriangleMesh:
         LinkwrightError: INR101, the file does not exist; INR102, the extension is unknown; INR103, the file cannot be
             read; INR104, trimesh is not installed.
     """
-    kind = path.suffix.lower()
-    if kind not in MESH_ENDINGS:
+    extension = path.suffix.lower()
+    if extension not in MESH_ENDINGS:
         message = phrase("the mesh '{path}' has an unsupported format", path=display_path(path))
         raise LinkwrightError(
-            Diagnostic("INR102", message, hint=phrase("use {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)))
+            Diagnostic(
+                "INR102",
+                message,
+                hint=phrase(("convert it to one of the formats {mesh_endings}"), mesh_endings=joined(MESH_ENDINGS)),
+            )
         )
     try:
-        facts = path.stat()
-        if not stat.S_ISREG(facts.st_mode):
+        file_status = path.stat()
+        if not stat.S_ISREG(file_status.st_mode):
             raise unreadable(path, phrase("it is not a regular file"))
-        if facts.st_size > LARGEST_FILE:
-            raise unreadable(path, phrase("it is larger than {largest_file} MiB", largest_file=LARGEST_FILE >> 20))
+        if file_status.st_size > MAX_FILE_SIZE:
+            raise unreadable(
+                path, phrase(("it is larger than the maximum of {largest_file} MiB"), largest_file=MAX_FILE_SIZE >> 20)
+            )
         data = path.read_bytes()
-        if kind == ".dae":
+        if extension == ".dae":
             data = data.strip(COLLADA_PADDING)
     except FileNotFoundError:
         message = phrase("there is no mesh file '{path}'", path=display_path(path))
@@ -128,12 +137,12 @@ def read_mesh(path: Path) -> TriangleMesh:
     except OSError as error:
         raise unreadable(path, error.strerror or str(error)) from None
     try:
-        mesh = _parse(data, kind[1:], path)
+        mesh = _parse(data, extension[1:], path)
     except ModuleNotFoundError as error:
         raise missing_extra("INR104", error) from None
     except BadMeshError as error:
-        raise unreadable(path, error.why) from None
-    if not np.abs(mesh.vertices).max() <= FARTHEST:
+        raise unreadable(path, error.reason) from None
+    if not np.abs(mesh.vertices).max() <= MAX_COORDINATE:
         raise unreadable(path, phrase("a coordinate is out of range"))
     return mesh
 
@@ -147,23 +156,23 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
     vertices: list[Array] = [np.zeros((0, 3))]
     faces: list[Faces] = [np.zeros((0, 3), dtype=np.int64)]
     count = 0
-    parsed = []
-    for placed in placed_meshes(data, kind, is_plain=True, **options):
-        corners = np.asarray(placed.mesh.vertices, dtype=np.float64)
-        vertices.append((corners @ placed.matrix[:3, :3].T + placed.matrix[:3, 3]) * placed.unit)
-        faces.append(placed.faces + count)
+    meshes = []
+    for placed_mesh in placed_meshes(data, kind, is_plain=True, **options):
+        corners = np.asarray(placed_mesh.mesh.vertices, dtype=np.float64)
+        vertices.append((corners @ placed_mesh.matrix[:3, :3].T + placed_mesh.matrix[:3, 3]) * placed_mesh.unit)
+        faces.append(placed_mesh.faces + count)
         count += len(corners)
-        parsed.append(placed.mesh)
-    for mesh in parsed:
+        meshes.append(placed_mesh.mesh)
+    for mesh in meshes:
         mesh.__dict__.clear()  # This breaks reference cycles, which would keep much memory alive.
     return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
 
 
-def unreadable(path: Path, why: str) -> LinkwrightError:
+def unreadable(path: Path, reason: str) -> LinkwrightError:
     """Return the error INR103 for a mesh file that cannot be used."""
-    hint = phrase("export it again, or leave the link out")
+    hint = phrase("export the mesh again, or leave out the link that uses it")
     return LinkwrightError(
         Diagnostic(
-            "INR103", phrase("cannot read the mesh '{path}': {why}", path=display_path(path), why=why), hint=hint
+            "INR103", phrase("cannot read the mesh '{path}': {why}", path=display_path(path), why=reason), hint=hint
         )
     )

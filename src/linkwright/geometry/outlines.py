@@ -14,25 +14,25 @@ from itertools import chain, pairwise
 from math import isfinite
 from struct import iter_unpack
 
-from linkwright.geometry.shapes import FARTHEST, Bounds
+from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
 from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Protocol
 
 STEPS = 1 << 20
-"""Corners nearer to each other than this part of the mesh's size are one."""
+"""The number of grid cells along the longest side of a mesh. Corners in the same cell are merged."""
 POINT = 1e-30
-"""A mesh smaller than this, in m, is a point."""
+"""A mesh smaller than this, in m, counts as a point."""
 STL_HEADER, STL_TRIANGLE = 84, 50
-"""Bytes of a binary STL, before its triangles and for each."""
+"""The bytes of a binary STL before its triangles, and the bytes of each triangle."""
 FACET = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? endloop endfacet".split()
-"""The words of a triangle in an STL of text."""
+"""The tokens of a triangle in a text STL."""
 CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
-"""The places of the numbers of its corners among them."""
+"""The indices of the corner coordinates among these tokens."""
 
 COLLADA_PADDING = b" \t\r\n\0"
 """The bytes that exporters leave around the XML of a COLLADA file, and that other readers skip."""
-_MOST_TRIANGLES = 20_000
-"""A small COLLADA file may place its meshes any number of times."""
+_MAX_TRIANGLES = 20_000
+"""The maximum number of triangles, because a small COLLADA file may place its meshes any number of times."""
 
 _Triangle = tuple[int, int, int]
 
@@ -77,7 +77,7 @@ class SmallMesh:
     @cached_property
     def bounds(self) -> Bounds:
         """The bounding box of the triangles, in m."""
-        return _around([self._corners[place] for place in set(chain.from_iterable(self._faces))])
+        return _around([self._corners[index] for index in set(chain.from_iterable(self._faces))])
 
     @cached_property
     def is_watertight(self) -> bool:
@@ -91,13 +91,13 @@ class SmallMesh:
             return False
         (left, front, bottom), factor = box.low, STEPS / size
         cells: dict[Vector3, int] = {}
-        joined = [
+        merged_indices = [
             cells.setdefault((round((x - left) * factor), round((y - front) * factor), round((z - bottom) * factor)), i)
             for i, (x, y, z) in enumerate(self._corners)
         ]
         edges: Counter[tuple[int, int]] = Counter()
         for face in self._faces:
-            a, b, c = (joined[place] for place in face)
+            a, b, c = (merged_indices[index] for index in face)
             if a != b != c != a:
                 edges.update(((a, b), (b, c), (c, a)))
         return bool(edges) and all(edges[end, start] == count for (start, end), count in edges.items())
@@ -106,12 +106,12 @@ class SmallMesh:
         """Return the mesh scaled along its axes."""
         if scale == (1.0, 1.0, 1.0):
             return self
-        found = self._scaled.get(scale)
-        if found is None:
+        mesh = self._scaled.get(scale)
+        if mesh is None:
             a, b, c = scale
             corners = [(a * x, b * y, c * z) for x, y, z in self._corners]
-            found = self._scaled[scale] = SmallMesh(corners, self._faces)
-        return found
+            mesh = self._scaled[scale] = SmallMesh(corners, self._faces)
+        return mesh
 
 
 def read_small(data: bytes, kind: str) -> SmallMesh | None:
@@ -133,28 +133,28 @@ def _binary_stl(data: bytes) -> SmallMesh | None:
     count = int.from_bytes(data[STL_HEADER - 4 : STL_HEADER], "little")
     if not count or len(data) != STL_HEADER + count * STL_TRIANGLE:
         return None
-    return _of_corners(list(chain.from_iterable(iter_unpack("<12x9f2x", data[STL_HEADER:]))))
+    return _mesh_from_corners(list(chain.from_iterable(iter_unpack("<12x9f2x", data[STL_HEADER:]))))
 
 
 def _text_stl(data: bytes) -> SmallMesh | None:
-    first, _, rest = data.partition(b"\n")
-    solid, _, name = first.strip().partition(b" ")
-    body, end, after = rest.partition(b"endsolid")
-    words = body.split()
-    if solid != b"solid" or not end or not words or len(words) % len(FACET) or b"solid" in after or b"_" in body:
+    first_line, _, remainder = data.partition(b"\n")
+    solid, _, name = first_line.strip().partition(b" ")
+    body, end, trailing = remainder.partition(b"endsolid")
+    tokens = body.split()
+    if solid != b"solid" or not end or not tokens or len(tokens) % len(FACET) or b"solid" in trailing or b"_" in body:
         return None
     name.decode()
-    if any(word != b"?" and set(words[place :: len(FACET)]) != {word} for place, word in enumerate(FACET)):
+    if any(token != b"?" and set(tokens[index :: len(FACET)]) != {token} for index, token in enumerate(FACET)):
         return None
-    columns = [words[place :: len(FACET)] for place in CORNERS]
-    return _of_corners([float(word) for row in zip(*columns, strict=True) for word in row])
+    columns = [tokens[place :: len(FACET)] for place in CORNERS]
+    return _mesh_from_corners([float(number) for row in zip(*columns, strict=True) for number in row])
 
 
-def _of_corners(numbers: list[float]) -> SmallMesh | None:
+def _mesh_from_corners(numbers: list[float]) -> SmallMesh | None:
     """Return a mesh of triangles that share no corners, from the coordinates of the corners."""
     count = len(numbers) // 9
-    places = range(3 * count)
-    return _mesh(_points(numbers), list(zip(places[::3], places[1::3], places[2::3], strict=True)))
+    indices = range(3 * count)
+    return _mesh(_points(numbers), list(zip(indices[::3], indices[1::3], indices[2::3], strict=True)))
 
 
 def _obj(data: bytes) -> SmallMesh | None:
@@ -163,24 +163,28 @@ def _obj(data: bytes) -> SmallMesh | None:
     lines = data.splitlines()
     rows = [line[2:].split() for line in lines if line.startswith(b"v ")]
     polygons = [line[2:].split() for line in lines if line.startswith(b"f ")]
-    words = [*chain.from_iterable(rows), *chain.from_iterable(polygons)]
-    if not rows or not polygons or len(set(map(len, rows))) > 1 or len(rows[0]) < 3 or b"_" in b"".join(words):
+    tokens = [*chain.from_iterable(rows), *chain.from_iterable(polygons)]
+    if not rows or not polygons or len(set(map(len, rows))) > 1 or len(rows[0]) < 3 or b"_" in b"".join(tokens):
         return None
-    corners = _points([float(word) for row in rows for word in row[:3]])
+    corners = _points([float(number) for row in rows for number in row[:3]])
     faces = []
     for polygon in polygons:
-        first, *others = (int(word.partition(b"/")[0]) - 1 for word in polygon)
-        if len(others) < 2 or min(first, *others) < 0 or max(first, *others) >= len(corners):
+        first_corner, *other_corners = (int(token.partition(b"/")[0]) - 1 for token in polygon)
+        if (
+            len(other_corners) < 2
+            or min(first_corner, *other_corners) < 0
+            or max(first_corner, *other_corners) >= len(corners)
+        ):
             return None
-        faces += [(first, second, third) for second, third in pairwise(others)]
+        faces += [(first_corner, second, third) for second, third in pairwise(other_corners)]
     return _mesh(corners, faces)
 
 
 def _collada(data: bytes) -> SmallMesh | None:
     from linkwright.geometry.collada_lists import read_triangles  # Imports an XML parser.
 
-    found = read_triangles(data.strip(COLLADA_PADDING), _MOST_TRIANGLES)
-    return None if found is None else _mesh(*found)
+    triangles = read_triangles(data.strip(COLLADA_PADDING), _MAX_TRIANGLES)
+    return None if triangles is None else _mesh(*triangles)
 
 
 def _points(numbers: list[float]) -> list[Vector3]:
@@ -189,7 +193,7 @@ def _points(numbers: list[float]) -> list[Vector3]:
 
 def _mesh(corners: list[Vector3], faces: list[_Triangle]) -> SmallMesh | None:
     numbers = list(chain.from_iterable(corners))
-    if not all(map(isfinite, numbers)) or max(map(abs, numbers)) > FARTHEST:
+    if not all(map(isfinite, numbers)) or max(map(abs, numbers)) > MAX_COORDINATE:
         return None
     return SmallMesh(corners, faces)
 

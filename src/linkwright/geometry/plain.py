@@ -33,20 +33,20 @@ class PlainMesh:
 def parse_numbers(text: str | None, kind: type[Any]) -> Any:
     """Parse numbers separated by whitespace, and return them as an array.
 
-    `kind` is the type of the array's elements.
+    `dtype` is the type of the array's elements.
 
     Raises:
-        Unusual: the text contains anything else, or a number that is not finite.
+        UnsupportedContent: the text contains anything else, or a number that is not finite.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # numpy warns about tokens that are not numbers.
         try:
-            found = np.fromstring((text or "").strip(), dtype=kind, sep=" ")
+            numbers = np.fromstring((text or "").strip(), dtype=kind, sep=" ")
         except (DeprecationWarning, ValueError):
             raise UnsupportedContent from None
-    if kind is np.float32 and not np.isfinite(found).all():
+    if kind is np.float32 and not np.isfinite(numbers).all():
         raise UnsupportedContent
-    return found
+    return numbers
 
 
 def fans(corners: Faces, counts: Faces) -> Faces:

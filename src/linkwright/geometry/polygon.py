@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 Point = tuple[float, float]
 
 
-def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
+def triangulate(points: Sequence[Point]) -> list[tuple[int, int, int]]:
     """Triangulate a simple polygon by ear clipping.
 
     Source: Meisters, *Polygons have ears*, 1975.
@@ -29,19 +29,19 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
     if _twice_area(points, ring) < 0:
         ring.reverse()
     triangles: list[tuple[int, int, int]] = []
-    at = tried = 0
-    while len(ring) >= 3 and tried < len(ring):
-        a, b, c = (ring[(at + step) % len(ring)] for step in range(3))
-        side = turn(points[a], points[b], points[c])
-        if side > 0 and not any(
-            _inside(points[corner], points[a], points[b], points[c]) for corner in ring if corner not in (a, b, c)
+    start = tried_count = 0
+    while len(ring) >= 3 and tried_count < len(ring):
+        a, b, c = (ring[(start + step) % len(ring)] for step in range(3))
+        orientation = turn(points[a], points[b], points[c])
+        if orientation > 0 and not any(
+            _is_inside(points[corner], points[a], points[b], points[c]) for corner in ring if corner not in (a, b, c)
         ):
             triangles.append((a, b, c))
-        if side == 0 or (triangles and triangles[-1] == (a, b, c)):
+        if orientation == 0 or (triangles and triangles[-1] == (a, b, c)):
             ring.remove(b)
-            tried = 0
+            tried_count = 0
         else:
-            at, tried = at + 1, tried + 1
+            start, tried_count = start + 1, tried_count + 1
     return triangles
 
 
@@ -79,5 +79,5 @@ def turn(a: Point, b: Point, c: Point) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _inside(point: Point, a: Point, b: Point, c: Point) -> bool:
+def _is_inside(point: Point, a: Point, b: Point, c: Point) -> bool:
     return turn(a, b, point) >= 0 and turn(b, c, point) >= 0 and turn(c, a, point) >= 0

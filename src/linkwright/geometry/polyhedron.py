@@ -39,13 +39,13 @@ def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
         return MassProperties(0.0)
     total = a + b + c
     center = det @ total / 24.0 / volume
-    second = np.einsum("i,ij,ik->jk", det, total, total, optimize=True)
+    second_moment = np.einsum("i,ij,ik->jk", det, total, total, optimize=True)
     for corner in (a, b, c):
-        second += np.einsum("i,ij,ik->jk", det, corner, corner, optimize=True)
-    second = second / 120.0 - volume * np.outer(center, center)
+        second_moment += np.einsum("i,ij,ik->jk", det, corner, corner, optimize=True)
+    second_moment = second_moment / 120.0 - volume * np.outer(center, center)
     if volume < 0:
-        volume, second = -volume, -second
-    inertia = np.trace(second) * np.eye(3) - second
+        volume, second_moment = -volume, -second_moment
+    inertia = np.trace(second_moment) * np.eye(3) - second_moment
     return MassProperties(volume, center + shift, inertia)
 
 
@@ -62,10 +62,14 @@ def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
         return vertices[:1], faces[:0]
     cells = np.rint((vertices - low) * (STEPS / size)).astype(np.int64)
     keys = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
-    _, first, place = np.unique(keys, return_index=True, return_inverse=True)
-    joined = place.reshape(-1)[faces]
-    flat = (joined[:, 0] == joined[:, 1]) | (joined[:, 1] == joined[:, 2]) | (joined[:, 2] == joined[:, 0])
-    return vertices[first], joined[~flat]
+    _, first_indices, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    merged_faces = inverse.reshape(-1)[faces]
+    is_degenerate = (
+        (merged_faces[:, 0] == merged_faces[:, 1])
+        | (merged_faces[:, 1] == merged_faces[:, 2])
+        | (merged_faces[:, 2] == merged_faces[:, 0])
+    )
+    return vertices[first_indices], merged_faces[~is_degenerate]
 
 
 def is_closed(faces: Faces) -> bool:

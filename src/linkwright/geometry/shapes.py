@@ -9,7 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import acos, hypot, pi, prod
 
-from linkwright.geometry.single import Pose, Vector3, added, dot, quaternion_of, rotation_matrix, scaled, subtracted
+from linkwright.geometry.single import (
+    Pose,
+    Vector3,
+    added,
+    dot,
+    pose_quaternion,
+    rotation_matrix,
+    scaled,
+    subtract_vectors,
+)
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 
 
@@ -49,7 +58,7 @@ class Sphere:
 SimpleShape = Box | Cylinder | Capsule | Sphere
 
 
-def volume_of(shape: SimpleShape) -> float:
+def shape_volume(shape: SimpleShape) -> float:
     """Return the volume of a shape in m3; 0 if a size is zero or less, infinite on overflow."""
     if isinstance(shape, Box):
         return prod(shape.size) if min(shape.size) > 0 else 0.0
@@ -79,14 +88,14 @@ class Placement(NamedTuple):
         return x + self.position[0], y + self.position[1], z + self.position[2]
 
     def inside(self, outer: Placement) -> Placement:
-        """Return this frame in the outer frame of `outer`; this placement is in its inner frame."""
+        """Return this frame in the outer frame of `outer`; this placement is relative to the inner frame of `outer`."""
         return Placement(product(outer.rotation, self.rotation), outer.point(self.position))
 
-    def seen_from(self, other: Placement) -> Placement:
+    def seen_from(self, reference: Placement) -> Placement:
         """Return this frame in another frame; both placements have the same outer frame."""
-        back = transposed(other.rotation)
-        difference = subtracted(self.position, other.position)
-        return Placement(product(back, self.rotation), rotated(back, difference))
+        inverse = transposed(reference.rotation)
+        difference = subtract_vectors(self.position, reference.position)
+        return Placement(product(inverse, self.rotation), rotated(inverse, difference))
 
 
 def placement(pose: Pose) -> Placement:
@@ -96,7 +105,7 @@ def placement(pose: Pose) -> Placement:
 
 def rotation(pose: Pose) -> Matrix:
     """Return the rotation matrix of a pose."""
-    return rotation_matrix(quaternion_of(pose))
+    return rotation_matrix(pose_quaternion(pose))
 
 
 def product(first: Matrix, second: Matrix) -> Matrix:
@@ -122,7 +131,7 @@ def rotated(matrix: Matrix, vector: Vector3) -> Vector3:
 
 def angle_between(first: Matrix, second: Matrix) -> float:
     """Return the angle in radians of the rotation between two orientations."""
-    trace = sum(dot(row, other) for row, other in zip(first, second, strict=True))
+    trace = sum(dot(row, second_row) for row, second_row in zip(first, second, strict=True))
     return acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0)))
 
 
@@ -130,8 +139,8 @@ def _vector(values: tuple[float, ...]) -> Vector3:
     return values[0], values[1], values[2]
 
 
-FARTHEST = 1e9
-"""Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""
+MAX_COORDINATE = 1e9
+"""Lengths beyond this, in m, are mistakes. They are not used in computations, so that nothing overflows."""
 
 
 class Bounds(NamedTuple):
@@ -143,7 +152,7 @@ class Bounds(NamedTuple):
     @property
     def size(self) -> Vector3:
         """The edge lengths in m."""
-        return subtracted(self.high, self.low)
+        return subtract_vectors(self.high, self.low)
 
     @property
     def center(self) -> Vector3:
@@ -157,12 +166,14 @@ class Bounds(NamedTuple):
 
     def gap(self, other: Bounds) -> float:
         """Return the distance between two boxes, in m; 0 if they touch."""
-        between = (subtracted(self.low, other.high), subtracted(other.low, self.high))
-        return hypot(*(max(0.0, before, after) for before, after in zip(*between, strict=True)))
+        gaps = (subtract_vectors(self.low, other.high), subtract_vectors(other.low, self.high))
+        return hypot(*(max(0.0, before, after) for before, after in zip(*gaps, strict=True)))
 
     def nearest(self, point: Vector3) -> Vector3:
         """Return the point of the box that is nearest to a point."""
-        x, y, z = (min(max(part, low), high) for part, low, high in zip(point, self.low, self.high, strict=True))
+        x, y, z = (
+            min(max(coordinate, low), high) for coordinate, low, high in zip(point, self.low, self.high, strict=True)
+        )
         return x, y, z
 
     def distance(self, point: Vector3) -> float:
@@ -176,13 +187,13 @@ class Bounds(NamedTuple):
         """
         low, high = [], []
         for row, start in zip(frame.rotation, frame.position, strict=True):
-            ends = [(a * factor, b * factor) for factor, a, b in zip(row, self.low, self.high, strict=True)]
-            low.append(start + sum(map(min, ends)))
-            high.append(start + sum(map(max, ends)))
+            products = [(a * factor, b * factor) for factor, a, b in zip(row, self.low, self.high, strict=True)]
+            low.append(start + sum(map(min, products)))
+            high.append(start + sum(map(max, products)))
         return Bounds((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
-def bounds_of(shape: SimpleShape) -> Bounds:
+def shape_bounds(shape: SimpleShape) -> Bounds:
     """Return the bounding box of a shape along its own axes."""
     if isinstance(shape, Box):
         x, y, z = (abs(edge) / 2.0 for edge in shape.size)
@@ -196,9 +207,9 @@ def bounds_of(shape: SimpleShape) -> Bounds:
 
 def union(boxes: Iterable[Bounds]) -> Bounds | None:
     """Return the bounding box of several boxes, or None if there are none."""
-    listed = list(boxes)
-    if len(listed) < 2:
-        return listed[0] if listed else None
-    low = tuple(map(min, *(box.low for box in listed)))
-    high = tuple(map(max, *(box.high for box in listed)))
+    box_list = list(boxes)
+    if len(box_list) < 2:
+        return box_list[0] if box_list else None
+    low = tuple(map(min, *(box.low for box in box_list)))
+    high = tuple(map(max, *(box.high for box in box_list)))
     return Bounds((low[0], low[1], low[2]), (high[0], high[1], high[2]))

@@ -18,7 +18,7 @@ def added(first: Vector3, second: Vector3) -> Vector3:
     return first[0] + second[0], first[1] + second[1], first[2] + second[2]
 
 
-def subtracted(first: Vector3, second: Vector3) -> Vector3:
+def subtract_vectors(first: Vector3, second: Vector3) -> Vector3:
     """Return the first vector minus the second."""
     return first[0] - second[0], first[1] - second[1], first[2] - second[2]
 
@@ -74,7 +74,7 @@ class Pose:
 IDENTITY_POSE = Pose()
 
 
-def quaternion_of(pose: Pose) -> Quaternion:
+def pose_quaternion(pose: Pose) -> Quaternion:
     """Return the rotation of a pose, from the child's axes to the parent's, as a quaternion."""
     return pose.quaternion or quaternion_from_rpy(pose.rpy)
 
@@ -213,8 +213,8 @@ def interpolate(first: Transform, second: Transform, ratio: float) -> Transform:
 
     Positions are interpolated linearly, and rotations along the shorter arc; `ratio` is 0 at `first` and 1 at `second`.
     """
-    rest = 1.0 - ratio
-    x, y, z = (rest * a + ratio * b for a, b in zip(first[:3], second[:3], strict=True))
+    first_weight = 1.0 - ratio
+    x, y, z = (first_weight * a + ratio * b for a, b in zip(first[:3], second[:3], strict=True))
     return (x, y, z, *_slerp(first[3:], second[3:], ratio))
 
 
@@ -222,9 +222,9 @@ def _slerp(first: Quaternion, second: Quaternion, ratio: float) -> Quaternion:
     dot = sum(a * b for a, b in zip(first, second, strict=True))
     sign = -1.0 if dot < 0.0 else 1.0
     angle = acos(min(1.0, abs(dot)))
-    whole = sin(angle)
-    if whole == 0.0:
+    sin_angle = sin(angle)
+    if sin_angle == 0.0:
         return first
-    a, b = sin((1.0 - ratio) * angle) / whole, sign * sin(ratio * angle) / whole
+    a, b = sin((1.0 - ratio) * angle) / sin_angle, sign * sin(ratio * angle) / sin_angle
     x, y, z, w = (a * p + b * q for p, q in zip(first, second, strict=True))
     return x, y, z, w

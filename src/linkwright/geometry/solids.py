@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere, volume_of
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere, shape_volume
 
 
 def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties:
@@ -38,7 +38,7 @@ def _box(box: Box, density: float) -> MassProperties:
     if min(box.size) <= 0:
         return MassProperties(0.0)
     a, b, c = box.size
-    mass = density * volume_of(box)
+    mass = density * shape_volume(box)
     return _diagonal(mass, mass * (b * b + c * c) / 12, mass * (a * a + c * c) / 12, mass * (a * a + b * b) / 12)
 
 
@@ -50,9 +50,9 @@ def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
     r, length = cylinder.radius, cylinder.length
     if min(r, length) <= 0:
         return MassProperties(0.0)
-    mass = density * volume_of(cylinder)
-    across = mass * (3 * r * r + length * length) / 12
-    return _diagonal(mass, across, across, mass * r * r / 2)
+    mass = density * shape_volume(cylinder)
+    transverse_moment = mass * (3 * r * r + length * length) / 12
+    return _diagonal(mass, transverse_moment, transverse_moment, mass * r * r / 2)
 
 
 def _sphere(sphere: Sphere, density: float) -> MassProperties:
@@ -63,7 +63,7 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
     r = sphere.radius
     if r <= 0:
         return MassProperties(0.0)
-    mass = density * volume_of(sphere)
+    mass = density * shape_volume(sphere)
     moment = 2 / 5 * mass * r * r
     return _diagonal(mass, moment, moment, moment)
 
@@ -77,12 +77,12 @@ def _capsule(capsule: Capsule, density: float) -> MassProperties:
     r, length = capsule.radius, capsule.length
     if r <= 0 or length < 0:
         return MassProperties(0.0)
-    middle = density * pi * r * r * length
-    ends = density * 4 / 3 * pi * r * r * r
-    across = middle * (3 * r * r + length * length) / 12
-    across += ends * (2 / 5 * r * r + length * length / 4 + 3 / 8 * length * r)
-    along = middle * r * r / 2 + ends * 2 / 5 * r * r
-    return _diagonal(middle + ends, across, across, along)
+    cylinder_mass = density * pi * r * r * length
+    ends_mass = density * 4 / 3 * pi * r * r * r
+    transverse_moment = cylinder_mass * (3 * r * r + length * length) / 12
+    transverse_moment += ends_mass * (2 / 5 * r * r + length * length / 4 + 3 / 8 * length * r)
+    axial_moment = cylinder_mass * r * r / 2 + ends_mass * 2 / 5 * r * r
+    return _diagonal(cylinder_mass + ends_mass, transverse_moment, transverse_moment, axial_moment)
 
 
 def _diagonal(mass: float, ixx: float, iyy: float, izz: float) -> MassProperties:

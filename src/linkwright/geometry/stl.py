@@ -1,4 +1,4 @@
-"""A fast reader of STL files without unusual content.
+"""A fast reader of STL files that have only common content.
 
 Importing trimesh takes longer than reading most files.
 """
@@ -13,10 +13,13 @@ from linkwright.geometry.plain import PlainMesh
 
 _HEADER = 80
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_LARGEST_TEXT = 1 << 24
-"""Beside reading a longer text the import of trimesh counts for nothing, and a list of all its words would be large."""
-_WORDS = [place for place, word in enumerate(FACET) if word != b"?"]
-"""The places of a facet's words that are the same in all."""
+_MAX_TEXT_SIZE = 1 << 24
+"""The maximum size, in bytes, of a text STL that is read here.
+
+Reading a larger file takes much longer than the import of trimesh, and a list of all its tokens would be large.
+"""
+_FIXED_TOKENS = [index for index, token in enumerate(FACET) if token != b"?"]
+"""The indices of a facet's tokens that are the same in all facets."""
 
 
 def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
@@ -42,16 +45,16 @@ def _binary(data: bytes, *, is_plain: bool) -> PlainMesh | None:
 
 
 def _text(data: bytes) -> PlainMesh | None:
-    if len(data) > _LARGEST_TEXT:
+    if len(data) > _MAX_TEXT_SIZE:
         return None
-    first, _, rest = data.partition(b"\n")
-    solid, _, name = first.strip().partition(b" ")
-    body, end, after = rest.partition(b"endsolid")
-    words = body.split()
-    if solid != b"solid" or not end or not words or len(words) % len(FACET) or b"solid" in after:
+    first_line, _, remainder = data.partition(b"\n")
+    solid, _, name = first_line.strip().partition(b" ")
+    body, end, trailing = remainder.partition(b"endsolid")
+    tokens = body.split()
+    if solid != b"solid" or not end or not tokens or len(tokens) % len(FACET) or b"solid" in trailing:
         return None
-    facets = np.array(words).reshape(-1, len(FACET))
-    if (facets[:, _WORDS] != [FACET[place] for place in _WORDS]).any():
+    facets = np.array(tokens).reshape(-1, len(FACET))
+    if (facets[:, _FIXED_TOKENS] != [FACET[index] for index in _FIXED_TOKENS]).any():
         return None
     try:
         return _mesh(facets[:, list(CORNERS)].astype(np.float64), name.strip().decode())

@@ -20,24 +20,24 @@ if TYPE_CHECKING:
     from linkwright.geometry.arrays import Array
     from linkwright.geometry.mass import MassProperties
 
-HEAVIEST_DENSITY = 22_600.0
-"""Osmium in kg/m3: no solid is denser."""
+MAX_DENSITY = 22_600.0
+"""The density of osmium, the densest solid, in kg/m3."""
 
-LIGHTEST_DENSITY = 1.2
-"""Air at sea level in kg/m3: a body that weighs less would float."""
+MIN_DENSITY = 1.2
+"""The density of air at sea level, in kg/m3. A body with a lower density would float."""
 
 TOLERANCE = 1e-3
-"""Part of the largest moment by which rounding in a file may break a rule."""
+"""The error that rounding in a file may cause, as a fraction of the largest moment."""
 
 
 ROUNDING = 1e-9
-"""Part of the largest moment by which numbers that were computed, not rounded for a file, may be off."""
+"""The error of numbers that were computed, not rounded for a file, as a fraction of the largest moment."""
 
 
 _CONVERGED = 1e-20
-"""Part of a tensor's largest entry below which a product of inertia changes no moment."""
-_MOST_SWEEPS = 30
-"""Five are usual."""
+"""A product of inertia below this fraction of the tensor's largest entry changes no moment."""
+_MAX_SWEEPS = 30
+"""The maximum number of sweeps; five are usual."""
 
 
 def largest_entry(tensor: Array | Matrix) -> float:
@@ -56,16 +56,16 @@ def relative_moments(tensor: Array | Matrix) -> Vector3:
     if not largest > 0:
         return 0.0, 0.0, 0.0
     rows = [[float(entry) / largest for entry in row] for row in tensor]
-    for _ in range(_MOST_SWEEPS):
+    for _ in range(_MAX_SWEEPS):
         if max(abs(rows[0][1]), abs(rows[0][2]), abs(rows[1][2])) < _CONVERGED:
             break
-        for p, q, other in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
-            _rotate(rows, p, q, other)
+        for p, q, other_axis in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
+            _rotate(rows, p, q, other_axis)
     small, middle, large = sorted(rows[axis][axis] for axis in range(3))
     return small, middle, large
 
 
-def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
+def _rotate(rows: list[list[float]], p: int, q: int, other_axis: int) -> None:
     """Rotate a symmetric matrix in place so that its entry (p, q) becomes zero."""
     product = rows[p][q]
     if abs(product) < _CONVERGED:
@@ -74,12 +74,12 @@ def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
     tangent = copysign(1.0, ratio) / (abs(ratio) + hypot(1.0, ratio))
     cosine = 1.0 / hypot(1.0, tangent)
     sine = tangent * cosine
-    first, second = rows[p][other], rows[q][other]
+    first, second = rows[p][other_axis], rows[q][other_axis]
     rows[p][p] -= tangent * product
     rows[q][q] += tangent * product
     rows[p][q] = rows[q][p] = 0.0
-    rows[p][other] = rows[other][p] = cosine * first - sine * second
-    rows[q][other] = rows[other][q] = sine * first + cosine * second
+    rows[p][other_axis] = rows[other_axis][p] = cosine * first - sine * second
+    rows[q][other_axis] = rows[other_axis][q] = sine * first + cosine * second
 
 
 def is_positive_definite(tensor: Array | Matrix) -> bool:
@@ -96,8 +96,8 @@ def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
             the largest entry is used.
     """
     largest = largest_entry(tensor)
-    allowed = max(ROUNDING * largest, min(rounding, TOLERANCE * largest))
-    return relative_moments(tensor)[0] * largest < -allowed
+    max_error = max(ROUNDING * largest, min(rounding, TOLERANCE * largest))
+    return relative_moments(tensor)[0] * largest < -max_error
 
 
 def triangle_excess(tensor: Array | Matrix) -> float:
@@ -119,15 +119,15 @@ def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
     Returns:
         Pairs of name (``ixy``, ``ixz``, ``iyz``) and limit in kg m2.
     """
-    found = []
+    excessive = []
     for name, i, j, k in (("ixy", 0, 1, 2), ("ixz", 0, 2, 1), ("iyz", 1, 2, 0)):
         first, second, third = (float(tensor[axis][axis]) for axis in (i, j, k))
         if min(first, second, third) <= 0:
             continue
         limit = min(third / 2, sqrt(first * second))
         if abs(float(tensor[i][j])) > limit * (1 + TOLERANCE):
-            found.append((name, limit))
-    return found
+            excessive.append((name, limit))
+    return excessive
 
 
 def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
@@ -141,17 +141,17 @@ def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
         box: the box, in m.
         mass: the mass in kg.
     """
-    ends = zip(center, box.low, box.high, strict=True)
-    return mass * sum(max(abs(low - middle), abs(high - middle)) ** 2 for middle, low, high in ends)
+    coordinates = zip(center, box.low, box.high, strict=True)
+    return mass * sum(max(abs(low - middle), abs(high - middle)) ** 2 for middle, low, high in coordinates)
 
 
 def problems(properties: MassProperties) -> list[Phrase]:
     """Return the reasons why mass properties cannot belong to a body; empty if they can."""
-    found = []
+    reasons = []
     if not properties.mass > 0:
-        found.append(phrase("the mass is not positive"))
+        reasons.append(phrase("the mass is not positive"))
     if not is_positive_definite(properties.inertia):
-        found.append(phrase("the inertia tensor is not positive definite"))
+        reasons.append(phrase("the inertia tensor is not positive definite"))
     elif triangle_excess(properties.inertia) > TOLERANCE:
-        found.append(phrase("one principal moment of inertia is larger than the sum of the other two"))
-    return found
+        reasons.append(phrase("one principal moment of inertia is larger than the sum of the other two"))
+    return reasons

@@ -1,4 +1,4 @@
-"""A fast reader of OBJ files without unusual content.
+"""A fast reader of OBJ files that have only common content.
 
 Importing trimesh takes longer than reading most files.
 """
@@ -12,8 +12,8 @@ from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
 from linkwright.geometry.polyhedron import Faces
 from linkwright.loading.deferred import lazy_pattern
 
-_OF_TEXTURES = lazy_pattern(rb"/\S*")
-"""The numbers after that of a vertex: those of its texture coordinates and its normal."""
+_TEXTURE_AND_NORMAL = lazy_pattern(rb"/\S*")
+"""The indices of texture coordinates and normals that follow the index of a vertex."""
 
 
 def read_obj(data: bytes) -> PlainMesh | None:
@@ -47,7 +47,7 @@ def _mesh(vertices: list[bytes], polygons: list[bytes]) -> PlainMesh:
 
 def _faces(polygons: list[bytes]) -> Faces:
     counts = np.array([len(line.split()) for line in polygons])
-    corners = parse_numbers(_OF_TEXTURES.sub(b"", b" ".join(polygons)).decode(), np.int64)
+    corners = parse_numbers(_TEXTURE_AND_NORMAL.sub(b"", b" ".join(polygons)).decode(), np.int64)
     if counts.min() < 3 or counts.sum() != len(corners):
         raise UnsupportedContent
     return fans(corners - 1, counts)

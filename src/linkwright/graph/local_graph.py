@@ -37,8 +37,8 @@ class LocalGraph(GraphQueries):
             warning is logged.
 
     Attributes:
-        makers: the nodes that created other nodes, such as those of controllers, by the logger names of the created
-            nodes.
+        creators: the logger name of the node that created another node, such as the node of a controller, by the
+            logger name of the created node.
     """
 
     def __init__(
@@ -160,7 +160,7 @@ class LocalGraph(GraphQueries):
                     transport.open_node(node.identity)
             for endpoint in self.bus.endpoints():
                 if not endpoint.node.stays_inside:
-                    _open(transport, endpoint)
+                    _open_endpoint(transport, endpoint)
             if self._watches_lost:
                 transport.watch_lost(self._on_lost_publisher)
         transport.watch(self._on_outside_change)
@@ -181,7 +181,7 @@ class LocalGraph(GraphQueries):
         with self._lock:
             self.bus.add(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
-                _open(self._transport, endpoint)
+                _open_endpoint(self._transport, endpoint)
         self.notify_change()
 
     def remove(self, endpoint: Endpoint) -> None:
@@ -189,7 +189,7 @@ class LocalGraph(GraphQueries):
         with self._lock:
             self.bus.remove(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
-                _close(self._transport, endpoint)
+                _close_endpoint(self._transport, endpoint)
         self.notify_change()
 
     def watch_lost(self) -> None:
@@ -224,10 +224,12 @@ class LocalGraph(GraphQueries):
         """Destroy every node and drop undelivered messages. After this no code of the graph runs."""
         transport = self._end()
         if transport is not None:
-            left: Future[None] = Future()
-            thread = threading.Thread(target=_close_transport, args=(transport, left), name="linkwright-graph-close")
+            transport_closed: Future[None] = Future()
+            thread = threading.Thread(
+                target=_close_transport, args=(transport, transport_closed), name="linkwright-graph-close"
+            )
             thread.start()
-            await left
+            await transport_closed
             thread.join()
         if self._dispatcher is not None:
             await self._dispatcher.join()
@@ -260,14 +262,14 @@ class LocalGraph(GraphQueries):
         return transport
 
 
-def _close_transport(transport: Transport, left: Future[None]) -> None:
+def _close_transport(transport: Transport, transport_closed: Future[None]) -> None:
     try:
         transport.close()
     finally:
-        left.set_result(None)
+        transport_closed.set_result(None)
 
 
-def _open(transport: Transport, endpoint: Endpoint) -> None:
+def _open_endpoint(transport: Transport, endpoint: Endpoint) -> None:
     if isinstance(endpoint, Publisher):
         transport.open_publisher(endpoint)
     elif isinstance(endpoint, Subscription):
@@ -280,7 +282,7 @@ def _open(transport: Transport, endpoint: Endpoint) -> None:
         transport.open_presence(endpoint)
 
 
-def _close(transport: Transport, endpoint: Endpoint) -> None:
+def _close_endpoint(transport: Transport, endpoint: Endpoint) -> None:
     if isinstance(endpoint, Publisher):
         transport.close_publisher(endpoint)
     elif isinstance(endpoint, Subscription):

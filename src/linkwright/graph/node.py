@@ -117,7 +117,9 @@ class Node(NodeParameters, NodeQueries):
                 identity.full_name,
             )
             store = ParameterStore(
-                _by_name(parameters or {}), allow_undeclared=allow_undeclared_parameters, on_change=events.publish
+                _values_by_name(parameters or {}),
+                allow_undeclared=allow_undeclared_parameters,
+                on_change=events.publish,
             )
             NodeParameters.__init__(self, store)
             if automatically_declare_parameters_from_overrides:
@@ -143,14 +145,14 @@ class Node(NodeParameters, NodeQueries):
             return False
         return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
 
-    def __own(self, name: str, usual: bool, description: str) -> bool:
+    def __own(self, name: str, default: bool, description: str) -> bool:
         """Return the value of a read-only boolean parameter that configures the node itself.
 
-        If the parameter is not declared, it is declared with the default `usual`.
+        If the parameter is not declared, it is declared with the value `default`.
         """
         if not NodeParameters.has_parameter(self, name):
             NodeParameters.declare_parameter(
-                self, name, usual, ParameterDescriptor(description=description, read_only=True)
+                self, name, default, ParameterDescriptor(description=description, read_only=True)
             )
         return bool(NodeParameters.get_parameter(self, name).value)
 
@@ -246,8 +248,8 @@ class Node(NodeParameters, NodeQueries):
         """
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "publisher", name, QoSProfile.of(qos_profile), qos_overriding_options)
-        others = _profiles(self.get_subscriptions_info_by_topic, name)
-        qos = best_available(qos, others, publisher=True)
+        peer_profiles = _endpoint_profiles(self.get_subscriptions_info_by_topic, name)
+        qos = best_available(qos, peer_profiles, publisher=True)
         publisher: Publisher[M] = publisher_class(
             self.__handle, msg_type, name, qos, callback_group, event_callbacks=event_callbacks
         )
@@ -288,8 +290,8 @@ class Node(NodeParameters, NodeQueries):
         """
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "subscription", name, QoSProfile.of(qos_profile), qos_overriding_options)
-        others = _profiles(self.get_publishers_info_by_topic, name)
-        qos = best_available(qos, others, publisher=False)
+        peer_profiles = _endpoint_profiles(self.get_publishers_info_by_topic, name)
+        qos = best_available(qos, peer_profiles, publisher=False)
         subscription: Subscription[M] = Subscription(
             self.__handle, msg_type, name, qos, callback, callback_group, raw=raw, event_callbacks=event_callbacks
         )
@@ -491,13 +493,13 @@ class Node(NodeParameters, NodeQueries):
         self.destroy_node()
 
 
-def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str, Any]:
+def _values_by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str, Any]:
     if isinstance(parameters, Mapping):
         return parameters
     return {parameter.name: parameter.value for parameter in parameters}
 
 
-def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
+def _endpoint_profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
     """Iterate over the QoS profiles of a topic's endpoints, in this process and outside.
 
     The graph is queried only when the first profile is needed.
@@ -508,7 +510,7 @@ def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -
 P = ParamSpec("P")
 
 
-def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable[Concatenate[Graph, P], Node]:
+def _node_factory(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable[Concatenate[Graph, P], Node]:
     """Return a method of `Graph` that creates a node of the given class.
 
     The method takes the arguments of that class after the graph.
@@ -529,4 +531,4 @@ class Graph(LocalGraph):
     can be their dispatcher. The arguments are those of `LocalGraph`.
     """
 
-    create_node = _made_by(Node)
+    create_node = _node_factory(Node)

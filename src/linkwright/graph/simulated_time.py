@@ -41,7 +41,7 @@ class SimulatedTime:
         else:
             handle.logger.error(f"Invalid type for parameter '{PARAMETER}' {value!r} should be bool")
         parameters.add_on_set_parameters_callback(self._check)
-        parameters.add_post_set_parameters_callback(self._changed)
+        parameters.add_post_set_parameters_callback(self._on_change)
 
     def _check(self, parameters: list[Any]) -> Any:
         for parameter in parameters:
@@ -51,15 +51,15 @@ class SimulatedTime:
                 )
         return SetParametersResult(successful=True)
 
-    def _changed(self, parameters: list[Any]) -> None:
+    def _on_change(self, parameters: list[Any]) -> None:
         for parameter in parameters:
             if parameter.name == PARAMETER:
                 self._follow(parameter.value)
 
-    def _follow(self, simulated: bool) -> None:
-        if simulated == (self._subscription is not None):
+    def _follow(self, use_simulated_time: bool) -> None:
+        if use_simulated_time == (self._subscription is not None):
             return
-        if simulated:
+        if use_simulated_time:
             self._subscription = _ClockSubscription(self._handle, self._clock)
             self._clock.set_ros_time_is_active(True)
             self._handle.add(self._subscription)
@@ -78,7 +78,7 @@ class _ClockSubscription(Subscription[Any]):
 
     def enqueue(self, message: Any, info: Any = None) -> None:
         """Set the clock to the time in the message, instead of queuing the message for a callback."""
-        if type(message) is self._as_it_is:
+        if type(message) is self._plain_type:
             self._move(message)
             return
         call = self._prepare_call(message)

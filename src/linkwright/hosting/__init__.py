@@ -1,4 +1,4 @@
-"""Nodes and viewers that run in this process.
+"""Nodes and viewers that run in the launcher's process.
 
-This includes starting and ending them, their log, signals, and live reload of models.
+The package starts and ends them, and contains their log, signal handling, and live reload of robot descriptions.
 """

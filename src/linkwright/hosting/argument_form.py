@@ -1,4 +1,4 @@
-"""The form for a description that cannot be expanded because arguments have no value."""
+"""The form that asks for the arguments of a description that cannot be expanded without them."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from linkwright.packages import PackageFinder
 if TYPE_CHECKING:
     from linkwright.page.protocol.description import ArgumentForm
 
-_MOST_TRIED = 12
-"""Sets of values with which the description is expanded; no user chooses between more."""
+_MAX_TRIED_SETS = 12
+"""The maximum number of argument sets that are tried, because users do not choose between more."""
 
 
 def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
-    """Return the arguments that a description needs, and argument sets of callers that give a robot.
+    """Return the arguments that a description needs, and argument sets with which it can be expanded.
 
-    This takes as long as expanding the description with each argument set, and may run in another thread.
+    The description is expanded with each argument set, which takes time, so call this function in another thread.
 
     Args:
-        call: the use of xacro that failed.
-        finder: finds packages.
-        findings: the errors of that use.
+        call: the xacro call that failed.
+        finder: the finder of ROS packages.
+        findings: the errors of the failed call.
 
     Returns:
-        The form, or None if no other values are known to change the result.
+        The form, or None if no argument is known to change the result.
     """
     from linkwright.descriptions.argument_sets import argument_sets
     from linkwright.lint.argument_sets import undeclared_argument
@@ -35,21 +35,25 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
 
     if call.path.suffix == ".sdf":
         return None
-    given = dict(call.arguments)
+    given_values = dict(call.arguments)
     sets: list[dict[str, str]] = []
-    for argument_set in argument_sets(call.path, finder)[:_MOST_TRIED]:
-        values = {**given, **argument_set.values}
-        if argument_set.values and values not in sets and _expands(call, values, finder):
+    for argument_set in argument_sets(call.path, finder)[:_MAX_TRIED_SETS]:
+        values = {**given_values, **argument_set.values}
+        if argument_set.values and values not in sets and _can_expand(call, values, finder):
             sets.append(values)
-    asked = [name for finding in findings if (name := undeclared_argument(finding))]
-    names = list(dict.fromkeys([*asked, *(name for values in sets for name in values), *(given if asked else ())]))
+    missing_names = [name for finding in findings if (name := undeclared_argument(finding))]
+    names = list(
+        dict.fromkeys(
+            [*missing_names, *(name for values in sets for name in values), *(given_values if missing_names else ())]
+        )
+    )
     if not names:
         return None
     choices = [ArgumentChoice(_label(values, sets), values) for values in sets]
-    return ArgumentForm(call.path.name, names, sets[0] if sets else given, choices)
+    return ArgumentForm(call.path.name, names, sets[0] if sets else given_values, choices)
 
 
-def _expands(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) -> bool:
+def _can_expand(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) -> bool:
     from linkwright.descriptions import examine
 
     try:
@@ -59,6 +63,6 @@ def _expands(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) 
 
 
 def _label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
-    """Return a label for an argument set: its values for the arguments in which the sets differ."""
-    apart = [name for name in values if any(other.get(name) != values[name] for other in sets)]
-    return " ".join(f"{name}:={values[name]}" for name in apart or values)
+    """Return a label for an argument set, with its values for the arguments in which the sets differ."""
+    differing_names = [name for name in values if any(other_values.get(name) != values[name] for other_values in sets)]
+    return " ".join(f"{name}:={values[name]}" for name in differing_names or values)

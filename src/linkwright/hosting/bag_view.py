@@ -1,4 +1,4 @@
-"""The view of a recording: in a separate graph, with a timeline in the page."""
+"""The view of a recording, in a separate graph and with a timeline in the page."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 
 def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int | None = None) -> int:
-    """Show a recording until the user ends it.
+    """Show a recording until the user ends the view.
 
     Args:
-        files: the folder or the files of the recording.
+        files: the folder of the recording, or its files.
         options: the options of nodes and viewers.
-        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+        foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
 
     Raises:
-        LinkwrightError: the recording cannot be read; see `linkwright.bag.BagReader`.
+        LinkwrightError: the recording cannot be read, see `linkwright.bag.BagReader`.
     """
-    path, *others = (file.absolute() for file in files)
+    path, *other_files = (file.absolute() for file in files)
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     options = replace(options, title=path.name, history=0)
     log = LaunchLog()
@@ -49,16 +49,16 @@ def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int |
 
         return signals.run(show)
 
-    with BagReader(path, parts=[path, *others] if others else ()) as bag:
+    with BagReader(path, files=[path, *other_files] if other_files else ()) as bag:
         return run_to_end(run, finder, log)
 
 
 class BagView(ModelView):
-    """A recording on the running event loop: its player and the viewer.
+    """The view of a recording on the running event loop, with a player and a viewer.
 
     Args:
         bag: the recording.
-        finder: finds the packages of the recording's robots.
+        finder: the finder of the packages of the robots in the recording.
         options: the options of nodes and viewers.
         log: the log of the run.
     """
@@ -68,7 +68,7 @@ class BagView(ModelView):
         self._bag = bag
 
     def _publish(self) -> bool:
-        """Prepare the topics of the recording, and return whether the view continues."""
+        """Prepare the topics of the recording, and return whether the view can continue."""
         self.log.diagnostics(self._bag.findings)
         from linkwright.viewer.recorded_robot import published
 

@@ -1,4 +1,4 @@
-"""The view of two descriptions in one scene: the new one as in `view`, the old one translucent."""
+"""The view of two descriptions in one scene, in which the old one is translucent."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
     Args:
         pair: the two descriptions, which the caller closes.
         options: the options of nodes and viewers.
-        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+        foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
 
     Raises:
-        LinkwrightError: the old description is from a commit and cannot be read.
+        LinkwrightError: the old description comes from a commit, and cannot be read.
     """
     options = replace(options, title=f"{pair.old.title} → {pair.new.title}")
     log = LaunchLog()
     if pair.old.revision is not None:
-        pair.old.read()  # A version in a commit cannot be corrected while the view is shown.
+        pair.old.read()  # The user cannot fix a version in a commit while the view is shown.
 
     def run(signals: SignalWatch) -> bool:
         async def show() -> bool:
@@ -51,7 +51,7 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
 
 
 class ComparedView(ModelView):
-    """The view of two descriptions on the running event loop, which reloads both files on changes.
+    """The view of two descriptions on the running event loop, which reloads both when their files change.
 
     Args:
         pair: the two descriptions.
@@ -60,9 +60,9 @@ class ComparedView(ModelView):
     """
 
     def __init__(self, pair: Pair, options: HostOptions, log: LaunchLog) -> None:
-        super().__init__(_call_of(pair.new), pair.new.finder, options, log)
+        super().__init__(_xacro_call(pair.new), pair.new.finder, options, log)
         self._pair = pair
-        self._old_call = _call_of(pair.old)
+        self._old_call = _xacro_call(pair.old)
         self._old = _OldDescriptions(pair.old.finder, self.descriptions.library)
         self.reload = LiveReload(self.descriptions, self._show_findings, log)
         self._old_reload = LiveReload(self._old, self._show_findings, log)
@@ -79,10 +79,10 @@ class ComparedView(ModelView):
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._attach)
 
     def _viewer_config(self) -> RvizConfig:
-        from linkwright.panels.comparison.feature import show_old
+        from linkwright.panels.comparison.feature import add_old_robot
 
         config = super()._viewer_config()
-        show_old(config, self._pair.old.title)
+        add_old_robot(config, self._pair.old.title)
         return config
 
     def _attach(self, viewer: Viewer) -> None:
@@ -122,18 +122,18 @@ class ComparedView(ModelView):
 
 
 class _OldDescriptions(Descriptions):
-    """Descriptions whose texts differ from those of the new file, even if both files are equal."""
+    """Descriptions with texts that differ from those of the new file, even if both files are equal."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
         super().__init__(finder)
         self._library = library
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description, and return the text that identifies it."""
-        from linkwright.descriptions.pairs import text_of_old
+        """Store a description, and return its text, which identifies it."""
+        from linkwright.descriptions.pairs import old_description_key
 
-        return super().store(call, description, text_of_old(description) if text is None else text)
+        return super().store(call, description, old_description_key(description) if text is None else text)
 
 
-def _call_of(model: Model) -> XacroCall:
+def _xacro_call(model: Model) -> XacroCall:
     return XacroCall(model.path, tuple(model.values.items()))

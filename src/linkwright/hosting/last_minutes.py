@@ -1,7 +1,7 @@
-"""The default size of the live history.
+"""The default size of the viewer's history.
 
-The constant has its own module because the help of commands needs it and must be displayed quickly.
+The constant has its own module because the help of commands needs it, and must appear quickly.
 """
 
 DEFAULT_HISTORY = 256_000_000
-"""Bytes of live history that a viewer stores; the viewer's guide gives the corresponding time."""
+"""The bytes of messages that a viewer stores; the guide of the viewer states the time that they cover."""

@@ -1,6 +1,6 @@
-"""The log of a launch, and the location of log files.
+"""The log of a launch, and the folder of log files.
 
-The log contains the lines of the launcher, processes and nodes, and diagnostics.
+The log contains the lines of the launcher, of processes and of nodes, and findings.
 """
 
 from __future__ import annotations
@@ -25,53 +25,53 @@ SCREEN = "screen"
 LOG = "log"
 OWN_LOG = "own_log"
 SHARED_OWN_LOG = "own_log of both"
-"""The file of a process for both its streams, beside one for each."""
+"""The log file with both streams of a process, in addition to one for each stream."""
 
 LAUNCH_LOG = "launch.log"
 
 _LEVEL_COLOURS = {"DEBUG": "32", "WARNING": "33", "ERROR": "31"}
-_OWN = frozenset({OWN_LOG, SHARED_OWN_LOG})
+_OWN_FILES = frozenset({OWN_LOG, SHARED_OWN_LOG})
 
 _OUTPUT_MODES: Mapping[str, tuple[frozenset[str], frozenset[str]]] = {
     "screen": (frozenset({SCREEN}), frozenset({SCREEN})),
     "log": (frozenset({LOG}), frozenset({LOG, SCREEN})),
     "both": (frozenset({SCREEN, LOG}), frozenset({SCREEN, LOG})),
-    "own_log": (_OWN, _OWN),
-    "full": (_OWN | {SCREEN, LOG}, _OWN | {SCREEN, LOG}),
+    "own_log": (_OWN_FILES, _OWN_FILES),
+    "full": (_OWN_FILES | {SCREEN, LOG}, _OWN_FILES | {SCREEN, LOG}),
 }
 
 OUTPUT_MODES = tuple(_OUTPUT_MODES)
 
 
 def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[int, frozenset[str]]:
-    """Return the destinations of a process's stdout (1) and stderr (2), given its ``output`` mode.
+    """Return the destinations of the stdout (1) and stderr (2) of a process for an ``output`` mode.
 
     Raises:
-        KeyError: there is no such mode, stream or destination.
+        KeyError: the mode, a stream or a destination does not exist.
     """
     if isinstance(mode, str):
         stdout, stderr = _OUTPUT_MODES[mode]
         return {1: stdout, 2: stderr}
-    chosen: dict[int, frozenset[str]] = {1: frozenset(), 2: frozenset()}
+    destinations_by_stream: dict[int, frozenset[str]] = {1: frozenset(), 2: frozenset()}
     for stream, destinations in mode.items():
         names = frozenset([destinations] if isinstance(destinations, str) else destinations)
-        unknown = names - {SCREEN, LOG, OWN_LOG}
-        if unknown:
-            raise KeyError(min(unknown))
+        unknown_names = names - {SCREEN, LOG, OWN_LOG}
+        if unknown_names:
+            raise KeyError(min(unknown_names))
         if stream == "both" and OWN_LOG in names:
             names = names - {OWN_LOG} | {SHARED_OWN_LOG}
-        for number in {"stdout": (1,), "stderr": (2,), "both": (1, 2)}[stream]:
-            chosen[number] |= names
-    return chosen
+        for stream_number in {"stdout": (1,), "stderr": (2,), "both": (1, 2)}[stream]:
+            destinations_by_stream[stream_number] |= names
+    return destinations_by_stream
 
 
 class LaunchLog:
     """The log of one launch.
 
-    On the screen, lines of the launcher and of nodes are written to stderr, and the output of processes to the stream
-    that they use. In the folder of the launch, below `log_base`, ``launch.log`` contains all lines of the launcher and
-    all output directed to the log; processes with their own log have a file next to it. The variables
-    ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change the format of lines, as in ROS.
+    On the screen, lines of the launcher and of nodes go to stderr. The output of a process goes to the stream that the
+    process uses. In the log folder of the launch, ``launch.log`` contains all lines of the launcher, and all output
+    with the destination `LOG`. Processes with their own log have a file next to it. As in ROS, the environment
+    variables ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change the format of lines.
 
     Args:
         stdout: the stream for the output of processes.
@@ -81,38 +81,38 @@ class LaunchLog:
 
     def __init__(self, stdout: IO[str] | None = None, stderr: IO[str] | None = None, *, debug: bool = False) -> None:
         self._streams = {1: stdout or sys.stdout, 2: stderr or sys.stderr}
-        self._colour = wants_colour(self._streams[2])
+        self._uses_colour = wants_colour(self._streams[2])
         self._debug = debug
         self._files: dict[str, IO[str] | None] = {}
         self._folder: Path | None = None
         self._has_folder = True
         self._closed = False
-        self._screen_line = line_format(os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT"), FORMATS)
-        self._file_line = line_format(os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT"), FILE_FORMATS)
+        self._format_screen_line = line_formatter(os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT"), FORMATS)
+        self._format_file_line = line_formatter(os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT"), FILE_FORMATS)
 
     @property
     def folder(self) -> Path:
         """The folder for the log files of this launch, or the folder of all logs if it cannot be created."""
         if self._folder is None:
-            base = log_base()
+            base_folder = log_base()
             try:
-                self._folder = new_log_folder(base)
+                self._folder = new_log_folder(base_folder)
             except OSError as error:
-                self._folder = base
+                self._folder = base_folder
                 self._files[LAUNCH_LOG] = None
                 self._has_folder = False
-                self._unwritable(base, error)
+                self._report_unwritable(base_folder, error)
         return self._folder
 
     def begin(self) -> None:
-        """Log the first lines: the folder of the log files, and the log level."""
+        """Log the first lines, which name the folder of the log files and the log level."""
         folder = self.folder
         if self._has_folder:
             self.info_line("launch", f"All log files can be found below {folder}")
         self.info_line("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
     def debug_line(self, name: str, text: str) -> None:
-        """Log a detail for users who debug a launch file, if debug lines are enabled."""
+        """Log a line for users who debug a launch file, if debug lines are enabled."""
         if self._debug:
             self._own_line("DEBUG", name, text)
 
@@ -129,7 +129,7 @@ class LaunchLog:
         self._own_line("ERROR", name, text)
 
     def announce(self, line: str) -> None:
-        """Print a line to stdout and flush it, for programs that read our output."""
+        """Print a line to stdout and flush the stream, for programs that read the output."""
         self._print(1, line)
 
     def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -138,14 +138,14 @@ class LaunchLog:
             print_diagnostics(diagnostics, self._streams[2])
 
     def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
-        """Log a record of a node in this process, in rcutils' format after the name of its process."""
+        """Log a record of a node in this process: its process name, and the record in the format of rcutils."""
         from linkwright.graph import console_line
 
         line = f"[{process}] {console_line(record)}"
         if SCREEN in destinations:
             colour = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
-            self._print(2, self._paint(line, colour))
-        self._file(process, 2, line, destinations)
+            self._print(2, self._colourize(line, colour))
+        self._write_to_files(process, 2, line, destinations)
 
     def process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
         """Log a line that a process wrote.
@@ -153,12 +153,12 @@ class LaunchLog:
         Args:
             process: the name of the process, such as ``talker-1``.
             stream: 1 for stdout, 2 for stderr.
-            line: the line as it is to be shown.
-            destinations: a set of `SCREEN`, `LOG` and `OWN_LOG`.
+            line: the line as it is displayed.
+            destinations: those of the launch log's destinations to which the line is written.
         """
         if SCREEN in destinations:
             self._print(stream, line)
-        self._file(process, stream, line, destinations)
+        self._write_to_files(process, stream, line, destinations)
 
     def close(self) -> None:
         """Close the log files."""
@@ -169,10 +169,10 @@ class LaunchLog:
         self._files.clear()
 
     def _own_line(self, level: str, name: str, text: str) -> None:
-        self._print(2, self._paint(self._screen_line(level, name, text), _LEVEL_COLOURS.get(level)))
-        self._write(LAUNCH_LOG, self._file_line(level, name, text))
+        self._print(2, self._colourize(self._format_screen_line(level, name, text), _LEVEL_COLOURS.get(level)))
+        self._write(LAUNCH_LOG, self._format_file_line(level, name, text))
 
-    def _file(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
+    def _write_to_files(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
         if LOG in destinations:
             self._write(LAUNCH_LOG, f"{time.time():.7f} {line}")
         if OWN_LOG in destinations:
@@ -184,8 +184,8 @@ class LaunchLog:
         with suppress(OSError):  # the reader (such as head) may have exited, or the disk be full
             print(line, file=self._streams[stream], flush=True)
 
-    def _paint(self, line: str, colour: str | None) -> str:
-        return f"\x1b[{colour}m{line}\x1b[0m" if colour and self._colour else line
+    def _colourize(self, line: str, colour: str | None) -> str:
+        return f"\x1b[{colour}m{line}\x1b[0m" if colour and self._uses_colour else line
 
     def _write(self, name: str, line: str) -> None:
         if self._closed:
@@ -200,18 +200,18 @@ class LaunchLog:
                 print(line, file=file, flush=True)
             except OSError as error:  # A full disk must not end the launch.
                 self._files[name] = None
-                self._unwritable(self.folder / name, error)
+                self._report_unwritable(self.folder / name, error)
 
     def _open(self, path: Path) -> IO[str] | None:
         try:
             return path.open("a", encoding="utf-8")
         except OSError as error:
-            self._unwritable(path, error)
+            self._report_unwritable(path, error)
             return None
 
-    def _unwritable(self, path: Path, error: OSError) -> None:
-        problem = phrase("log file '{path}' cannot be written: {strerror}", path=path, strerror=foreign(error.strerror))
-        self.diagnostics([Diagnostic("LAUNCH145", problem, severity=Severity.WARNING)])
+    def _report_unwritable(self, path: Path, error: OSError) -> None:
+        message = phrase("log file '{path}' cannot be written: {strerror}", path=path, strerror=foreign(error.strerror))
+        self.diagnostics([Diagnostic("LAUNCH145", message, severity=Severity.WARNING)])
 
 
 FORMATS = {
@@ -221,20 +221,21 @@ FORMATS = {
 FILE_FORMATS = {"default": FORMATS["default_with_timestamp"]}
 
 Line = Callable[[str, str, str], str]
-"""Formats a line from a level, a logger's name and a text."""
+"""Returns a formatted line for a level, the name of a logger, and a text."""
 
 
-def line_format(chosen: str | None, named: dict[str, str]) -> Line:
-    """Return a function that formats lines.
+def line_formatter(format_name: str | None, formats: dict[str, str]) -> Line:
+    """Return a function that formats log lines.
 
     Args:
-        chosen: a name in `named`, or a format with the fields of Python's log records in braces; None for the default.
-        named: formats by name.
+        format_name: a key of `formats`, or a format with the fields of Python's log records in braces; None for the
+            default.
+        formats: formats by name, including ``default``.
 
     Returns:
-        The function, which uses the default format if the chosen one has unknown fields.
+        The function, which uses the default format if the given format has unknown fields.
     """
-    template = named.get(chosen or "default", chosen or "")
+    template = formats.get(format_name or "default", format_name or "")
 
     def line(level: str, name: str, text: str) -> str:
         created = time.time()
@@ -250,7 +251,7 @@ def line_format(chosen: str | None, named: dict[str, str]) -> Line:
         try:
             return template.format(**fields)
         except (LookupError, ValueError):
-            return named["default"].format(**fields)
+            return formats["default"].format(**fields)
 
     return line
 
@@ -259,25 +260,25 @@ LATEST = "latest"
 
 
 def log_base(environment: Mapping[str, str] | None = None) -> Path:
-    """Return the folder of all logs: ``ROS_LOG_DIR``, else ``ROS_HOME/log``, else ``~/.ros/log``."""
+    """Return the folder of all logs: ``ROS_LOG_DIR``, or ``ROS_HOME/log``, or ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
-    given = environment.get("ROS_LOG_DIR")
-    if given:
-        return Path(given).expanduser()
+    log_folder = environment.get("ROS_LOG_DIR")
+    if log_folder:
+        return Path(log_folder).expanduser()
     home = environment.get("ROS_HOME")
     return (Path(home).expanduser() if home else Path.home() / ".ros") / "log"
 
 
 def new_log_folder(base: Path) -> Path:
-    """Create the folder of one launch, and return its path.
+    """Create the log folder of a launch, and return its path.
 
-    The name consists of the date, the machine and the process; ``latest`` links to the folder.
+    Its name consists of the date, the computer and the process. The link ``latest`` refers to the newest folder.
 
     Raises:
         OSError: the folder cannot be created.
     """
     while True:
-        # Folder names contain the local time, as in ROS.
+        # Folder names contain local time, as in ROS.
         seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_SECOND)
         stamp = f"{time.strftime('%Y-%m-%d-%H-%M-%S', time.localtime(seconds))}-{nanoseconds // 1000:06d}"
         folder = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
@@ -290,8 +291,8 @@ def new_log_folder(base: Path) -> Path:
 
 
 def _link_latest(base: Path, folder: Path) -> None:
-    waiting = base / f".{LATEST}-{os.getpid()}"
+    temporary_link = base / f".{LATEST}-{os.getpid()}"
     with suppress(OSError, NotImplementedError):  # Some file systems do not support links.
-        waiting.unlink(missing_ok=True)
-        waiting.symlink_to(folder.name)
-        waiting.replace(base / LATEST)
+        temporary_link.unlink(missing_ok=True)
+        temporary_link.symlink_to(folder.name)
+        temporary_link.replace(base / LATEST)

@@ -1,4 +1,4 @@
-"""The ROS 2 network: joining it, and warnings of node names that are used twice."""
+"""The ROS 2 network: joining it, and warnings about node names that it contains twice."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
     from linkwright.hosting.plans import Supervisor
 
 
-_SWITCH = "LINKWRIGHT_DDS"
+_SWITCH_VARIABLE = "LINKWRIGHT_DDS"
 _DELAY_SECONDS = 0.8
-"""With a viewer the page and the robot come first: joining the network takes a processor for a fifth of a second."""
+"""The delay with a viewer, so that the page and the robot appear before joining, which keeps a processor busy."""
 
 
 class Network:
     """Joins the graph of a launch to the ROS 2 network.
 
     Args:
-        session: the launch.
+        session: the run whose nodes join the network.
 
     Attributes:
-        domain_id: the ROS_DOMAIN_ID of the network; None if it was not joined.
+        domain_id: the ROS_DOMAIN_ID of the network; None as long as it is not joined.
 
     Raises:
-        LinkwrightError: DDS121, the network must be joined with security.
+        LinkwrightError: DDS121, the environment requires a network with security.
     """
 
     def __init__(self, session: Supervisor) -> None:
@@ -45,13 +45,13 @@ class Network:
         self.domain_id: int | None = None
 
     def offer(self, graph: Graph) -> None:
-        """Set the graph that is joined to the network."""
+        """Set the graph that will join the network."""
         self._graph = graph
 
     def join_soon(self, *, with_viewer: bool) -> None:
-        """Join the network after a delay, once.
+        """Join the network after a delay, unless this was already requested.
 
-        Nothing happens if there is no graph, or if joining is switched off.
+        This method has no effect if there is no graph, or if joining is disabled.
         """
         if self._graph is None or self._handle is not None or not self._is_enabled():
             return
@@ -59,13 +59,13 @@ class Network:
         self._handle = loop.call_later(_DELAY_SECONDS if with_viewer else 0.0, self._join)
 
     def close(self) -> None:
-        """Cancel joining the network."""
+        """Cancel a pending attempt to join the network."""
         if self._handle is not None:
             self._handle.cancel()
         self._graph = None
 
     def _is_enabled(self) -> bool:
-        return self._session.options.network and os.environ.get(_SWITCH) != "0"
+        return self._session.options.network and os.environ.get(_SWITCH_VARIABLE) != "0"
 
     def _join(self) -> None:
         graph = self._graph
@@ -82,19 +82,19 @@ class Network:
             )
 
 
-_GATHER_SECONDS = 0.3
-"""Seconds to collect names, because nodes of another launch are discovered one by one: one warning lists them all."""
-_LISTED = 6
-"""The most names in the warning, which is one line of the terminal."""
+_COLLECTION_SECONDS = 0.3
+"""The seconds to collect names: nodes of another launch are discovered one by one, and one warning lists all."""
+_MAX_LISTED_NAMES = 6
+"""The maximum number of names in the warning, so that it fits on one line of the terminal."""
 
 
 class SharedNames:
-    """Warns about node names that a launch has in common with other programs in the network.
+    """Warns about node names that a launch shares with other programs in the network.
 
     Args:
-        network: the network, whose domain the warning names.
+        network: the network, which provides the domain for the warning.
         log: the log for the warning.
-        show: called when `findings` have changed.
+        show: called after `findings` have changed.
     """
 
     def __init__(self, network: Network, log: LaunchLog, show: Callable[[], None]) -> None:
@@ -106,28 +106,28 @@ class SharedNames:
         self._reported: frozenset[str] = frozenset()
         self._report_timer: asyncio.TimerHandle | None = None
         self.findings: list[Diagnostic] = []
-        """The findings for the page: one as long as names are shared, else none."""
+        """The findings for the page: one finding while names are shared, otherwise none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Set the full names of the nodes that exist twice now; may be called from any thread."""
+        """Set the full names of the nodes that exist twice; this method may be called from any thread."""
         with suppress(RuntimeError):  # The event loop may have been closed.
-            self._loop.call_soon_threadsafe(self._gather, names)
+            self._loop.call_soon_threadsafe(self._schedule_report, names)
 
     def close(self) -> None:
         """Cancel a pending warning."""
         if self._report_timer is not None:
             self._report_timer.cancel()
 
-    def _gather(self, names: frozenset[str]) -> None:
+    def _schedule_report(self, names: frozenset[str]) -> None:
         self._names = names
         if self._report_timer is None:
-            self._report_timer = self._loop.call_later(_GATHER_SECONDS, self._report)
+            self._report_timer = self._loop.call_later(_COLLECTION_SECONDS, self._report)
 
     def _report(self) -> None:
         self._report_timer = None
-        new, self._reported = self._names - self._reported, self._names
-        if new:
-            (finding,) = translated([self._finding(new)])
+        new_names, self._reported = self._names - self._reported, self._names
+        if new_names:
+            (finding,) = translated([self._finding(new_names)])
             self._log.warning_line("launch", f"{finding.message}; {finding.hint}")
         self.findings = [self._finding(self._names)] if self._names else []
         self._show()
@@ -135,19 +135,20 @@ class SharedNames:
     def _finding(self, names: frozenset[str]) -> Diagnostic:
         domain = self._network.domain_id or 0
         message = phrase(
-            "another launch or program on ROS_DOMAIN_ID {domain} has nodes with the same names, and the two "
+            "another launch or program on ROS_DOMAIN_ID {domain} has nodes with the same names, which "
             "interfere: {names}",
             domain=domain,
-            names=_listed(sorted(names)),
+            names=_list_names(sorted(names)),
         )
         hint = phrase(
-            "give one of them another domain, as in ROS_DOMAIN_ID={other} linkwright launch ...", other=domain + 1
+            "start one of them in another domain, for example with ROS_DOMAIN_ID={other} linkwright launch ...",
+            other=domain + 1,
         )
         return Diagnostic("LAUNCH148", message, hint=hint).with_changes(severity=Severity.WARNING)
 
 
-def _listed(names: list[str]) -> Phrase:
-    listed = joined(names[:_LISTED])
-    if len(names) <= _LISTED:
-        return listed
-    return phrase("{names} and {count} more", names=listed, count=len(names) - _LISTED)
+def _list_names(names: list[str]) -> Phrase:
+    names_text = joined(names[:_MAX_LISTED_NAMES])
+    if len(names) <= _MAX_LISTED_NAMES:
+        return names_text
+    return phrase("{names} and {count} more", names=names_text, count=len(names) - _MAX_LISTED_NAMES)

@@ -1,4 +1,4 @@
-"""The nodes and viewers of this process, for a launch or for the view of one model."""
+"""The nodes and viewers in this process, of a launch or of the view of one robot description."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
 
-_ON_SCREEN = output_destinations("screen")[2]
+_SCREEN_DESTINATIONS = output_destinations("screen")[2]
 
 
 class NodeHost:
-    """Starts, stores and ends the nodes of this process.
+    """Starts and ends the nodes of this process, and keeps track of them.
 
-    The viewer is started before the nodes that were planned with it, so that its page responds as early as possible.
+    A viewer is started before the nodes that were planned with it, so that its page responds early.
     """
 
     def __init__(self, session: Supervisor) -> None:
@@ -41,24 +41,24 @@ class NodeHost:
         self._shared_names: SharedNames | None = None
         self._model_findings: list[Diagnostic] = []
         self._launcher: Node | None = None
-        self._simulated_time = False
+        self._uses_simulated_time = False
         self._process_of_logger: dict[str, str] = {}
         self._destinations: dict[str, frozenset[str]] = {}
-        self._speaking = "launch"
-        self._held_back: list[tuple[str, LogRecord]] | None = None
-        self._starting = asyncio.Lock()
-        self._closing = False
+        self._current_process = "launch"
+        self._delayed_records: list[tuple[str, LogRecord]] | None = None
+        self._start_lock = asyncio.Lock()
+        self._is_closing = False
         self._closed = asyncio.Event()
         self.network = Network(session)
 
     @property
     def is_busy(self) -> bool:
         """Whether any node is running in this process or is planned."""
-        return bool(self._planned or self._running or self._viewers or self._starting.locked())
+        return bool(self._planned or self._running or self._viewers or self._start_lock.locked())
 
     @property
     def has_viewer(self) -> bool:
-        """Whether a viewer runs."""
+        """Whether a viewer is running."""
         return bool(self._viewers)
 
     @property
@@ -79,35 +79,35 @@ class NodeHost:
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node, which calls services and subscribes to topics; created on first use."""
+        """The launcher's own node, which calls services and subscribes to topics; it is created on first access."""
         if self._launcher is None:
             self._launcher = self.graph.create_node(
-                f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._simulated_time}
+                f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._uses_simulated_time}
             )
             self.network.join_soon(with_viewer=self.has_viewer)
         return self._launcher
 
     def use_simulated_time(self, value: bool) -> None:
-        """Switch the launcher's own node between ``/clock`` and system time."""
+        """Set whether the launcher's own node follows ``/clock`` or system time."""
         from linkwright.graph import Parameter
 
-        self._simulated_time = value
+        self._uses_simulated_time = value
         if self._launcher is not None:
             self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
 
     def plan(self, plan: HostedPlan) -> None:
-        """Plan a node, which starts as soon as possible; ignored if the launch is ending."""
-        if not self._closing:
+        """Plan a node, which starts as soon as possible; this has no effect while the launch is ending."""
+        if not self._is_closing:
             self._planned.append(plan)
 
     def forget_planned(self) -> None:
-        """Discard all plans that were not started."""
+        """Discard all plans of nodes that have not been started."""
         self._planned.clear()
 
     async def serve_pages(self) -> None:
-        """Serve the pages of the planned viewers, and meanwhile load the modules that the viewers need.
+        """Serve the pages of the planned viewers, and load the modules that viewers need at the same time.
 
-        If a server cannot listen, the error is raised when its viewer is started.
+        If a server cannot listen on its port, the start of its viewer raises the error.
         """
         planned = [plan for plan in self._planned if plan.is_viewer]
         for plan in planned:
@@ -117,11 +117,11 @@ class NodeHost:
             await asyncio.to_thread(load_viewer)
 
     async def start_planned(self) -> None:
-        """Start all planned nodes, viewers first; other callbacks run between two nodes."""
+        """Start all planned nodes, viewers first, and let other callbacks run between two nodes."""
         if not self._planned:
             return
-        async with self._starting:
-            while self._planned and not self._closing:
+        async with self._start_lock:
+            while self._planned and not self._is_closing:
                 plan = next((hosted_plan for hosted_plan in self._planned if hosted_plan.is_viewer), self._planned[0])
                 self._planned.remove(plan)
                 self._destinations[plan.process_name] = plan.destinations[2]
@@ -136,30 +136,30 @@ class NodeHost:
                         self._windows[plan.process_name] = window
                     self._start_node(plan)
                     await asyncio.sleep(0)
-        if not self._closing:
+        if not self._is_closing:
             self.network.join_soon(with_viewer=self.has_viewer)
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
-        """Show the current findings about model files in the viewers."""
+        """Show the current findings about description files in the viewers."""
         self._model_findings = findings
         self._show_findings()
 
     def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
-        """End the nodes whose owners match, as a signal would end their processes.
+        """End the nodes with a matching owner, as a signal would end their processes.
 
         Args:
-            matcher: returns whether the owner of a node matches.
+            matcher: returns whether the owner of a node is that of a node to end.
         """
-        for plan, running in tuple(self._running.values()):
+        for plan, node in tuple(self._running.values()):
             if matcher(plan.owner):
-                self._stop_node(plan, running)
+                self._stop_node(plan, node)
         for plan in self._viewers.plans():
             if matcher(plan.owner):
                 self._session.spawn(self._stop_viewer(plan, self._viewers.pop_viewer(plan)))
 
     def close_nodes(self) -> None:
-        """End all nodes, and begin to end the viewers."""
-        self._closing = True
+        """End all nodes, and start to end the viewers."""
+        self._is_closing = True
         self._closed.set()
         self.forget_planned()
         self.stop_matching(lambda _: True)
@@ -187,42 +187,44 @@ class NodeHost:
         options = plan.node_options(session.descriptions.library)
         try:
             with self._attribute_records(plan.process_name), self._hide_fatal_records():
-                running = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
+                node = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
         except LinkwrightError as error:
             self._handle_start_failure(plan, error)
             return
-        self._running[plan.process_name] = plan, running
-        self._register(plan.process_name, running, plan.parameters)
-        if isinstance(running, LoadingNode):
-            running.loading = lambda: self._attribute_records(plan.process_name)
-            running.on_loaded.append(lambda loaded, given: self._register(plan.process_name, loaded, given.parameters))
+        self._running[plan.process_name] = plan, node
+        self._register(plan.process_name, node, plan.parameters)
+        if isinstance(node, LoadingNode):
+            node.loading = lambda: self._attribute_records(plan.process_name)
+            node.on_loaded.append(
+                lambda loaded, node_options: self._register(plan.process_name, loaded, node_options.parameters)
+            )
         session.node_started(plan)
-        if isinstance(running, FinishingNode):
-            running.finished.add_done_callback(lambda done: self._finished(plan, running, done))
+        if isinstance(node, FinishingNode):
+            node.finished.add_done_callback(lambda future: self._handle_finish(plan, node, future))
 
-    def _register(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
+    def _register(self, process_name: str, node: RunningNode, parameters: Mapping[str, Any]) -> None:
         from linkwright.nodes.options import NodeWithFiles
 
-        self._process_of_logger[running.node.get_logger().name] = process_name
-        self._bind_descriptions(process_name, running, parameters)
-        if isinstance(running, NodeWithFiles):
-            running.follow_files(FollowedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
-        self._viewers.attach_panel(running)
+        self._process_of_logger[node.node.get_logger().name] = process_name
+        self._bind_descriptions(process_name, node, parameters)
+        if isinstance(node, NodeWithFiles):
+            node.follow_files(FollowedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
+        self._viewers.attach_panel(node)
 
     def _handle_start_failure(self, plan: HostedPlan, error: LinkwrightError) -> None:
         """Log why a node could not start.
 
-        A node whose model file is not valid is started as soon as the file is fixed.
+        If the description file of the node is not valid, the node is started when the file is fixed.
         """
         session = self._session
-        found = self._description_of(plan) if plan.waits else None
-        if found is None or session.ending:
+        description = self._find_description(plan) if plan.waits else None
+        if description is None or session.ending:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
             session.log.error_line(plan.process_name, "node has not started")
             session.node_ended(plan, 1)
             return
-        name, call = found
+        name, call = description
         session.fail(call)
 
         def again(text: str) -> None:
@@ -234,74 +236,74 @@ class NodeHost:
         session.reload.bind(call, again)
         session.reload.report(call, error.diagnostics)
 
-    def _bind_descriptions(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
-        """Pass new texts of a node's descriptions to the node, and show the findings about the current ones."""
+    def _bind_descriptions(self, process_name: str, node: RunningNode, parameters: Mapping[str, Any]) -> None:
+        """Pass each new text of a node's descriptions to the node, and show findings about the current texts."""
         from linkwright.nodes.options import NodeWithDescription
 
         session = self._session
         for name, value in parameters.items():
             call = session.descriptions.call_of(value) if isinstance(value, str) else None
             if call is not None:
-                session.reload.bind(call, partial(self._set, process_name, running, name))
-            if isinstance(running, NodeWithDescription) and name == running.description_parameter:
-                reading = session.descriptions.library.read(value)
+                session.reload.bind(call, partial(self._set_parameter, process_name, node, name))
+            if isinstance(node, NodeWithDescription) and name == node.description_parameter:
+                read_description = session.descriptions.library.read(value)
                 warnings = session.descriptions.warnings_of(call) if call else ()
-                session.reload.report(call or process_name, (*warnings, *reading.diagnostics))
+                session.reload.report(call or process_name, (*warnings, *read_description.diagnostics))
 
-    def _set(self, process_name: str, running: RunningNode, name: str, text: str) -> None:
+    def _set_parameter(self, process_name: str, node: RunningNode, name: str, text: str) -> None:
         from linkwright.graph import Parameter
 
-        if running.node.handle.is_destroyed:
+        if node.node.handle.is_destroyed:
             return
         with self._attribute_records(process_name):
-            result = running.node.set_parameters([Parameter(name, value=text)])[0]
+            result = node.node.set_parameters([Parameter(name, value=text)])[0]
         if not result.successful:
             raise LinkwrightError(
                 Diagnostic(
                     "LAUNCH143",
                     phrase(
-                        "'{process_name}' refuses the model: {reason}",
+                        "'{process_name}' rejects the robot description: {reason}",
                         process_name=process_name,
                         reason=foreign(result.reason),
                     ),
                 )
             )
 
-    def _description_of(self, plan: HostedPlan) -> tuple[str, XacroCall] | None:
+    def _find_description(self, plan: HostedPlan) -> tuple[str, XacroCall] | None:
         for name, value in plan.parameters.items():
             call = self._session.descriptions.call_of(value) if isinstance(value, str) else None
             if call is not None:
                 return name, call
         return None
 
-    def _stop_node(self, plan: HostedPlan, running: RunningNode, status: int = 0) -> None:
+    def _stop_node(self, plan: HostedPlan, node: RunningNode, status: int = 0) -> None:
         del self._running[plan.process_name]
-        running.close()
-        self._ended(plan, status)
+        node.close()
+        self._report_end(plan, status)
 
-    def _finished(self, plan: HostedPlan, running: RunningNode, done: asyncio.Future[int]) -> None:
-        """Close a node that has finished, and restart it if its plan requires a restart."""
-        if plan.process_name not in self._running or done.cancelled():
+    def _handle_finish(self, plan: HostedPlan, node: RunningNode, future: asyncio.Future[int]) -> None:
+        """Close a node that has finished, and restart it if its plan requests a respawn."""
+        if plan.process_name not in self._running or future.cancelled():
             return
-        self._stop_node(plan, running, done.result())
-        if plan.respawns and not self._closing:
+        self._stop_node(plan, node, future.result())
+        if plan.respawns and not self._is_closing:
             plan.respawns -= 1
-            self._session.spawn(self._start_again(plan))
+            self._session.spawn(self._restart(plan))
 
-    async def _start_again(self, plan: HostedPlan) -> None:
+    async def _restart(self, plan: HostedPlan) -> None:
         with suppress(asyncio.TimeoutError):
             await asyncio.wait_for(self._closed.wait(), plan.respawn_delay)
         self.plan(plan)
         await self.start_planned()
 
     def _show_findings(self) -> None:
-        shared = [] if self._shared_names is None else self._shared_names.findings
-        self._viewers.show_findings([*shared, *self._model_findings])
+        shared_name_findings = [] if self._shared_names is None else self._shared_names.findings
+        self._viewers.show_findings([*shared_name_findings, *self._model_findings])
 
     # --- viewers --------------------------------------------------------------------------------------------
 
     async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> bool:
-        """Start a viewer; if that fails, log the reason, end the launch, and return False."""
+        """Start a viewer, and return whether it started. If not, log the reason and end the launch."""
         session = self._session
         nodes = [running for _, running in self._running.values()]
         try:
@@ -322,11 +324,11 @@ class NodeHost:
 
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
         await self._viewers.stop(plan, viewer)
-        self._ended(plan)
+        self._report_end(plan)
 
     # --- both -----------------------------------------------------------------------------------------------
 
-    def _ended(self, plan: HostedPlan, status: int = 0) -> None:
+    def _report_end(self, plan: HostedPlan, status: int = 0) -> None:
         if status == 0:
             self._session.log.info_line(plan.process_name, "has finished cleanly")
         else:
@@ -338,47 +340,49 @@ class NodeHost:
             self._session.spawn(self._stop_viewer(window, self._viewers.pop_viewer(window)))
 
     def _on_log(self, record: LogRecord) -> None:
-        process = self._process_of(record.node)
-        if self._held_back is not None and record.level.name == "FATAL":
-            self._held_back.append((process, record))
+        process = self._find_process(record.node)
+        if self._delayed_records is not None and record.level.name == "FATAL":
+            self._delayed_records.append((process, record))
             return
-        self._session.log.node_record(process, record, self._destinations.get(process, _ON_SCREEN))
+        self._session.log.node_record(process, record, self._destinations.get(process, _SCREEN_DESTINATIONS))
 
     @contextmanager
     def _hide_fatal_records(self) -> Iterator[None]:
-        """Keep the fatal log records of a node that fails to start off the screen, in a ``with`` block.
+        """Keep the fatal records of a node that fails to start off the screen, in a ``with`` block.
 
-        The node's diagnostics report the errors, with their source positions.
+        The findings report the same errors, with their locations.
         """
-        self._held_back, off_screen = [], False
+        self._delayed_records, is_off_screen = [], False
         try:
             yield
         except LinkwrightError:
-            off_screen = True
+            is_off_screen = True
             raise
         finally:
-            held, self._held_back = self._held_back, None
-            for process, record in held:
-                destinations = self._destinations.get(process, _ON_SCREEN)
-                self._session.log.node_record(process, record, destinations - {SCREEN} if off_screen else destinations)
+            records, self._delayed_records = self._delayed_records, None
+            for process, record in records:
+                destinations = self._destinations.get(process, _SCREEN_DESTINATIONS)
+                self._session.log.node_record(
+                    process, record, destinations - {SCREEN} if is_off_screen else destinations
+                )
 
     @contextmanager
     def _attribute_records(self, process_name: str) -> Iterator[None]:
-        """Attribute the records of unknown loggers to a process inside a ``with`` block."""
-        before, self._speaking = self._speaking, process_name
+        """Attribute the records of unknown loggers to a process, in a ``with`` block."""
+        previous_process, self._current_process = self._current_process, process_name
         try:
             yield
         finally:
-            self._speaking = before
+            self._current_process = previous_process
 
-    def _process_of(self, logger: str) -> str:
-        """Return the process name for a logger.
+    def _find_process(self, logger: str) -> str:
+        """Return the name of the process to which a logger belongs.
 
-        It is found by the logger's name, by the names of its ancestors, or by the node that created the logger.
+        The process is found by the name of the logger, of its ancestors, or of the node that created it.
         """
-        makers = {} if self._graph is None else dict(self._graph.creators)
+        creators = {} if self._graph is None else dict(self._graph.creators)
         while logger:
             if logger in self._process_of_logger:
                 return self._process_of_logger[logger]
-            logger = makers.pop(logger, "") or logger.rpartition(".")[0]
-        return self._speaking
+            logger = creators.pop(logger, "") or logger.rpartition(".")[0]
+        return self._current_process

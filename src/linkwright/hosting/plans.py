@@ -1,4 +1,4 @@
-"""Plans of hosted nodes and viewers, and the interface between the host of nodes and its run."""
+"""Plans of hosted nodes and viewers, and the interface of a run that the host of nodes uses."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from linkwright.viewer import Viewer
 
 VIEWER = ("rviz2", "rviz2")
-"""Package and executable of RViz, which our viewer replaces."""
+"""The package and executable of RViz, which Linkwright's viewer replaces."""
 
 _GAZEBO_WINDOW = "gzclient"
-"""The executable of Gazebo's window, which our viewer replaces too."""
+"""The executable of Gazebo's window, which Linkwright's viewer replaces too."""
 
 
 @dataclass(eq=False)
@@ -33,25 +33,25 @@ class HostedPlan:
     """The plan of a node or viewer that is started in this process.
 
     Attributes:
-        owner: the object that requests the node, such as an action of a launch file; None for a node that another node
-            needs.
-        process_name: the name in the log, such as ``robot_state_publisher-1``.
+        owner: the object that requested the node, such as an action of a launch file; None if another node needs the
+            node.
+        process_name: the name of the node in the log, such as ``robot_state_publisher-1``.
         package: the package of the node.
-        executable: the executable in that package.
-        node_name: the name given to the node, or None.
+        executable: the name of the executable in that package.
+        node_name: the name of the node; None for the name that its code sets.
         namespace: the namespace of the node.
-        parameters: values by name.
-        remappings: rules ``(from, to)``.
-        arguments: the command line.
-        viewer_config: returns the viewer's configuration; by default the command line selects it.
-        viewer_started: called with the viewer after it has started.
-        destinations: the destinations of the node's lines on stdout (1) and stderr (2), see
+        parameters: the values of the parameters by name.
+        remappings: pairs of an original name and a new name.
+        arguments: the command-line arguments.
+        viewer_config: returns the configuration of the viewer; None if the command line determines it.
+        viewer_started: called with the viewer after its start; None if no call is needed.
+        destinations: the destinations of the lines that the node writes to stdout (1) and stderr (2), see
             `linkwright.hosting.launch_log`.
-        respawns: how often the node is restarted after it has finished; without limit if negative.
+        respawns: the maximum number of restarts after the node has finished; unlimited if negative.
         respawn_delay: the seconds to wait before a restart.
-        for_others: parameters for further nodes that the node creates, by node name; None for none.
-        environment: the environment variables at the time of the plan.
-        waits: whether a node that cannot start because of its model file is started as soon as the file is fixed.
+        for_others: parameters, by node name, for other nodes that the node creates; None if there are none.
+        environment: the environment variables when the plan was created.
+        waits: whether a node with an invalid description file is started when the file is fixed.
     """
 
     owner: Any
@@ -74,12 +74,12 @@ class HostedPlan:
 
     @property
     def is_viewer(self) -> bool:
-        """Whether the node is RViz, which our viewer replaces."""
+        """Whether the node is RViz, which Linkwright's viewer replaces."""
         return is_viewer(self.package, self.executable)
 
     @property
     def opens_gazebo_window(self) -> bool:
-        """Whether the executable is Gazebo's window, or also opens that window."""
+        """Whether the executable is Gazebo's window, or opens that window."""
         return self.executable == _GAZEBO_WINDOW or self.parameters.get("gui") is True
 
     @property
@@ -98,9 +98,9 @@ class HostedPlan:
         )
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
-        """Return the options for starting the node.
+        """Return the options with which the node is started.
 
-        `library` contains the robot descriptions that the process has read.
+        The library contains the robot descriptions that this process has read.
         """
         from linkwright.graph.parameters.parameter import ParameterRules
         from linkwright.nodes import NodeOptions
@@ -112,34 +112,34 @@ class HostedPlan:
             remappings=self.remappings,
             arguments=self.arguments,
             library=library,
-            for_others=self.for_others or ParameterRules(),
+            parameters_of_others=self.for_others or ParameterRules(),
             environment=self.environment,
         )
 
     @property
     def details(self) -> dict[str, Any]:
-        """The details of the node's launch events."""
+        """The attributes of the launch events of the node."""
         command = [self.executable, *self.arguments]
         return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
 
 
 def is_viewer(package: str | None, executable: str) -> bool:
-    """Return whether a node is RViz, which our viewer replaces."""
+    """Return whether a node is RViz, which Linkwright's viewer replaces."""
     return (package, executable) == VIEWER
 
 
 @dataclass(frozen=True)
 class HostOptions:
-    """The options of the nodes and viewers of this process.
+    """The options of the nodes and viewers in this process.
 
     Attributes:
-        host: the address that the viewer's server binds to.
-        port: the server's port; None for the default port, or the next free one.
-        open_browser: whether the page is opened in the user's browser.
+        host: the address on which the server of the viewer listens.
+        port: the port of the server; None for the default port, or the next one that is free.
+        open_browser: whether to open the page in the user's browser.
         title: the title of the page.
-        network: whether the nodes join the ROS 2 network, where other programs discover them.
-        history: the maximum number of bytes of messages that a viewer stores as live history; 0 for no history.
-        rviz: the file with the viewer's configuration; None for the default one.
+        network: whether the nodes join the ROS 2 network, where other programs can discover them.
+        history: the maximum number of bytes of messages that a viewer stores; 0 to store none.
+        rviz: the path of the viewer's configuration file; None for the default configuration.
     """
 
     host: str = "127.0.0.1"
@@ -152,11 +152,11 @@ class HostOptions:
 
 
 class Supervisor(Protocol):
-    """The run to which a host belongs: a launch, or the view of one model."""
+    """The interface of the run to which a host belongs: a launch, or the view of one description."""
 
     @property
     def finder(self) -> PackageFinder:
-        """The finder of packages."""
+        """The finder of ROS packages."""
 
     @property
     def options(self) -> HostOptions:
@@ -176,26 +176,26 @@ class Supervisor(Protocol):
 
     @property
     def ending(self) -> bool:
-        """Whether the run is about to end."""
+        """Whether the run is ending."""
 
     @property
     def has_processes(self) -> bool:
-        """Whether the run includes any processes in addition to nodes."""
+        """Whether the run has any processes in addition to its nodes."""
 
-    def fail(self, what: object) -> None:
-        """Record a failure of `what`: the exit status is 1 unless the failure is cleared."""
+    def fail(self, failure: object) -> None:
+        """Record a failure, which sets the exit status to 1 unless the failure is cleared."""
 
-    def clear_failure(self, what: object) -> None:
-        """Clear the recorded failure of `what`, because it was fixed."""
+    def clear_failure(self, failure: object) -> None:
+        """Clear a failure whose cause has been fixed."""
 
-    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the run waits for it before it ends."""
+    def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
+        """Run a coroutine in the background; the run does not end before it has finished."""
 
     def shut_down(self, reason: str) -> None:
-        """End the run as soon as the current work is completed."""
+        """End the run when the current work is done."""
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Handle the start of a node or viewer."""
+        """Report that a node or viewer has started."""
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Handle the end of a node or viewer, or its failure to start, with an exit status."""
+        """Report the exit status of a node or viewer that has ended or could not start."""

@@ -1,7 +1,7 @@
-"""Live reload: a saved model file is expanded again and passed to the nodes that show it.
+"""Live reload: a saved description file is expanded again, and nodes receive the new text.
 
-The nodes continue to run, so that joint positions and the camera are preserved. If a model cannot be read, the last
-valid one remains in use, and the errors are shown until the file is fixed.
+The nodes continue to run, so that joint positions and the camera do not change. If a description cannot be read, the
+last valid one remains in use, and the errors are shown until the file is fixed.
 """
 
 from __future__ import annotations
@@ -21,83 +21,85 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.nodes.followed_files import ReadWorld
 
-_SETTLE_SECONDS = 0.06
-"""Wait before a failure is reported: an editor may be in the middle of writing."""
+_RETRY_SECONDS = 0.06
+"""The delay before a failure is reported, because an editor may still be writing the file."""
 _MISSING_ATTEMPTS = 8
-"""Waits for a missing file: some editors delete it before they write it."""
+"""The number of attempts to read a missing file, because some editors delete a file before they write it."""
 _CATCH_UP_SECONDS = 0.4
-"""The time after which files are checked once for changes between their first reading and the start of the watch."""
+"""The delay after which files are checked once for changes that were made before the watch began."""
 
 _STEP_MS = 20
-"""Interval in which the watcher checks whether the system's notifications have settled: the latency is one interval."""
+"""The interval in milliseconds at which the watcher checks for the end of notifications; it is also the latency."""
 _DEBOUNCE_MS = 100
 
 Apply = Callable[[str], None]
-"""Takes the new text of a description."""
+"""A function that receives the new text of a description."""
 
 
 class LiveReload:
-    """Watches the files of a launch's descriptions, and reloads the descriptions on changes.
+    """Watches the files of a launch's descriptions, and reloads a description when its files change.
 
     Args:
         descriptions: the descriptions of the launch.
-        show: called with all current findings, which the viewer shows.
-        log: the log in which findings are printed.
+        show: called with all current findings, for display in the viewer.
+        log: the log to which findings are printed.
 
     Attributes:
-        descriptions: expands the descriptions.
+        descriptions: expands and stores the descriptions.
     """
 
     def __init__(self, descriptions: Descriptions, show: Callable[[list[Diagnostic]], None], log: LaunchLog) -> None:
         self.descriptions = descriptions
         self._show = show
         self._log = log
-        self._targets: dict[XacroCall, list[Apply]] = {}
+        self._callbacks: dict[XacroCall, list[Apply]] = {}
         self._findings: dict[object, tuple[Diagnostic, ...]] = {}
         self._watch: FileWatch | None = None
         self._running: dict[XacroCall, asyncio.Task[None]] = {}
-        self._again: set[XacroCall] = set()
-        self._saved: set[XacroCall] = set()
-        self._started = False
+        self._pending_reloads: set[XacroCall] = set()
+        self._saved_calls: set[XacroCall] = set()
+        self._is_started = False
         self._closed = False
 
     def bind(self, call: XacroCall, apply: Apply) -> None:
-        """Call `apply` with every new text of a description."""
-        self._targets.setdefault(call, []).append(apply)
+        """Register a function that is called with every new text of a description."""
+        self._callbacks.setdefault(call, []).append(apply)
         self._watch_files()
 
     def unbind(self, call: XacroCall, apply: Apply) -> None:
-        """Stop calling `apply` with new texts of a description."""
-        self._targets[call].remove(apply)
+        """Unregister a function that `bind` registered."""
+        self._callbacks[call].remove(apply)
 
-    def show(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings about an object that were already printed; they replace the earlier ones."""
-        self._findings[about] = tuple(diagnostics)
+    def show(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
+        """Show findings that are already printed; they replace the earlier findings about the same object."""
+        self._findings[subject] = tuple(diagnostics)
         self._show(self.findings())
 
-    def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print and show the findings about an object; they replace the earlier ones.
+    def report(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
+        """Print and show findings; they replace the earlier findings about the same object.
 
-        Errors that persist are printed each time the file is saved, warnings and notes only once.
+        Errors are printed at each call, but warnings and notes only when they are new.
         """
         findings = tuple(diagnostics)
-        known = {_essence(finding) for finding in self._findings.get(about, ())}
+        known_keys = {_finding_key(finding) for finding in self._findings.get(subject, ())}
         self._log.diagnostics(
-            finding for finding in findings if finding.severity is Severity.ERROR or _essence(finding) not in known
+            finding
+            for finding in findings
+            if finding.severity is Severity.ERROR or _finding_key(finding) not in known_keys
         )
-        self.show(about, findings)
+        self.show(subject, findings)
 
     def findings(self) -> list[Diagnostic]:
-        """Return the findings of all descriptions."""
+        """Return all current findings."""
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
-        """Start watching; requires the running event loop."""
-        self._started = True
+        """Start to watch the files; an event loop must be running."""
+        self._is_started = True
         self._watch_files()
 
     def close(self) -> None:
-        """Stop watching."""
+        """Stop watching the files."""
         self._closed = True
         if self._watch is not None:
             self._watch.close()
@@ -107,7 +109,7 @@ class LiveReload:
     # --- which files ----------------------------------------------------------------------------------------
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
-        """Return the files from which a description was read, and those named in its errors."""
+        """Return the files from which a description was read, and the files that its findings mention."""
         files = {call.path, *self.descriptions.files_of(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
@@ -115,22 +117,22 @@ class LiveReload:
         return files
 
     def _watch_files(self) -> None:
-        if not self._started or self._closed or not self._targets:
+        if not self._is_started or self._closed or not self._callbacks:
             return
         if self._watch is None:
             self._watch = FileWatch(self._on_change, self._on_watch_failure)
-        if self._watch.watch({file for call in self._targets for file in self._files_of_interest(call)}):
+        if self._watch.watch({file for call in self._callbacks for file in self._files_of_interest(call)}):
             asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._reload_missed)
 
     def _on_watch_failure(self, reason: str) -> None:
         self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
 
     def _reload_missed(self) -> None:
-        """Reload descriptions whose files changed after they were read and before the watch began."""
-        for call in self._targets if not self._closed else ():
+        """Reload descriptions whose files changed after they were read, but before the watch began."""
+        for call in self._callbacks if not self._closed else ():
             read_ns = self.descriptions.read_ns(call)
-            saved = [_modified_ns(path) for path in self._files_of_interest(call)]
-            if max(saved) > read_ns or (0 in saved and not self._is_broken(call)):
+            modification_times = [_modified_ns(path) for path in self._files_of_interest(call)]
+            if max(modification_times) > read_ns or (0 in modification_times and not self._is_broken(call)):
                 self._start_reload(call)
 
     # --- a change -------------------------------------------------------------------------------------------
@@ -138,15 +140,15 @@ class LiveReload:
     def _on_change(self, paths: set[Path]) -> None:
         if self._closed:
             return
-        for call in self._targets:
+        for call in self._callbacks:
             files = self._files_of_interest(call)
             if not paths.isdisjoint(files | {real(file) for file in files}):
-                self._saved.add(call)
+                self._saved_calls.add(call)
             if self._is_broken(call):
-                # The missing file may be any file next to this one, or in any package.
+                # The missing file may be in the folder of this file, or in any package.
                 self.descriptions.finder.forget()
                 self._start_reload(call)
-            elif call in self._saved:
+            elif call in self._saved_calls:
                 self._start_reload(call)
 
     def _is_broken(self, call: XacroCall) -> bool:
@@ -154,7 +156,7 @@ class LiveReload:
 
     def _start_reload(self, call: XacroCall) -> None:
         if call in self._running:
-            self._again.add(call)
+            self._pending_reloads.add(call)
             return
         task = asyncio.get_running_loop().create_task(self._reload(call))
         self._running[call] = task
@@ -162,8 +164,8 @@ class LiveReload:
 
     def _after_reload(self, call: XacroCall) -> None:
         del self._running[call]
-        if call in self._again and not self._closed:
-            self._again.discard(call)
+        if call in self._pending_reloads and not self._closed:
+            self._pending_reloads.discard(call)
             self._start_reload(call)
 
     async def _reload(self, call: XacroCall) -> None:
@@ -172,20 +174,20 @@ class LiveReload:
             if text is not None:
                 self._apply(call, text, findings)
                 return
-            present = all(path.is_file() for path in self._files_of_interest(call))
-            if attempt > 0 and present:
+            all_exist = all(path.is_file() for path in self._files_of_interest(call))
+            if attempt > 0 and all_exist:
                 break
-            await asyncio.sleep(_SETTLE_SECONDS)
-            if call in self._again:
+            await asyncio.sleep(_RETRY_SECONDS)
+            if call in self._pending_reloads:
                 return  # A newer change has already started another reload.
-        known = [_essence(finding) for finding in self._findings.get(call, ())]
-        if call in self._saved or known != [_essence(finding) for finding in findings]:
+        known_keys = [_finding_key(finding) for finding in self._findings.get(call, ())]
+        if call in self._saved_calls or known_keys != [_finding_key(finding) for finding in findings]:
             self.report(call, findings)
-        self._saved.discard(call)
+        self._saved_calls.discard(call)
         self._watch_files()
 
     async def _read(self, call: XacroCall) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Return the text of a description, or None if it has no robot, and the findings about it."""
+        """Return the text of a description or None, and the findings about it."""
         loop = asyncio.get_running_loop()
         try:
             description = await loop.run_in_executor(None, self.descriptions.read, call)
@@ -195,9 +197,9 @@ class LiveReload:
 
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)
-        self._saved.discard(call)
+        self._saved_calls.discard(call)
         try:
-            for apply in tuple(self._targets[call]):
+            for apply in tuple(self._callbacks[call]):
                 apply(text)
         except LinkwrightError as error:
             findings = (*findings, *error.diagnostics)
@@ -207,7 +209,7 @@ class LiveReload:
         self._watch_files()
 
 
-def _essence(finding: Diagnostic) -> tuple[object, ...]:
+def _finding_key(finding: Diagnostic) -> tuple[object, ...]:
     return finding.code, finding.message, finding.span
 
 
@@ -220,15 +222,15 @@ def _modified_ns(path: Path) -> int:
 
 
 class FileWatch:
-    """Calls back on the event loop when files in some folders change.
+    """Calls a function on the event loop when files in certain folders change.
 
-    Folders are watched rather than files, because editors save by writing a new file and renaming it. Files behind
-    links (``colcon build --symlink-install``) are also watched at their real location. For a folder that does not
-    exist, such as one that a build is about to create again, the nearest existing parent folder is watched.
+    Folders are watched and not files, because editors save a file by writing a new one and renaming it. Files behind
+    links (``colcon build --symlink-install``) are also watched at their real location. If a folder does not exist, for
+    example because a build is about to create it again, its nearest existing parent is watched.
 
     Args:
-        on_change: called with the paths that changed.
-        on_failure: called with the reason when watching fails.
+        on_change: called with the paths of the changed files.
+        on_failure: called with the reason if the folders cannot be watched.
     """
 
     def __init__(self, on_change: Callable[[set[Path]], None], on_failure: Callable[[str], None]) -> None:
@@ -239,15 +241,15 @@ class FileWatch:
         self._stop: threading.Event | None = None
 
     def watch(self, files: Iterable[Path]) -> bool:
-        """Watch the folders of these files, and no other folders, from now on.
+        """Watch the folders of the given files, and no other folders.
 
         Returns:
-            Whether a new watch begins, which does not detect changes immediately.
+            Whether a new watch begins. Such a watch does not detect changes immediately.
         """
         folders = frozenset(
-            (str(folder), number)
+            (str(folder), inode)
             for file in files
-            for folder, number in {_nearest_folder(file), _nearest_folder(real(file))}
+            for folder, inode in {_nearest_folder(file), _nearest_folder(real(file))}
         )
         if folders == self._folders:
             return False
@@ -270,7 +272,7 @@ class FileWatch:
         self._stop = None
         self._folders = frozenset()
 
-    def _run(self, folders: list[str], stop: threading.Event) -> None:
+    def _run(self, folders: list[str], stop_event: threading.Event) -> None:
         import watchfiles
 
         try:
@@ -279,20 +281,20 @@ class FileWatch:
                 watch_filter=None,
                 debounce=_DEBOUNCE_MS,
                 step=_STEP_MS,
-                stop_event=stop,
+                stop_event=stop_event,
                 rust_timeout=1000,
                 raise_interrupt=False,
                 recursive=False,
             ):
-                if not stop.is_set():
+                if not stop_event.is_set():
                     self._call(self._changed, {Path(path) for _, path in changes})
         except (OSError, RuntimeError) as error:
-            if not stop.is_set():
+            if not stop_event.is_set():
                 self._call(self._on_failure, str(error))
 
     def _changed(self, paths: set[Path]) -> None:
         if not paths.isdisjoint(Path(name) for name, _ in self._folders):
-            self._folders = frozenset()  # A folder was deleted, and a new folder may get the same number.
+            self._folders = frozenset()  # A folder was deleted, and a new one may have the same number.
         self._on_change(paths)
 
     def _call(self, function: Callable[..., None], argument: object) -> None:
@@ -303,19 +305,19 @@ class FileWatch:
 
 
 def _nearest_folder(file: Path) -> tuple[Path, int]:
-    """Return the nearest existing folder above a file, and a number that changes if it is replaced."""
+    """Return the nearest existing folder above a file, and a number that changes when the folder is replaced."""
     for folder in file.absolute().parents:
         try:
-            facts = folder.stat()
+            status = folder.stat()
         except OSError:
             continue
-        if stat.S_ISDIR(facts.st_mode):
-            return folder, facts.st_ino
+        if stat.S_ISDIR(status.st_mode):
+            return folder, status.st_ino
     return file.absolute().parents[-1], 0
 
 
 def real(path: Path) -> Path:
-    """Return the path with links followed, or the path itself if the links form a cycle."""
+    """Return a path with its links resolved, or unchanged if the links form a cycle."""
     try:
         return path.resolve()
     except OSError:
@@ -323,12 +325,12 @@ def real(path: Path) -> Path:
 
 
 class FollowedFiles:
-    """The `FileFollower` of one node, which watches the node's files.
+    """The `FileFollower` of a node, which watches the files of the node.
 
     Args:
-        reload: the live reload of the run that the node belongs to.
+        reload: the live reload of the run to which the node belongs.
         spawn: runs a coroutine in the background of the run.
-        launcher: returns the node that calls services.
+        launcher: returns the launcher's own node.
     """
 
     def __init__(
@@ -344,9 +346,9 @@ class FollowedFiles:
         """The launcher's own node, which calls services."""
         return self._launcher()
 
-    def show(self, about: str, findings: Iterable[Diagnostic]) -> None:
+    def show(self, subject: str, findings: Iterable[Diagnostic]) -> None:
         """Show the current findings about a subject in the viewers."""
-        self._reload.show(about, findings)
+        self._reload.show(subject, findings)
 
     def follow_world(
         self,
@@ -357,9 +359,9 @@ class FollowedFiles:
         """Read the file of a world again when it is saved, and load the world unless it has new errors.
 
         Args:
-            world: the world as it was read.
+            world: the world that was read first.
             read: reads the file of a world.
-            load: loads the text of a world, and returns findings.
+            load: loads a world, and returns findings about it.
         """
         call = self._reload.descriptions.begin_with(world, read)
 
@@ -370,9 +372,9 @@ class FollowedFiles:
 
         self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
 
-    def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
-        """Call `renew` with each new text of a description, if this process expanded it from a file."""
+    def follow_text(self, text: str, name: str, callback: Callable[[str], None]) -> None:
+        """Register a function for each new text of a description, if this process expanded it from a file."""
         call = self._reload.descriptions.call_of(text)
         if call is not None and (call, name) not in self._followed:
             self._followed.add((call, name))
-            self._reload.bind(call, renew)
+            self._reload.bind(call, callback)

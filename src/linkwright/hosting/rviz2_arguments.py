@@ -1,4 +1,4 @@
-"""The part of the command line of ``rviz2`` that the replacing viewer supports."""
+"""Parser for the arguments of ``rviz2`` that Linkwright's viewer supports."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity
 if TYPE_CHECKING:
     from linkwright.rviz import RvizConfig
 
-_CONFIG = ("-d", "--display-config")
-_FIXED_FRAME = ("-f", "--fixed-frame")
-_WITHOUT_MEANING_HERE = {
+_CONFIG_OPTIONS = ("-d", "--display-config")
+_FIXED_FRAME_OPTIONS = ("-f", "--fixed-frame")
+_IGNORED_OPTIONS = {
     "-s": 1,
     "--splash-screen": 1,
     "-l": 0,
@@ -37,17 +37,17 @@ RViz's -s, -l, --stereo, --fullscreen and --force-x11 are accepted and ignored.
 
 
 def asks_for_help(arguments: Sequence[str]) -> bool:
-    """Return whether the command line requests `USAGE`."""
-    own = list(arguments)
-    if "--ros-args" in own:
-        own = own[: own.index("--ros-args")]
-    return "-h" in own or "--help" in own
+    """Return whether the command line asks for the help text `USAGE`."""
+    own_arguments = list(arguments)
+    if "--ros-args" in own_arguments:
+        own_arguments = own_arguments[: own_arguments.index("--ros-args")]
+    return "-h" in own_arguments or "--help" in own_arguments
 
 
 def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
-    """Return the configuration that the arguments select, and findings about them.
+    """Return the configuration that command-line arguments select, and findings about the arguments.
 
-    As in RViz, a file that cannot be read is reported, and the default configuration is used instead.
+    As in RViz, an unreadable file is reported, and the default configuration is used.
     """
     from linkwright.rviz import RvizConfig
 
@@ -69,31 +69,31 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
     path: str | None = None
     fixed_frame: str | None = None
     findings: list[Diagnostic] = []
-    waiting = iter(arguments)
-    for argument in waiting:
+    remaining_arguments = iter(arguments)
+    for argument in remaining_arguments:
         if argument == "--ros-args":
-            for option in waiting:  # ROS arguments do not affect the configuration
+            for option in remaining_arguments:  # ROS arguments have no effect on the configuration
                 if option == "--":
                     break
-        elif argument in _CONFIG or argument in _FIXED_FRAME:
-            value = next(waiting, None)
+        elif argument in _CONFIG_OPTIONS or argument in _FIXED_FRAME_OPTIONS:
+            value = next(remaining_arguments, None)
             if value is None:
                 findings.append(
                     _argument_warning(phrase("argument '{argument}' of rviz2 needs a value", argument=argument))
                 )
-            elif argument in _CONFIG:
+            elif argument in _CONFIG_OPTIONS:
                 path = value
             else:
                 fixed_frame = value
-        elif argument in _WITHOUT_MEANING_HERE:
-            for _ in range(_WITHOUT_MEANING_HERE[argument]):
-                next(waiting, None)
+        elif argument in _IGNORED_OPTIONS:
+            for _ in range(_IGNORED_OPTIONS[argument]):
+                next(remaining_arguments, None)
         elif argument:
-            known = (*_CONFIG, *_FIXED_FRAME, *_WITHOUT_MEANING_HERE)
+            known_options = (*_CONFIG_OPTIONS, *_FIXED_FRAME_OPTIONS, *_IGNORED_OPTIONS)
             findings.append(
                 _argument_warning(
-                    phrase("argument '{argument}' of rviz2 is unknown", argument=argument),
-                    did_you_mean(argument, known),
+                    phrase("rviz2 has no argument '{argument}'", argument=argument),
+                    did_you_mean(argument, known_options),
                 )
             )
     return path, fixed_frame, findings

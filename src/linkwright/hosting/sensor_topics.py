@@ -1,4 +1,4 @@
-"""The scan and image topics of a simulated robot, from the text of its description."""
+"""The topics of laser scanners and cameras of a simulated robot, read from its description."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _CAMERA = re.compile(
     r"""<sensor\b(?=[^>]*\btype=["'](camera|wideanglecamera|depth|depth_camera|rgbd|rgbd_camera)["'])[^>]*?\bname=["']([\w/]+)["'].*?</sensor>""",
     re.DOTALL,
 )
-_CLASSIC = re.compile(r"""\bfilename=["'](?:lib)?gazebo_ros""")
+_CLASSIC_PLUGIN = re.compile(r"""\bfilename=["'](?:lib)?gazebo_ros""")
 _NAMESPACE = re.compile(r"<namespace>\s*([\w/]+)\s*</namespace>")
 _CAMERA_NAME = re.compile(r"<camera_?[nN]ame>\s*([\w/]+)\s*<")
 _IMAGE_NAME = re.compile(r"<image_?[tT]opic_?[nN]ame>\s*([\w/]+)\s*<")
@@ -20,37 +20,37 @@ _TOPIC = re.compile(r"<topic>\s*([\w/]+)\s*</topic>")
 
 
 def scan_topics(text: str) -> list[str]:
-    """Return the topics of the laser scanners in a description, in order."""
-    found = (_SCAN_TOPIC.search(match[0]) for match in _LIDAR.finditer(text))
-    return _distinct(match[1] or match[2] for match in found if match)
+    """Return the topics of the laser scanners in a description, in document order."""
+    matches = (_SCAN_TOPIC.search(match[0]) for match in _LIDAR.finditer(text))
+    return _absolute_topics(match[1] or match[2] for match in matches if match)
 
 
 def image_topics(text: str) -> list[str]:
-    """Return the topics of the cameras in a description, in order.
+    """Return the topics of the cameras in a description, in document order.
 
-    Cameras of gz without a topic name have the default topics ``/image`` and ``/depth_image``, as in ``linkwright
-    sim``.
+    Cameras of gz without a topic name have the default topics ``/image`` and ``/depth_image``, as in
+    ``linkwright sim``.
     """
-    return _distinct(_image_topic(match[0], match[1], match[2]) for match in _CAMERA.finditer(text))
+    return _absolute_topics(_image_topic(match[0], match[1], match[2]) for match in _CAMERA.finditer(text))
 
 
 def _image_topic(sensor: str, kind: str, name: str) -> str:
-    if not _CLASSIC.search(sensor):
-        topic = _TOPIC.search(sensor)
-        if topic is None:
+    if not _CLASSIC_PLUGIN.search(sensor):
+        topic_match = _TOPIC.search(sensor)
+        if topic_match is None:
             return "depth_image" if kind.startswith("depth") else "image"
-        return f"{topic[1]}/image" if kind.startswith("rgbd") else topic[1]
-    image = _first(_IMAGE_NAME, sensor, "image_raw")
-    topic_name = image if image.startswith("/") else f"{_first(_CAMERA_NAME, sensor, name)}/{image}"
+        return f"{topic_match[1]}/image" if kind.startswith("rgbd") else topic_match[1]
+    image_topic = _first(_IMAGE_NAME, sensor, "image_raw")
+    topic_name = image_topic if image_topic.startswith("/") else f"{_first(_CAMERA_NAME, sensor, name)}/{image_topic}"
     topic_name = dict(_REMAPPING.findall(sensor)).get(topic_name, topic_name)
     return topic_name if topic_name.startswith("/") else f"{_first(_NAMESPACE, sensor, '')}/{topic_name}"
 
 
-def _first(pattern: re.Pattern[str], text: str, otherwise: str) -> str:
-    found = pattern.search(text)
-    return found[1] if found else otherwise
+def _first(pattern: re.Pattern[str], text: str, default: str) -> str:
+    match = pattern.search(text)
+    return match[1] if match else default
 
 
-def _distinct(topics: Iterable[str]) -> list[str]:
-    """Return the absolute names without duplicates."""
+def _absolute_topics(topics: Iterable[str]) -> list[str]:
+    """Return the topics as absolute names, without duplicates."""
     return list(dict.fromkeys(f"/{topic.strip('/')}" for topic in topics))

@@ -1,8 +1,8 @@
-"""Handling of Ctrl-C and other signals.
+"""Handlers for Ctrl-C and other signals.
 
-The first signal ends a run in order, the second one hurries the end, and the third one ends the run immediately.
+The first signal ends a run in order, the second one shortens the delays, and the third one ends the run immediately.
 
-Work that must be completed, such as writing the end of a recording, is completed in any case (`unfinished`).
+Work that must not be interrupted, such as writing the end of a recording, is completed in any case (`unfinished`).
 """
 
 from __future__ import annotations
@@ -22,21 +22,22 @@ from linkwright.files.unfinished import finish_all
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.process.event_loop import run_coroutine
-from linkwright.process.interruption import signal_again, when_lost
+from linkwright.process.interruption import on_lost_interrupt, signal_again
 
 T = TypeVar("T")
 
 _DEADLINE_SECONDS = 1.9
-"""However badly the program hangs: this long after a signal it finishes its recordings and ends, or, after
-the first one, its event loop gives the processes the time that they have."""
+"""The seconds after a signal until the program ends, even if it hangs.
+
+Recordings are finished before. After the first signal, a responsive event loop adds the time for processes."""
 _SAME_KEYPRESS_SECONDS = 0.3
-"""Signals within this time count as one: a wrapper may pass a terminal's Ctrl-C on."""
+"""Signals within these seconds count as one, because a wrapper may forward the Ctrl-C of a terminal."""
 
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 class Session(Protocol):
-    """A run that a signal ends in order."""
+    """The interface of a run that a signal ends in order."""
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
@@ -44,48 +45,48 @@ class Session(Protocol):
 
     @property
     def visiting(self) -> bool:
-        """Whether code is running that blocks the event loop and that a KeyboardInterrupt may interrupt."""
+        """Whether code that blocks the event loop is running, which a KeyboardInterrupt may interrupt."""
 
     def interrupt(self, reason: str) -> None:
-        """End the run at the user's request."""
+        """End the run because the user interrupted it."""
 
     def seconds_to_end(self) -> float:
-        """Return the seconds that the run's processes may take to end."""
+        """Return the maximum seconds that the processes of the run may take to end."""
 
     def kill_all(self) -> None:
-        """Kill the run's processes immediately; called from a signal handler."""
+        """Kill the processes of the run immediately; a signal handler calls this method."""
 
 
 class SignalWatch:
-    """Handles signals inside a ``with`` block.
+    """Handles signals in a ``with`` block.
 
-    In a thread other than the main thread, signals are not handled.
+    Outside of the main thread, signals are not handled.
 
     Attributes:
-        session: the run to end; None before one exists, when a signal raises a KeyboardInterrupt instead.
-        received: the first received signal, or None.
+        session: the run to end; None before it exists. Without a run, a signal raises a KeyboardInterrupt.
+        received: the number of the first signal that was received, or None.
     """
 
     def __init__(self) -> None:
         self.session: Session | None = None
         self.received: int | None = None
-        self._received_at = 0.0
-        self._hurried = False
-        self._is_making_loop = False
-        self._before: dict[int, Any] = {}
-        self._unraisable: Callable[[Any], Any] | None = None
+        self._last_signal_time = 0.0
+        self._is_hurried = False
+        self._is_creating_loop = False
+        self._previous_handlers: dict[int, Any] = {}
+        self._previous_hook: Callable[[Any], Any] | None = None
         self._deadline: threading.Timer | None = None
 
     @property
     def exit_status(self) -> int | None:
-        """The exit status for the received signal, 128 plus its number as in shells, or None."""
+        """The exit status after a signal, which is 128 plus its number as in shells; None if there is no signal."""
         return None if self.received is None else 128 + self.received
 
     def __enter__(self) -> SignalWatch:  # noqa: PYI034 - typing.Self needs Python 3.11
         if threading.current_thread() is threading.main_thread():
-            for number in _SIGNALS:
-                self._before[number] = signal.signal(number, self._handle)
-            self._unraisable = when_lost(self._handle_again)
+            for signal_number in _SIGNALS:
+                self._previous_handlers[signal_number] = signal.signal(signal_number, self._handle)
+            self._previous_hook = on_lost_interrupt(self._handle_again)
         return self
 
     def __exit__(
@@ -96,47 +97,47 @@ class SignalWatch:
     ) -> None:
         if self._deadline is not None:
             self._deadline.cancel()
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-        if self._unraisable is not None:
-            sys.unraisablehook = self._unraisable
+        for signal_number, handler in self._previous_handlers.items():
+            signal.signal(signal_number, handler)
+        if self._previous_hook is not None:
+            sys.unraisablehook = self._previous_hook
 
-    def run(self, make: Callable[[], Coroutine[Any, Any, T]]) -> T:
-        """Run a coroutine on a new event loop.
+    def run(self, create_coroutine: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """Run a coroutine on a new event loop, and return its result.
 
         Raises:
-            KeyboardInterrupt: a signal was received while the loop was created.
+            KeyboardInterrupt: a signal was received while the loop was being created.
         """
-        self._is_making_loop = True
-        return run_coroutine(make, self._loop_is_made)
+        self._is_creating_loop = True
+        return run_coroutine(create_coroutine, self._handle_loop_created)
 
-    def _loop_is_made(self) -> None:
-        self._is_making_loop = False
+    def _handle_loop_created(self) -> None:
+        self._is_creating_loop = False
         if self.received is not None:
             raise KeyboardInterrupt
 
-    def _handle(self, number: int, _: FrameType | None) -> None:
+    def _handle(self, signal_number: int, _: FrameType | None) -> None:
         now = time.monotonic()
-        session, at_once = self.session, False
+        session, ends_now = self.session, False
         if self.received is not None:
-            if now - self._received_at <= _SAME_KEYPRESS_SECONDS:
+            if now - self._last_signal_time <= _SAME_KEYPRESS_SECONDS:
                 return
-            at_once = self._hurried or session is None or session.loop is None
-            self._hurried = True
-        self.received, self._received_at = self.received or number, now
-        self._end_after(0.0 if at_once else _DEADLINE_SECONDS)
-        if at_once or self._is_making_loop:
+            ends_now = self._is_hurried or session is None or session.loop is None
+            self._is_hurried = True
+        self.received, self._last_signal_time = self.received or signal_number, now
+        self._end_after(0.0 if ends_now else _DEADLINE_SECONDS)
+        if ends_now or self._is_creating_loop:
             return
         if session is None or session.loop is None:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(self._extend_deadline, session)
         if session.visiting:
             raise KeyboardInterrupt
-        session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
+        session.loop.call_soon_threadsafe(session.interrupt, interruption_text(signal_number))
 
     def _extend_deadline(self, session: Session) -> None:
-        """Extend the deadline by the time that processes may take, because the event loop responds."""
-        if not self._hurried:
+        """Extend the deadline by the time that processes may take, because the event loop is responsive."""
+        if not self._is_hurried:
             self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
 
     def _end_after(self, seconds: float) -> None:
@@ -147,15 +148,15 @@ class SignalWatch:
         self._deadline.start()
 
     def _handle_again(self) -> None:
-        """Restore the former state and send the signal again, because its KeyboardInterrupt had no effect."""
-        number, self.received = self.received, None
+        """Send the signal again after its KeyboardInterrupt was lost, with the state before the signal."""
+        signal_number, self.received = self.received, None
         if self._deadline is not None:
             self._deadline.cancel()
-        if number is not None:
-            signal_again(number)
+        if signal_number is not None:
+            signal_again(signal_number)
 
     def _end_immediately(self) -> None:
-        """End the process from a separate thread.
+        """End the process from another thread.
 
         The main thread may be blocked, or may be writing files that must be completed.
         """
@@ -167,23 +168,23 @@ class SignalWatch:
         os._exit(self.exit_status or 1)
 
 
-def interruption_text(number: int) -> str:
-    """Return the log line for a signal."""
-    if number == signal.SIGINT:
+def interruption_text(signal_number: int) -> str:
+    """Return the line that the log shows for a signal."""
+    if signal_number == signal.SIGINT:
         return "user interrupted with ctrl-c (SIGINT)"
-    return f"received signal {signal.Signals(number).name}"
+    return f"received signal {signal.Signals(signal_number).name}"
 
 
 def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: LaunchLog) -> int:
-    """Run a program that ends in order after a signal.
+    """Run a program, and end it in order after a signal.
 
     Args:
-        run: runs the program, and returns whether it succeeded.
-        finder: finds packages during the run.
+        run: runs the program with the signal handlers, and returns whether it succeeded.
+        finder: the finder of ROS packages during the run.
         log: the log for signals that arrive before there is a session.
 
     Returns:
-        The exit status: 0, 1 if something failed, or 128 plus the signal's number after a signal.
+        The exit status: 0 if the program succeeded, 1 if not, or 128 plus the number of a received signal.
     """
     with SignalWatch() as signals:
         try:
@@ -201,16 +202,16 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
 
 @contextmanager
 def own_environment(finder: PackageFinder) -> Iterator[None]:
-    """Find packages with a finder inside a ``with`` block, and set ``AMENT_PREFIX_PATH`` to its prefixes.
+    """Use a package finder in a ``with`` block, and set ``AMENT_PREFIX_PATH`` to its prefixes.
 
-    Changes to the environment of this process are undone afterwards.
+    Changes of this process's environment are undone at the end of the block.
     """
-    before = dict(os.environ)
+    saved_environment = dict(os.environ)
     try:
         with use_finder(finder):
             finder.offer_prefix_path(os.environ)
             yield
     finally:
-        for name in [name for name in os.environ if name not in before]:
+        for name in [name for name in os.environ if name not in saved_environment]:
             del os.environ[name]
-        os.environ.update(before)
+        os.environ.update(saved_environment)

@@ -25,22 +25,24 @@ if TYPE_CHECKING:
     from linkwright.rviz import RvizConfig
     from linkwright.urdf import Robot
 
-_SIMULATOR = ("gazebo_ros", "gzserver")
-_CLOCK_RATE = 100.0
-"""Rate in Hz at which simulated time is published: transforms are not older than that."""
+_SIMULATOR_NODE = ("gazebo_ros", "gzserver")
+_CLOCK_RATE_HZ = 100.0
+"""The rate in Hz at which simulated time is published, which limits the age of transforms."""
 _SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_plugins/Image"
 _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
-_DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE)
+_DRIVE_PLUGIN = re.compile(
+    r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE
+)
 
 
-def _as_it_is(description: Description) -> str:
+def _description_text(description: Description) -> str:
     return description.text
 
 
-def _completed(description: Description, found: Inference) -> str:
+def _complete_text(description: Description, inference: Inference) -> str:
     from linkwright.inference.applying import complete_description  # Only some robots need it.
 
-    return write(complete_description(description.document, found))
+    return write(complete_description(description.document, inference))
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,21 +50,21 @@ class SimulatedWorld:
     """A world to simulate, and the robot or model in it.
 
     Attributes:
-        world: a file, or the name of a world.
-        path: the file that gives the page its name.
-        description: a robot in URDF; None for no robot, or for a model in SDF.
-        text: the simulated robot or model, as URDF or SDF; empty for none.
+        world: the path of a world file, or the name of a world.
+        path: the file that the page is named after.
+        description: the description of a robot in URDF; None for no robot, or for a model in SDF.
+        text: the text of the simulated robot or model, in URDF or SDF; empty for none.
         name: the name of the robot or model in the world.
         pose: the pose of the robot's or model's frame: x, y, z in m, roll, pitch, yaw in rad.
-        seconds: the simulated seconds after which the run ends; 0 for never.
-        rate: simulated seconds per real second; 0 for the world's rate, negative for as fast as possible.
-        step: the time step in s; 0 for the world's time step.
-        seed: the seed of all random numbers.
+        seconds: the simulated seconds after which the run ends; 0 for no limit.
+        rate: the simulated seconds per real second; 0 for the rate of the world, negative for the maximum.
+        step: the time step in s; 0 for that of the world.
+        seed: the seed of the random numbers.
         paused: whether the simulation starts paused.
         headless: whether no page is served.
-        gazebo_mistakes: whether plugins reproduce the known bugs of Gazebo.
-        arguments: name and value of the robot's xacro arguments.
-        complete: returns the text to simulate for a description that was read from the robot's saved file.
+        gazebo_mistakes: whether plugins reproduce known bugs of Gazebo.
+        arguments: the names and values of the robot's xacro arguments.
+        complete: returns the text to simulate, for a description that was read again after the robot's file was saved.
     """
 
     world: str
@@ -79,36 +81,40 @@ class SimulatedWorld:
     headless: bool = False
     gazebo_mistakes: bool = False
     arguments: tuple[tuple[str, str], ...] = ()
-    complete: Callable[[Description], str] = _as_it_is
+    complete: Callable[[Description], str] = _description_text
 
     @classmethod
     def of(
-        cls, world: str, description: Description, found: Inference, infer: Callable[[Robot], Inference]
+        cls, world: str, description: Description, inference: Inference, infer: Callable[[Robot], Inference]
     ) -> SimulatedWorld:
-        """Return a world with a robot on the ground, completed with the values inferred for the robot.
+        """Return a world with a robot on the ground, whose description is completed with inferred values.
 
         Args:
-            world: a file, or the name of a world.
-            description: the robot.
-            found: the inference about the robot.
-            infer: repeats the inference after the robot's file has changed.
+            world: the path of a world file, or the name of a world.
+            description: the description of the robot.
+            inference: the values that were inferred for the robot.
+            infer: infers the values again, after the robot's file has changed.
         """
 
-        def complete(later: Description) -> str:
-            return later.text if later.robot is None else _completed(later, infer(later.robot))
+        def complete(new_description: Description) -> str:
+            return (
+                new_description.text
+                if new_description.robot is None
+                else _complete_text(new_description, infer(new_description.robot))
+            )
 
         assert description.robot is not None, "something was inferred about it"
-        pose = (0.0, 0.0, -found.ground, 0.0, 0.0, 0.0)
-        path, text = Path(description.name).absolute(), _completed(description, found)
+        pose = (0.0, 0.0, -inference.ground, 0.0, 0.0, 0.0)
+        path, text = Path(description.name).absolute(), _complete_text(description, inference)
         return cls(world, path, description, text, description.robot.name, pose, complete=complete)
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The parameters of the simulator."""
-        robot = {"robot_description": self.text, "robot_name": self.name, "robot_pose": list(self.pose)}
+        """The parameters of the simulator node."""
+        robot_parameters = {"robot_description": self.text, "robot_name": self.name, "robot_pose": list(self.pose)}
         return {
             "world": self.world,
-            "publish_rate": _CLOCK_RATE,
+            "publish_rate": _CLOCK_RATE_HZ,
             "real_time_factor": self.rate,
             "seconds": self.seconds,
             "step": self.step,
@@ -116,7 +122,7 @@ class SimulatedWorld:
             "pause": self.paused,
             "usual_names": True,
             "gazebo_mistakes": self.gazebo_mistakes,
-            **(robot if self.text else {}),
+            **(robot_parameters if self.text else {}),
         }
 
 
@@ -128,14 +134,14 @@ def run_simulated(
     foxglove: int | None = None,
     writer: BagWriter | None = None,
 ) -> int:
-    """Simulate a world until the user ends the run, or its simulated seconds have passed.
+    """Simulate a world until the user ends the run, or the simulated seconds have passed.
 
     Args:
-        world: the world, and the model in it.
-        finder: finds packages.
+        world: the world, and the robot or model in it.
+        finder: the finder of ROS packages.
         options: the options of nodes and viewers.
-        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
-        writer: records all topics, with their simulated times; None for no recording.
+        foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
+        writer: writes a recording of all topics with simulated times; None for no recording.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
@@ -156,7 +162,7 @@ def run_simulated(
 class SimulatedView(ModelView):
     """The view of a simulated world on the running event loop.
 
-    The nodes are the simulator, the robot's robot_state_publisher, and the viewer.
+    Its nodes are the simulator, the robot's robot_state_publisher, and the viewer.
     """
 
     def __init__(self, world: SimulatedWorld, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
@@ -166,9 +172,9 @@ class SimulatedView(ModelView):
         self._files = descriptions
 
     def _publish(self) -> bool:
-        """Plan the publication of the robot, if there is one, and return whether the view continues.
+        """Plan the publication of the robot, if there is one, and return whether the view can continue.
 
-        The robot and the world are reloaded when their files are saved.
+        When the files of the robot and the world are saved, they are reloaded.
         """
         description, text = self._world.description, self._world.text
         if text:
@@ -182,14 +188,14 @@ class SimulatedView(ModelView):
         return True
 
     def _plan_others(self) -> None:
-        self._plan(*_SIMULATOR, self._world.parameters, output="screen", waits=False)
+        self._plan(*_SIMULATOR_NODE, self._world.parameters, output="screen", waits=False)
         if not self._world.headless:
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """Return a configuration that shows the world with the robot, its scans and images.
+        """Return a configuration that shows the world, and the robot with its scans and images.
 
-        Only the images of the first camera are shown, because rendering takes time. Odometry is not shown, because it
+        Only the images of the first camera are shown, because rendering takes time. Odometry is hidden, because it
         would cover the robot.
         """
         from linkwright.hosting.world_config import world_config
@@ -206,15 +212,15 @@ class SimulatedView(ModelView):
         text = self._world.text
         for topic in scan_topics(text):
             add(_SCAN_DISPLAY, topic)
-        for number, topic in enumerate(image_topics(text)):
-            add(_IMAGE_DISPLAY, topic, checked=number == 0)
-        if _DRIVES.search(text):
+        for index, topic in enumerate(image_topics(text)):
+            add(_IMAGE_DISPLAY, topic, checked=index == 0)
+        if _DRIVE_PLUGIN.search(text):
             add(_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC, checked=False)
         return config
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """End the view if the simulator has ended."""
-        if plan.package == _SIMULATOR[0]:
+        """End the view if the node that ended is the simulator."""
+        if plan.package == _SIMULATOR_NODE[0]:
             if status:
                 self.fail(plan)
             self.shut_down("the simulation has ended")

@@ -1,4 +1,4 @@
-"""The files of a simulated world and its robot, which are reloaded when they are saved."""
+"""The files of a simulated world and its robot, which are reloaded when the user saves them."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description
-    from linkwright.descriptions.conversion import Converted
+    from linkwright.descriptions.conversion import ConversionResult
 
 
 class SimulatedDescriptions(Descriptions):
-    """Reads robots in their simulated form, models in SDF, and worlds.
+    """Reads and stores robots in their simulated form, models in SDF, and worlds.
 
     Args:
-        finder: finds packages.
-        complete: returns the simulated text of a robot, with all inferred values.
+        finder: the finder of ROS packages.
+        complete: returns the text of a robot to simulate, completed with inferred values.
     """
 
     def __init__(self, finder: PackageFinder, complete: Callable[[Description], str]) -> None:
@@ -29,20 +29,20 @@ class SimulatedDescriptions(Descriptions):
         self._complete = complete
 
     def read(self, call: XacroCall) -> Any:
-        """Read a robot, model or world; may run in another thread.
+        """Return a robot, model or world that is read from its file; this may run in another thread.
 
         Raises:
-            LinkwrightError: the file is not valid; for a world, only because of errors that it did not have at the
-                start.
+            LinkwrightError: the file is not valid. For a world, only errors that it did not have at the start are
+                raised.
         """
         if not isinstance(call, WorldCall) and is_world(call.path.name):
             return self._read_model(call)
         return super().read(call)
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Store a robot, model or world.
+        """Store a robot, model or world, and return its text and findings.
 
-        Return its text (for a world, the path of its file) and the findings about it.
+        For a world, the text is the path of its file. The text is None if the description has no robot.
         """
         if isinstance(call, WorldCall):
             return super().take(call, description)
@@ -56,17 +56,17 @@ class SimulatedDescriptions(Descriptions):
         return self.take_text(call, self._complete(description), description.files), description.diagnostics
 
     def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
-        """Store a simulated text with all files from which it was made, and return the text."""
+        """Store a simulated text with all the files from which it was created, and return the text."""
         self._calls[text] = call
         self._files[call] = files
         return text
 
-    def _read_model(self, call: XacroCall) -> Converted:
+    def _read_model(self, call: XacroCall) -> ConversionResult:
         from linkwright.descriptions.conversion import as_sdf
 
         self.begin(call)
         converted = as_sdf(call.path, self.finder, arguments=dict(call.arguments), folder=Path.cwd())
-        wrong = [diagnostic for diagnostic in converted.diagnostics if diagnostic.severity is Severity.ERROR]
-        if wrong or converted.sdf is None or not converted.sdf.models:
-            raise LinkwrightError(*wrong or converted.diagnostics)
+        errors = [diagnostic for diagnostic in converted.diagnostics if diagnostic.severity is Severity.ERROR]
+        if errors or converted.sdf is None or not converted.sdf.models:
+            raise LinkwrightError(*errors or converted.diagnostics)
         return converted

@@ -1,4 +1,4 @@
-"""The view of one model file with sliders for its joints, which needs no launch file."""
+"""The view of one robot description with sliders for its joints, which needs no launch file."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from linkwright.rviz import RvizConfig
     from linkwright.viewer import Viewer
 
-_PUBLISH_FREQUENCY = 60.0
-"""Hz; at robot_state_publisher's default of 20 a dragged slider lags visibly."""
+_PUBLISH_FREQUENCY_HZ = 60.0
+"""The rate in Hz; at the default of robot_state_publisher, 20 Hz, a dragged slider lags visibly."""
 _FIRST_LINK = re.compile(r"""<link\s[^>]*?\bname\s*=\s*["']([^"'$]+)["']""")
 
 
@@ -42,10 +42,11 @@ def run_view(
     """Show a URDF or xacro file, with sliders for its joints, until the user ends the view.
 
     Args:
-        model_path: the file.
-        arguments: name -> value of the xacro arguments.
-        options: the options of nodes and viewers; by default no other program discovers the nodes.
-        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+        model_path: the path of the URDF or xacro file.
+        arguments: maps the names of xacro arguments to their values; None for no arguments.
+        options: the options of nodes and viewers; None for defaults with which other programs do not discover the
+            nodes.
+        foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
@@ -67,19 +68,19 @@ def run_view(
 
 
 class ModelView:
-    """The view of one model on the running event loop: robot_state_publisher, sliders and the viewer.
+    """The view of one description on the running event loop, with robot_state_publisher, sliders and a viewer.
 
     Args:
-        call: the model file and its arguments.
-        finder: finds packages.
+        call: the description file and its arguments.
+        finder: the finder of ROS packages.
         options: the options of nodes and viewers.
         log: the log of the run.
-        descriptions: reads models; by default robots.
+        descriptions: reads and stores the description; None for robot descriptions.
 
     Attributes:
-        ending: whether the view is about to end.
-        visiting: whether the model is being expanded, which blocks the event loop.
-        has_processes: always false.
+        ending: whether the view is ending.
+        visiting: whether the description is being expanded, which blocks the event loop.
+        has_processes: always False.
     """
 
     has_processes = False
@@ -105,37 +106,37 @@ class ModelView:
         self._form: ArgumentForm | None = None
         self._failures: set[object] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
-        self._is_over = asyncio.Event()
-        self._has_begun = False
-        self._crash: BaseException | None = None
+        self._end_event = asyncio.Event()
+        self._has_logged_start = False
+        self._exception: BaseException | None = None
         self._recorder: Recorder | None = None
-        self._numbers = count(1)
+        self._process_numbers = count(1)
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
     async def run(self, foxglove: int | None, writer: BagWriter | None = None) -> bool:
-        """Show the model until the user ends the view, or a viewer cannot start.
+        """Show the description until the user ends the view, or a viewer cannot start.
 
-        Return whether everything succeeded.
+        Return whether there were no failures.
 
         Args:
-            foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
-            writer: records all topics, with the times of ``/clock``; None for no recording.
+            foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
+            writer: writes a recording of all topics, with the times of ``/clock``; None for no recording.
         """
         self.loop = asyncio.get_running_loop()
         try:
             if writer is not None:
-                self._recorder = self._recording(writer)
+                self._recorder = self._create_recorder(writer)
             if self._publish():
                 self._plan_others()
                 if foxglove is not None:
                     self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
                 await self.host.serve_pages()
-                if not self._is_over.is_set():
+                if not self._end_event.is_set():
                     await self.host.start_planned()
                     self.reload.start()
-            await self._is_over.wait()
-            self._end_recording()  # The recording must end before the rest, which takes time.
+            await self._end_event.wait()
+            self._end_recording()  # The recording must end before the nodes are closed, which takes time.
             self.ending = True
             self.reload.close()
             self.host.close_nodes()
@@ -144,20 +145,20 @@ class ModelView:
         finally:
             self._end_recording()
             await self._close()
-        if self._crash is not None:
-            raise self._crash
+        if self._exception is not None:
+            raise self._exception
         return not self._failures
 
-    def _recording(self, writer: BagWriter) -> Recorder:
-        """Return a recorder.
+    def _create_recorder(self, writer: BagWriter) -> Recorder:
+        """Return a recorder of all topics and services.
 
-        If the disk is full, the error is logged and the recording ends. The view continues, and its exit status is 1.
+        If writing fails, for example because the disk is full, the error is logged, and only the recording ends.
         """
         from linkwright.bag import Recorder, TopicSelection
 
         def guarded(callback: Callable[..., object]) -> Callable[..., object]:
             def call(*arguments: Any) -> None:
-                if self._is_over.is_set() or writer in self._failures:
+                if self._end_event.is_set() or writer in self._failures:
                     return
                 try:
                     callback(*arguments)
@@ -172,7 +173,7 @@ class ModelView:
         node = self.host.graph.create_node(
             "rosbag2_recorder", parameters={"use_sim_time": True}, start_parameter_services=False
         )
-        return Recorder(node, TopicSelection(everything=True, every_service=True), writer, guarded=guarded)
+        return Recorder(node, TopicSelection(everything=True, every_service=True), writer, wrap_callback=guarded)
 
     def _end_recording(self) -> None:
         recorder, self._recorder = self._recorder, None
@@ -186,9 +187,9 @@ class ModelView:
     # --- what is shown ----------------------------------------------------------------------------------------
 
     def _publish(self) -> bool:
-        """Plan the publication of the model, now or as soon as its file is valid.
+        """Plan the publication of the description, now or when its file has been fixed.
 
-        Return whether the view continues.
+        Return whether the view can continue.
         """
         self.visiting = True
         try:
@@ -197,7 +198,7 @@ class ModelView:
         except DescriptionError as error:
             self.fail(self._call)
             if not error.missing:
-                self.reload.bind(self._call, self._publish_repaired)
+                self.reload.bind(self._call, self._publish_fixed)
                 self.reload.report(self._call, error.diagnostics)
                 self.spawn(self._request_arguments(self._call, error))
                 return True
@@ -209,12 +210,12 @@ class ModelView:
             return False
         finally:
             self.visiting = False
-        parameters = {"robot_description": self._text, "publish_frequency": _PUBLISH_FREQUENCY}
+        parameters = {"robot_description": self._text, "publish_frequency": _PUBLISH_FREQUENCY_HZ}
         self._plan("robot_state_publisher", "robot_state_publisher", parameters)
         return True
 
     def _plan_others(self) -> None:
-        """Plan the other nodes: the sliders and the viewer."""
+        """Plan the remaining nodes, which are the sliders and the viewer."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._set_viewer)
 
@@ -222,22 +223,22 @@ class ModelView:
         self._viewer = viewer
         self._show_form()
 
-    def _publish_repaired(self, _: str) -> None:
+    def _publish_fixed(self, _: str) -> None:
         self._publish_again(self._call)
 
     def _publish_again(self, call: XacroCall) -> None:
-        """Publish a model whose file was not valid before, or the same model with other arguments."""
-        broken, self._call, self._form = self._call, call, None
-        self.reload.unbind(broken, self._publish_repaired)
-        self.reload.show(broken, ())
-        self.clear_failure(broken)
+        """Publish a description whose file has been fixed, or a description with other arguments."""
+        previous_call, self._call, self._form = self._call, call, None
+        self.reload.unbind(previous_call, self._publish_fixed)
+        self.reload.show(previous_call, ())
+        self.clear_failure(previous_call)
         self._show_form()
         self._publish()
         self._set_fixed_frame()
         self.spawn(self.host.start_planned())
 
     async def _request_arguments(self, call: XacroCall, error: DescriptionError) -> None:
-        """Show pages a form for arguments if the error is that arguments have no value."""
+        """Show a form for arguments in the pages, if the error is that arguments have no value."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form
@@ -255,7 +256,7 @@ class ModelView:
         self._publish_again(XacroCall(self._call.path, tuple(values.items())))
 
     def _set_fixed_frame(self) -> None:
-        """Set the Fixed Frame to the root link of the model, unless it is a link of the model already."""
+        """Set the Fixed Frame to the root link of the robot, unless it is already a link of the robot."""
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         manager = None if self._viewer is None else self._viewer.managers.shared
         if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
@@ -273,12 +274,12 @@ class ModelView:
         output: str = "log",
         waits: bool = True,
     ) -> None:
-        rviz = self.options.rviz
-        if viewer_config is not None and rviz is not None:
-            viewer_config = partial(_config_of, rviz)
+        config_path = self.options.rviz
+        if viewer_config is not None and config_path is not None:
+            viewer_config = partial(_config_of, config_path)
         plan = HostedPlan(
             self,
-            f"{name or executable}-{next(self._numbers)}",
+            f"{name or executable}-{next(self._process_numbers)}",
             package,
             executable,
             name,
@@ -292,9 +293,9 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Return a configuration with Grid, RobotModel and TF, whose Fixed Frame is the root link.
+        """Return a configuration with the displays Grid, RobotModel and TF, and the root link as Fixed Frame.
 
-        TF is enabled only if the model has no visuals.
+        TF is enabled only if the robot has no visuals.
         """
         from linkwright.rviz import RvizConfig, has_visuals, size_of
 
@@ -303,52 +304,52 @@ class ModelView:
         frame = robot.root if robot is not None else _first_link(self._call.path)
         size = size_of(robot) if robot is not None else None
         finder = library.packages(self._text or "") or self.finder
-        frames = robot is not None and not has_visuals(robot, finder)
-        return RvizConfig.for_model(frame, size=size, frames=frames, name=str(self._call.path))
+        shows_frames = robot is not None and not has_visuals(robot, finder)
+        return RvizConfig.for_model(frame, size=size, frames=shows_frames, name=str(self._call.path))
 
     # --- interface for nodes and signals ------------------------------------------------------------------------
 
-    def fail(self, what: object) -> None:
-        """Record a failure of `what`: the exit status is 1 unless the failure is cleared."""
-        self._failures.add(what)
+    def fail(self, failure: object) -> None:
+        """Record a failure, which sets the exit status to 1 unless the failure is cleared."""
+        self._failures.add(failure)
 
-    def clear_failure(self, what: object) -> None:
-        """Clear the recorded failure of `what`, because it was fixed."""
-        self._failures.discard(what)
+    def clear_failure(self, failure: object) -> None:
+        """Clear a failure whose cause has been fixed."""
+        self._failures.discard(failure)
 
-    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the view waits for it before it closes."""
-        task = asyncio.get_running_loop().create_task(work)
+    def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
+        """Run a coroutine in the background; the view does not close before it has finished."""
+        task = asyncio.get_running_loop().create_task(coroutine)
         self._tasks.add(task)
-        task.add_done_callback(self._done)
+        task.add_done_callback(self._handle_done)
 
-    def _done(self, task: asyncio.Task[Any]) -> None:
+    def _handle_done(self, task: asyncio.Task[Any]) -> None:
         self._tasks.discard(task)
         if not task.cancelled() and task.exception() is not None:
-            self._crash = task.exception()
-            self._is_over.set()
+            self._exception = task.exception()
+            self._end_event.set()
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Log the first lines of the log when the first node has started.
+        """Log the first lines of the log when the first node starts.
 
-        If an error prevents all nodes from starting, only that error is printed.
+        If an error keeps all nodes from starting, only that error is printed.
         """
-        if not self._has_begun:
-            self._has_begun = True
+        if not self._has_logged_start:
+            self._has_logged_start = True
             self.log.begin()
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Do nothing, because this view continues without its nodes."""
+        """Do nothing, because the view continues without its nodes."""
 
     def interrupt(self, reason: str) -> None:
-        """End the view at the user's request."""
+        """End the view because the user interrupted it."""
         self.log.warning_line("launch", reason)
-        self._is_over.set()
+        self._end_event.set()
 
     def shut_down(self, reason: str) -> None:
-        """End the view; planned nodes are not started any more."""
+        """End the view, without starting the nodes that are still planned."""
         self.host.forget_planned()
-        self._is_over.set()
+        self._end_event.set()
 
     def seconds_to_end(self) -> float:
         """Return 0, because there are no processes."""
@@ -373,9 +374,9 @@ def _config_of(rviz: Path) -> RvizConfig:
 
 
 def _first_link(path: Path) -> str:
-    """Return the first link in the text of an invalid model, usually the root."""
+    """Return the first link in the text of an invalid description, which is usually the root."""
     try:
-        found = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
+        match = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
     except OSError:
-        found = None
-    return found.group(1) if found else "base_link"
+        match = None
+    return match.group(1) if match else "base_link"

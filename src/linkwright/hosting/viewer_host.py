@@ -1,4 +1,4 @@
-"""The viewers of this process, whose pages replace RViz's windows."""
+"""The viewers in this process, whose pages replace RViz's windows."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ if TYPE_CHECKING:
     from linkwright.page.page_server import PageServer
     from linkwright.viewer import Viewer
 
-_CLOSE_SECONDS = 0.8
+_CLOSE_TIMEOUT_SECONDS = 0.8
 
-_RETURN_SECONDS = 2.5
-"""Longer than the interval in which pages check for the program."""
+_RECONNECT_TIMEOUT_SECONDS = 2.5
+"""The seconds to wait for the pages of a previous run; longer than the interval of their attempts to reconnect."""
 
-_LOOK_SECONDS = 0.1
+_POLL_SECONDS = 0.1
 
 
 class ViewerHost:
-    """Starts, stores and ends viewers."""
+    """Starts and ends viewers, and keeps track of them."""
 
     def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._viewers: dict[str, tuple[HostedPlan, Viewer]] = {}
         self._servers: dict[str, PageServer] = {}
         self._findings: list[Diagnostic] = []
-        self._at_given_port = ""
+        self._port_owner = ""
 
     def __bool__(self) -> bool:
         return bool(self._viewers)
@@ -51,23 +51,23 @@ class ViewerHost:
         return iter([plan for plan, _ in self._viewers.values()])
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
-        """Show the current findings about model files."""
+        """Show the current findings about description files in the viewers."""
         self._findings = findings
         for _, viewer in self._viewers.values():
             viewer.show_diagnostics(findings)
 
-    def attach_panel(self, running: RunningNode) -> None:
-        """Show the sliders of a node in the viewers, if the node has sliders."""
+    def attach_panel(self, node: RunningNode) -> None:
+        """Show the sliders of a node in the viewers, if the node has any."""
         for _, viewer in self._viewers.values():
-            _attach_panel(viewer, running)
+            _attach_panel(viewer, node)
 
     async def serve_page(self, plan: HostedPlan) -> None:
-        """Serve the page of a viewer that is not created yet, and print the page's address.
+        """Serve the page of a viewer that does not exist yet, and print the address of the page.
 
-        The browser can then load the page while the viewer is being created.
+        The browser can then load the page while the viewer is created.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
+            LinkwrightError: VIEW101 to VIEW103, the server cannot listen on the address.
         """
         from linkwright.page.page_server import PageServer
 
@@ -88,16 +88,16 @@ class ViewerHost:
     async def start(
         self, plan: HostedPlan, graph: Graph, nodes: list[RunningNode], *, with_world: bool = False
     ) -> None:
-        """Start a viewer, and print its address.
+        """Start a viewer, and print the address of its page.
 
         Args:
             plan: the plan of the viewer.
-            graph: the graph to show.
-            nodes: the nodes that already run.
-            with_world: whether the page also shows the simulated world, in place of a separate window.
+            graph: the graph that the viewer shows.
+            nodes: the nodes that are already running.
+            with_world: whether the page also shows the simulated world, for which there is then no separate viewer.
 
         Raises:
-            LinkwrightError: the viewer cannot start.
+            LinkwrightError: the viewer cannot be started.
         """
         from linkwright.page.page_server import PageServer
         from linkwright.rviz import find_unsaved
@@ -117,7 +117,7 @@ class ViewerHost:
 
             show_world(config)
         server = self._servers.get(plan.process_name)  # If creating the viewer fails, the server must be closed here.
-        is_given_out = server is not None
+        is_announced = server is not None
         if server is None:
             server = PageServer(session.options.host, self._port_for(plan))
         viewer = Viewer(
@@ -136,77 +136,78 @@ class ViewerHost:
         self._viewers[plan.process_name] = plan, viewer
         if plan.viewer_started is not None:
             plan.viewer_started(viewer)
-        if not is_given_out:
+        if not is_announced:
             self._announce(server)
         if session.options.open_browser and server.pages_wait:
             session.spawn(self._open_unless_reconnected(viewer))
-        instead = "RViz" if plan.owner is not None else "Gazebo's window"
+        replaced_window = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.info_line(
-            plan.process_name, f"started in the launcher's process: the viewer in the browser replaces {instead}"
+            plan.process_name,
+            f"started in the launcher's process: the viewer in the browser replaces {replaced_window}",
         )
         viewer.show_diagnostics([*self._findings, *findings])
-        for running in nodes:
-            _attach_panel(viewer, running)
+        for node in nodes:
+            _attach_panel(viewer, node)
 
     async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
-        for _ in range(round(_RETURN_SECONDS / _LOOK_SECONDS)):
+        for _ in range(round(_RECONNECT_TIMEOUT_SECONDS / _POLL_SECONDS)):
             if self._session.ending or len(viewer.audience) > 0:
                 return
-            await asyncio.sleep(_LOOK_SECONDS)
+            await asyncio.sleep(_POLL_SECONDS)
         _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
-        """Return the requested port, or None for the next free port if another page uses it."""
+        """Return the port that the user requested, or None if another page of this run uses it already."""
         port = self._session.options.port
-        if port and self._at_given_port not in ("", plan.process_name):
+        if port and self._port_owner not in ("", plan.process_name):
             return None
-        self._at_given_port = plan.process_name
+        self._port_owner = plan.process_name
         return port
 
     def _release_port(self, plan: HostedPlan) -> None:
-        if plan.process_name == self._at_given_port:
-            self._at_given_port = ""
+        if plan.process_name == self._port_owner:
+            self._port_owner = ""
 
     def pop_viewer(self, plan: HostedPlan) -> Viewer:
-        """Remove a viewer from the running ones, and return it so that the caller ends it."""
+        """Remove a viewer from the running viewers, and return it, so that the caller can end it."""
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
 
     async def close(self) -> None:
-        """Stop serving pages whose viewers were never created."""
+        """Close the servers of pages whose viewers were not created."""
         while self._servers:
             await self._servers.popitem()[1].close()
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
-        """End a viewer.
+        """Store the unsaved edits of a viewer, and end it.
 
-        Its unsaved edits are stored first, in case ending it takes too long.
+        The edits are stored first, because the end may take too long.
         """
         self._session.log.diagnostics(viewer.keep_unsaved())
         try:
-            await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
+            await asyncio.wait_for(viewer.close(), _CLOSE_TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
             self._session.log.warning_line(plan.process_name, "a browser did not let go of its connection in time")
 
 
 def load_viewer() -> None:
-    """Import the modules of viewers; this takes a while, and may run in another thread."""
+    """Import the modules of viewers, which takes time and may run in another thread."""
     import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 
 
-def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
+def _attach_panel(viewer: Viewer, node: RunningNode) -> None:
     from linkwright.panels.joints import NodeWithSliders
 
-    if isinstance(running, NodeWithSliders):
-        viewer.attach_joint_panel(running.panel)
+    if isinstance(node, NodeWithSliders):
+        viewer.attach_joint_panel(node.panel)
 
 
 def _open_in_browser(url: str) -> None:
-    """Open a page in the user's browser; runs in a thread, because some browsers respond slowly.
+    """Open a page in the user's browser, in a thread because some browsers respond slowly.
 
-    Without a display, nothing is opened: a text browser would take over the terminal.
+    Without a display, nothing is opened, because a text browser would take over the terminal.
     """
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):

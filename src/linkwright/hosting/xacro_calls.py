@@ -1,4 +1,4 @@
-"""Descriptions and worlds from files, with the file and arguments of each expanded text."""
+"""Descriptions and worlds from files, and the file and arguments from which each text was expanded."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class XacroCall:
-    """A use of xacro: a model file and arguments.
+    """A call of xacro, which consists of a description file and arguments.
 
     Attributes:
-        path: the model file, absolute.
-        arguments: name and value of the given arguments.
+        path: the absolute path of the description file.
+        arguments: pairs of the name and value of an argument.
     """
 
     path: Path
@@ -35,20 +35,20 @@ class XacroCall:
 
 @dataclass(frozen=True)
 class WorldCall(XacroCall):
-    """The file of a simulated world.
+    """The file of a simulated world, which is read like a description.
 
     Attributes:
-        read: reads the file; raises LinkwrightError.
+        read: reads the world from a path; raises LinkwrightError if the file is not valid.
     """
 
     read: Callable[[str], ReadWorld] = field(kw_only=True, compare=False, repr=False)
 
 
 class DescriptionError(LinkwrightError):
-    """Raised when a model file cannot be expanded.
+    """Raised when a description file cannot be expanded.
 
     Attributes:
-        call: the use of xacro.
+        call: the xacro call that failed.
     """
 
     def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
@@ -57,15 +57,15 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the model file itself cannot be read, an error that no edit of the file can fix."""
+        """Whether the description file itself cannot be read, so that editing it cannot fix the error."""
         return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
 class Descriptions:
-    """Expands model files, and stores the results with their source positions.
+    """Expands description files, and stores the results with their source locations.
 
     Args:
-        finder: finds packages.
+        finder: the finder of ROS packages.
     """
 
     def __init__(self, finder: PackageFinder) -> None:
@@ -77,7 +77,7 @@ class Descriptions:
         self._robots: dict[XacroCall, Robot] = {}
         self._worlds: dict[XacroCall, ReadWorld] = {}
         self._meshes: dict[XacroCall, tuple[Path, ...]] = {}
-        self._known: set[tuple[str, str]] = set()
+        self._known_findings: set[tuple[str, str]] = set()
         self._library: DescriptionLibrary | None = None
 
     @property
@@ -93,22 +93,22 @@ class Descriptions:
         """Expand a description, store it in the library, and return its text.
 
         Raises:
-            DescriptionError: the errors of the file, or of an included file.
+            DescriptionError: the file, or an included file, has errors.
         """
         return self.store(call, self.read(call))
 
     def begin_with(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
-        """Store a world that was already read, and return its call.
+        """Store a world that has already been read, and return its call.
 
-        The findings of this world are not reported again.
+        The findings about this world are not reported again.
 
         Args:
             world: the world.
-            read: reads the world again.
+            read: reads the world again from its path.
         """
         call = WorldCall(world.path.absolute(), read=read)
         self._read_ns[call] = world.read_ns
-        self._known |= {_essence(diagnostic) for diagnostic in world.diagnostics}
+        self._known_findings |= {_finding_key(diagnostic) for diagnostic in world.diagnostics}
         self._set_world(call, world)
         return call
 
@@ -117,14 +117,14 @@ class Descriptions:
         self._meshes.pop(call, None)
 
     def read(self, call: XacroCall) -> Any:
-        """Expand and read a file without storing anything; may run in another thread.
+        """Return a description or world that is read from its file, without storing it.
 
         Returns:
             The `Description` of a robot, or the `ReadWorld` of a world.
 
         Raises:
-            DescriptionError: the errors of the file, or of an included file, with the findings of the parts that could
-                be read; for a world, only errors that the world did not have at the start.
+            DescriptionError: the file, or an included file, has errors; with the findings about the parts that could
+                be read. For a world, only errors that it did not have at the start are raised.
         """
         if isinstance(call, WorldCall):
             return self._read_world(call)
@@ -133,19 +133,21 @@ class Descriptions:
         self.begin(call)
         try:
             xacro = None if call.path.suffix == ".sdf" else True  # SDF models are accepted too.
-            found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True)
+            description = examine(
+                call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True
+            )
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error
-        if found.problems:
-            raise DescriptionError(call, found.diagnostics)
-        return found
+        if description.problems:
+            raise DescriptionError(call, description.diagnostics)
+        return description
 
     def begin(self, call: XacroCall) -> None:
-        """Record the time before the files of a model are read."""
+        """Record the current time as the time at which the files of a description are read."""
         self._read_ns[call] = time.time_ns()
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description, and return the text that identifies it: `text`, or by default its own text."""
+        """Store a description, and return the text that identifies it, which is by default its own text."""
         text = self.library.store(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
@@ -156,9 +158,9 @@ class Descriptions:
         return text
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Store the result of `read`, and return its text and the findings about it.
+        """Store the result of `read`, and return its text and findings.
 
-        The text of a world is the path of its file. The text is None if the description has no robot.
+        For a world, the text is the path of its file. The text is None if the description has no robot.
         """
         if isinstance(call, WorldCall):
             self._set_world(call, description)
@@ -167,24 +169,24 @@ class Descriptions:
         return (None if description.robot is None else text), description.diagnostics
 
     def call_of(self, text: str) -> XacroCall | None:
-        """Return the call that resulted in a text, or None if the text was not expanded here."""
+        """Return the call from which a text was expanded, or None if it was not expanded here."""
         return self._calls.get(text)
 
     def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
-        """Return the warnings of a call's last successful expansion; empty before it."""
+        """Return the warnings of the last successful expansion of a call; empty before the first one."""
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
-        """Return the time in nanoseconds since the epoch at which the files of a call were last read.
+        """Return the time at which the files of a call were last read, in nanoseconds since the epoch.
 
-        The time is 0 if they were never read.
+        The time is 0 if the files have not been read.
         """
         return self._read_ns.get(call, 0)
 
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
-        """Return the files that the last successful expansion read, and the robot's or world's mesh files.
+        """Return the files that the last successful expansion of a call read, and the mesh files that it uses.
 
-        Before the first successful expansion, return only the model file.
+        Before the first successful expansion, the result is only the description file.
         """
         if call in self._robots and call not in self._meshes:
             self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
@@ -194,52 +196,52 @@ class Descriptions:
 
     def _read_world(self, call: WorldCall) -> ReadWorld:
         self.begin(call)
-        loaded = call.read(str(call.path))
-        wrong = [diagnostic for diagnostic in self._new(loaded.diagnostics) if diagnostic.severity is Severity.ERROR]
-        if wrong:
-            raise DescriptionError(call, wrong)
-        return loaded
+        world = call.read(str(call.path))
+        errors = [diagnostic for diagnostic in self._new(world.diagnostics) if diagnostic.severity is Severity.ERROR]
+        if errors:
+            raise DescriptionError(call, errors)
+        return world
 
     def _new(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        return tuple(finding for finding in findings if _essence(finding) not in self._known)
+        return tuple(finding for finding in findings if _finding_key(finding) not in self._known_findings)
 
 
 def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:
-    """Return the existing mesh files of a robot, without duplicates."""
+    """Return the mesh files of a robot that exist, without duplicates."""
     from linkwright.urdf import Mesh
 
-    found: dict[Path, None] = {}
+    mesh_files: dict[Path, None] = {}
     for link in robot.links.values():
-        parts: list[Visual | Collision] = [*link.visuals, *link.collisions]
-        for part in parts:
-            if isinstance(part.geometry, Mesh):
-                source = None if part.element is None else part.element.source
-                base = folder if source is None else Path(source.name).absolute().parent
+        geometries: list[Visual | Collision] = [*link.visuals, *link.collisions]
+        for geometry in geometries:
+            if isinstance(geometry.geometry, Mesh):
+                source = None if geometry.element is None else geometry.element.source
+                base_folder = folder if source is None else Path(source.name).absolute().parent
                 with suppress(LinkwrightError, ValueError):
-                    found[finder.resolve(part.geometry.filename, base)] = None
-    return tuple(path for path in found if path.is_file())
+                    mesh_files[finder.resolve(geometry.geometry.filename, base_folder)] = None
+    return tuple(path for path in mesh_files if path.is_file())
 
 
-def _essence(finding: Diagnostic) -> tuple[str, str]:
+def _finding_key(finding: Diagnostic) -> tuple[str, str]:
     return finding.code, str(finding.message)
 
 
-_current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions", default=None)
+_current_descriptions: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions", default=None)
 
 
 def current_descriptions() -> Descriptions | None:
-    """Return the descriptions of the current launch, or None if there is none.
+    """Return the descriptions of the current launch, or None outside of a launch.
 
-    Code without access to the launch uses this function.
+    This function is for code that has no access to the launch.
     """
-    return _current.get()
+    return _current_descriptions.get()
 
 
 @contextmanager
 def use_descriptions(descriptions: Descriptions) -> Iterator[None]:
-    """Make `current_descriptions` return these descriptions inside a ``with`` block."""
-    token = _current.set(descriptions)
+    """Make `current_descriptions` return the given descriptions in a ``with`` block."""
+    token = _current_descriptions.set(descriptions)
     try:
         yield
     finally:
-        _current.reset(token)
+        _current_descriptions.reset(token)

@@ -1,4 +1,4 @@
-"""Pixels of image messages, for all supported encodings and transports."""
+"""Decode the pixels of image messages, for all supported encodings and transports."""
 
 from linkwright.images.decoding import BadImageError, DecodedImage, Range, RangeFinder, decode_image, has_range
 from linkwright.images.image_files import encoding_of, is_cut_off

@@ -1,4 +1,4 @@
-"""Colours in class names, such as ``red_ball``."""
+"""Find colours in class names, such as ``red_ball``."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ PAINTS: dict[str, tuple[int, int, int]] = {
     "grey": (145, 145, 145),
     "black": (30, 30, 30),
 }
-"""Red, green and blue of the colours that have a word, 0 to 255."""
+"""The red, green and blue, 0 to 255, of the colours that have a name."""
 
-SPELLINGS = {**{paint: paint for paint in PAINTS}, "gray": "grey", "violet": "purple"}
-"""English words for them."""
+SPELLINGS = {**{word: word for word in PAINTS}, "gray": "grey", "violet": "purple"}
+"""The English words for colours, each with its name in `PAINTS`."""
 
 
 def words_of(name: str) -> list[str]:
@@ -29,15 +29,15 @@ def words_of(name: str) -> list[str]:
     return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]
 
 
-def named_colour(name: str) -> str | None:
-    """Return the colour in a class name, one of `PAINTS`; None if there is none."""
+def find_colour_word(name: str) -> str | None:
+    """Return the colour word in a class name, one of `PAINTS`; None if there is none."""
     return next((SPELLINGS[word] for word in words_of(name) if word in SPELLINGS), None)
 
 
-def paint_of(name: str) -> tuple[int, int, int] | None:
+def find_rgb(name: str) -> tuple[int, int, int] | None:
     """Return red, green and blue, 0 to 255, of the colour in a class name.
 
-    Returns None if there is none.
+    Return None if the name contains no colour.
     """
-    colour = named_colour(name)
+    colour = find_colour_word(name)
     return None if colour is None else PAINTS[colour]

@@ -1,13 +1,13 @@
-"""The transport `compressedDepth`: a header, and the depths as a PNG of 16 bits or compressed by RVL.
+"""The transport ``compressedDepth``: a header, and the depths as a 16-bit PNG or compressed by RVL.
 
-It follows compressed_depth_image_transport. The header consists of an unused int32 and two float32. Depths that were
-float32 are quantised to integers that grow as the distance decreases: ``depth = first / (number - second)``, and 0
-where there is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
+It follows compressed_depth_image_transport. The header consists of an unused int32 and two float32. Float32 depths are
+quantised to integers, which grow as the distance decreases: ``depth = first / (number - second)``. 0 means that there
+is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
 
 RVL is the lossless compression of depth images by Wilson ("Fast Lossless Depth Image Compression", ISS 2017). A stream
 is a sequence of numbers in groups of four bits: three bits of the number, the lowest first, and one bit that is set if
-more groups follow. Eight groups make a little-endian word, the first group in its highest bits. The sequence repeats:
-the number of pixels that are 0, the number of pixels that are not, and for each of the latter the difference from the
+more groups follow. Eight groups make a little-endian word, with the first group in its highest bits. The sequence
+repeats: the number of zero pixels, the number of other pixels, and for each of the others the difference from the
 previous one, with the sign in the lowest bit.
 """
 
@@ -21,27 +21,27 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.images.decoding import BadImageError
-from linkwright.images.image_files import MOST_PIXELS, RawImage, encoding_of, file_pixels
+from linkwright.images.image_files import MAX_PIXELS, RawImage, decode_file, encoding_of
 
 _HEADER = struct.Struct("<iff")
 _RVL_SIZE = struct.Struct("<II")
-_WHOLE, _FLOAT = ("16UC1", "mono16"), "32FC1"
+_INTEGER_ENCODINGS, _FLOAT_ENCODING = ("16UC1", "mono16"), "32FC1"
 _PACKINGS = {"": "png", "compressedDepth": "png", "compressedDepth png": "png", "compressedDepth rvl": "rvl"}
-"""How the depths are packed, by the end of the format after the encoding; older publishers know only PNG."""
+"""The packing of the depths by the part of the format after the encoding; older publishers only use PNG."""
 
 
-def unpacked_depth(message: Any) -> RawImage:
-    """Return the depth image of a message.
+def decode_depth(message: Any) -> RawImage:
+    """Return the depth image of a compressed message.
 
     Args:
         message: sensor_msgs/msg/CompressedImage with a format such as ``16UC1; compressedDepth png``.
 
     Raises:
-        BadImageError: the format is unknown, or the data does not match it.
+        BadImageError: the format is not supported, or the data does not match it.
     """
     encoding = encoding_of(message)
     packing = _PACKINGS.get(message.format.partition(";")[2].strip())
-    if packing is None or encoding not in (*_WHOLE, _FLOAT):
+    if packing is None or encoding not in (*_INTEGER_ENCODINGS, _FLOAT_ENCODING):
         raise BadImageError(
             phrase(
                 "The format of the depth image is '{format}'; supported are 16UC1, mono16 and 32FC1, each with "
@@ -51,33 +51,35 @@ def unpacked_depth(message: Any) -> RawImage:
         )
     data = np.frombuffer(message.data, np.uint8)
     if data.size <= _HEADER.size:
-        raise BadImageError(phrase("The depth image has {size} bytes, and no data after its header", size=data.size))
-    _, first, second = _HEADER.unpack(data[: _HEADER.size].tobytes())
-    rest = data[_HEADER.size :]
-    numbers = _of_png(rest) if packing == "png" else _of_rvl(rest)
-    if encoding == _FLOAT:
-        return RawImage.of(message.header, _FLOAT, _depths(numbers, first, second))
+        raise BadImageError(
+            phrase(("The depth image has {size} bytes, so it has no data after its header"), size=data.size)
+        )
+    _, scale, offset = _HEADER.unpack(data[: _HEADER.size].tobytes())
+    payload = data[_HEADER.size :]
+    numbers = _decode_png(payload) if packing == "png" else _decode_rvl(payload)
+    if encoding == _FLOAT_ENCODING:
+        return RawImage.of(message.header, _FLOAT_ENCODING, _dequantize(numbers, scale, offset))
     return RawImage.of(message.header, encoding, numbers)
 
 
-def _of_png(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
-    pixels = file_pixels(data)
+def _decode_png(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    pixels = decode_file(data)
     if pixels.dtype != np.uint16:
         raise BadImageError(phrase("The depth image is not a PNG of 16 bits and one channel"))
     return pixels
 
 
-def _of_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
+def _decode_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
     if data.size < _RVL_SIZE.size:
-        raise BadImageError(phrase("The RVL depth image ends before its size is given"))
+        raise BadImageError(phrase("The RVL depth image is too short to contain its size"))
     columns, rows = _RVL_SIZE.unpack(data[: _RVL_SIZE.size].tobytes())
-    if not 0 < columns * rows <= MOST_PIXELS:
+    if not 0 < columns * rows <= MAX_PIXELS:
         raise BadImageError(
             phrase(
                 "The header of the RVL depth image declares {columns} x {rows} pixels; 1 to {most} are supported",
                 columns=columns,
                 rows=rows,
-                most=MOST_PIXELS,
+                most=MAX_PIXELS,
             )
         )
     try:
@@ -93,26 +95,26 @@ def _of_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
         ) from None
 
 
-def _depths(numbers: NDArray[np.uint16], first: float, second: float) -> NDArray[np.float32]:
-    """Return the depths in metres, shape (height, width); NaN where there is no depth."""
-    if not (np.isfinite(first) and np.isfinite(second) and first > 0.0):
+def _dequantize(numbers: NDArray[np.uint16], first: float, offset: float) -> NDArray[np.float32]:
+    """Return the depths in metres, shape (height, width); NaN for pixels without a depth."""
+    if not (np.isfinite(first) and np.isfinite(offset) and first > 0.0):
         raise BadImageError(
             phrase(
-                "The header of the depth image has no valid scale of the depths: {first:g}, {second:g}",
+                "The header of the depth image has an invalid scale of the depths: {first:g}, {second:g}",
                 first=first,
-                second=second,
+                second=offset,
             )
         )
-    every = np.arange(65536, dtype=np.float32)
+    all_numbers = np.arange(65536, dtype=np.float32)
     with np.errstate(divide="ignore"):
-        metres = np.float32(first) / (every - np.float32(second))
+        metres = np.float32(first) / (all_numbers - np.float32(offset))
     metres[0] = np.nan
-    table: NDArray[np.float32] = metres[numbers]
-    return table
+    depths: NDArray[np.float32] = metres[numbers]
+    return depths
 
 
-_MOST_GROUPS = 10
-"""Groups of a number: with more it would not fit into 32 bits."""
+_MAX_GROUPS = 10
+"""The maximum number of groups of a number: more would not fit into 32 bits."""
 
 
 class BadRvlError(ValueError):
@@ -120,21 +122,21 @@ class BadRvlError(ValueError):
 
 
 def decoded(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:
-    """Return the pixels of a stream, shape (pixels,).
+    """Return the pixels of an RVL stream, shape (pixels,).
 
     Args:
-        stream: the bytes of the stream.
+        stream: the bytes of the stream after its size.
         pixels: the expected number of pixels.
 
     Raises:
-        BadRvlError: the stream ends before its last pixel, or is not what an encoder writes.
+        BadRvlError: the stream ends before its last pixel, has too many pixels, or is malformed.
     """
-    numbers = _numbers(stream)
-    heads, runs = _runs(numbers, pixels)
-    end = heads[-1] + 2 + runs[-1] if heads else 0
+    numbers = _read_numbers(stream)
+    count_positions, runs = _read_runs(numbers, pixels)
+    end = count_positions[-1] + 2 + runs[-1] if count_positions else 0
     is_step = np.ones(end, np.bool_)
-    is_step[heads] = False
-    is_step[np.asarray(heads, np.intp) + 1] = False
+    is_step[count_positions] = False
+    is_step[np.asarray(count_positions, np.intp) + 1] = False
     steps = numbers[:end][is_step]
     values = np.cumsum((steps >> 1) ^ -(steps & 1))
     result = np.zeros(pixels, np.uint16)
@@ -142,43 +144,43 @@ def decoded(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:
     return result
 
 
-def _numbers(stream: NDArray[np.uint8]) -> NDArray[np.int64]:
+def _read_numbers(stream: NDArray[np.uint8]) -> NDArray[np.int64]:
     words = np.frombuffer(stream[: len(stream) // 4 * 4].tobytes(), "<u4")
     groups = ((words[:, np.newaxis] >> np.arange(28, -4, -4).astype(np.uint32)) & 15).astype(np.uint8).ravel()
     ends = np.flatnonzero(groups < 8)
     starts = np.concatenate([[0], ends[:-1] + 1]) if len(ends) else ends
     lengths = ends - starts + 1
-    longest = int(lengths.max(initial=0))
-    if longest > _MOST_GROUPS:
-        raise BadRvlError(phrase("it has a number of more than 30 bits"))
+    max_groups = int(lengths.max(initial=0))
+    if max_groups > _MAX_GROUPS:
+        raise BadRvlError(phrase("it contains a number of more than 30 bits"))
     numbers: NDArray[np.int64] = (groups[starts] & 7).astype(np.int64)
-    for place in range(1, longest):
-        longer = np.flatnonzero(lengths > place)
-        numbers[longer] |= (groups[starts[longer] + place] & 7).astype(np.int64) << (3 * place)
+    for group in range(1, max_groups):
+        continuing = np.flatnonzero(lengths > group)
+        numbers[continuing] |= (groups[starts[continuing] + group] & 7).astype(np.int64) << (3 * group)
     return numbers
 
 
-def _runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list[int]]:
-    """Return the positions of the runs' counts among the numbers, and the run lengths.
+def _read_runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list[int]]:
+    """Return the positions of the runs' counts among the numbers, and the lengths of the runs.
 
-    Each run has two counts. The lengths are those of zeros, others, zeros, and so on.
+    Each run of zeros and the run after it share one position. The lengths are those of zeros, others, zeros, and so on.
     """
-    heads: list[int] = []
+    count_positions: list[int] = []
     runs: list[int] = []
-    read = numbers.data  # Reading single numbers from a memoryview is faster than from an array.
-    at, left, count = 0, pixels, len(numbers)
-    while left > 0:
-        if at + 2 > count:
-            raise BadRvlError(phrase("it ends {left} pixels too early", left=left))
-        zeros, others = read[at], read[at + 1]
-        if zeros == 0 and heads:
+    values = numbers.data  # Reading single numbers from a memoryview is faster than from an array.
+    position, remaining, count = 0, pixels, len(numbers)
+    while remaining > 0:
+        if position + 2 > count:
+            raise BadRvlError(phrase("it ends {left} pixels too early", left=remaining))
+        zeros, nonzeros = values[position], values[position + 1]
+        if zeros == 0 and count_positions:
             raise BadRvlError(phrase("it has an empty run of pixels"))
-        left -= zeros + others
-        heads.append(at)
-        runs += (zeros, others)
-        at += 2 + others
-    if left < 0:
-        raise BadRvlError(phrase("it has {left} pixels too many", left=-left))
-    if at > count:
-        raise BadRvlError(phrase("it ends {left} pixels too early", left=at - count))
-    return heads, runs
+        remaining -= zeros + nonzeros
+        count_positions.append(position)
+        runs += (zeros, nonzeros)
+        position += 2 + nonzeros
+    if remaining < 0:
+        raise BadRvlError(phrase("it has {left} pixels too many", left=-remaining))
+    if position > count:
+        raise BadRvlError(phrase("it ends {left} pixels too early", left=position - count))
+    return count_positions, runs

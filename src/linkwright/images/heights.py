@@ -1,4 +1,4 @@
-"""The heights of a heightmap, from the grey values of an image."""
+"""Read the heights of a heightmap from the grey values of an image."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, mi
 from linkwright.geometry.arrays import Array
 from linkwright.images.elevation import read_elevation
 
-_MOST = 1025
-"""The greatest number of heights along a side; of more every second, third and so on is kept."""
+_MAX_ROWS = 1025
+"""The maximum number of heights along a side; of a larger image only every n-th row and column is used."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heights:
-    """Heights relative to the maximum that the image can represent.
+    """Heights from 0 to 1; see `read_heights` for the scale.
 
-    The first row has the minimum y.
+    The first row has the minimum y; the image's rows are in reverse order.
     """
 
     values: Array
 
 
 def read_heights(path: Path) -> Heights:
-    """Read the heights of an image: 0 for black and 1 for white.
+    """Read the heights of an image: 0 for black, 1 for white.
 
-    In an elevation model, 0 is the lowest point.
+    In an image of floating-point numbers, such as an elevation model, 0 is the lowest point and 1 the highest.
 
     Raises:
         LinkwrightError: SIM113 the image cannot be read; SIM114 Pillow is not installed.
@@ -40,20 +40,20 @@ def read_heights(path: Path) -> Heights:
         raise missing_extra("SIM114", error) from None
     try:
         with catch_warnings():
-            simplefilter("ignore")  # Errors are reported here.
+            simplefilter("ignore")  # errors are reported below
             with Image.open(path) as image:
-                kind = image.mode
-                shown = image if kind in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")
-                values = np.asarray(shown, dtype=np.float64)
+                mode = image.mode
+                grey = image if mode in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")
+                values = np.asarray(grey, dtype=np.float64)
     except (OSError, UnidentifiedImageError, ValueError, Image.DecompressionBombError) as error:
         try:
-            kind, values = "F", read_elevation(path)
+            mode, values = "F", read_elevation(path)
         except (OSError, ValueError):
             message = phrase("cannot read the image '{path}': {why}", path=display_path(path), why=str(error))
             raise LinkwrightError(Diagnostic("SIM113", message)) from None
-    stride = -(-max(values.shape) // _MOST)
+    stride = -(-max(values.shape) // _MAX_ROWS)
     values = values[::-stride, ::stride]
-    if kind == "F":
-        low, high = float(np.nanmin(values)), float(np.nanmax(values))
-        return Heights(np.nan_to_num((values - low) / (high - low if high > low else 1.0)))
-    return Heights(values / (65535.0 if kind.startswith("I") else 255.0))
+    if mode == "F":
+        minimum, maximum = float(np.nanmin(values)), float(np.nanmax(values))
+        return Heights(np.nan_to_num((values - minimum) / (maximum - minimum if maximum > minimum else 1.0)))
+    return Heights(values / (65535.0 if mode.startswith("I") else 255.0))

@@ -1,7 +1,7 @@
-"""The sources of a topic's images: image_transport's transports, by name.
+"""The sources of a topic's images, by the transports of image_transport.
 
-A transport other than raw has a separate topic below the image's, such as `/camera/image/compressed`. RViz derives the
-transport from the last part of a topic if there is no property for it.
+A transport other than raw has its own topic below the topic of the image, such as `/camera/image/compressed`. RViz
+takes the transport from the last part of a topic if there is no property for it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.images.compressed_depth import unpacked_depth
+from linkwright.images.compressed_depth import decode_depth
 from linkwright.images.image_files import unpacked
 
 RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA = "raw", "compressed", "compressedDepth", "theora"
@@ -20,12 +20,12 @@ _IMAGE, _COMPRESSED_IMAGE = "sensor_msgs/msg/Image", "sensor_msgs/msg/Compressed
 
 @dataclass(frozen=True, slots=True)
 class ImageSource:
-    """The images of a topic in one of the transports.
+    """Images of a topic that are published with one of the transports.
 
     Attributes:
         base: the topic of the raw images.
         transport: the name of the transport.
-        is_renamed: whether the messages are published on `base` itself, as by drivers that do not use image_transport.
+        is_renamed: whether the messages are published on `base` itself, as some drivers do without image_transport.
     """
 
     base: str
@@ -34,31 +34,31 @@ class ImageSource:
 
     @classmethod
     def of(cls, topic: str, hint: str = RAW) -> ImageSource:
-        """Return the source for a topic and a hint.
+        """Return the source for a topic, with a transport as a hint.
 
-        A transport at the end of the topic has priority over the hint.
+        A transport at the end of the topic takes precedence over the hint.
         """
         topic = topic.strip()
-        base, slash, last = topic.rpartition("/")
-        if slash and last in TRANSPORTS[1:]:
-            return cls(base, last)
+        base, slash, suffix = topic.rpartition("/")
+        if slash and suffix in TRANSPORTS[1:]:
+            return cls(base, suffix)
         return cls(topic, hint if topic and hint else RAW)
 
-    def carrying(self, types: Collection[str]) -> ImageSource:
-        """Return the source for the message types of the topic, whose name may not indicate its transport."""
+    def with_types(self, types: Collection[str]) -> ImageSource:
+        """Return the source according to the message types of the topic, if its name does not give the transport."""
         if self.transport == RAW and _COMPRESSED_IMAGE in types and _IMAGE not in types:
             return ImageSource(self.base, COMPRESSED, is_renamed=True)
         return self
 
     @property
     def topic(self) -> str:
-        """The topic of the messages; empty if there is none."""
+        """The topic of the messages; empty if no topic is set."""
         return self.base if self.transport == RAW or self.is_renamed else f"{self.base}/{self.transport}"
 
     def transport_of(self, message: Any) -> str:
         """Return the transport of a message.
 
-        If the topic of a CompressedImage does not name the transport, its field `format` does.
+        For a CompressedImage on a topic that does not name the transport, the field `format` decides.
         """
         if self.is_renamed and COMPRESSED_DEPTH in message.format:
             return COMPRESSED_DEPTH
@@ -70,15 +70,15 @@ class ImageSource:
         return _IMAGE if self.transport == RAW else _COMPRESSED_IMAGE
 
     @property
-    def is_read(self) -> bool:
-        """Whether images of this transport can be unpacked here."""
+    def is_supported(self) -> bool:
+        """Whether Linkwright can decode images of this transport."""
         return self.transport in (RAW, COMPRESSED, COMPRESSED_DEPTH)
 
 
 class Unpacker:
     """Converts the messages of a transport to raw images.
 
-    Stores the last one, which may be shown more than once.
+    It keeps the latest image, which may be shown more than once.
     """
 
     def __init__(self) -> None:
@@ -95,6 +95,6 @@ class Unpacker:
             return message
         if message is not self._message:
             self._message = None
-            self._image = unpacked_depth(message) if transport == COMPRESSED_DEPTH else unpacked(message)
+            self._image = decode_depth(message) if transport == COMPRESSED_DEPTH else unpacked(message)
             self._message = message
         return self._image

@@ -18,4 +18,4 @@ __getattr__ = deferred(
         "mesh_library": ("MeshLibrary",),
     },
 )
-"""Names whose modules need numpy, and the library of meshes, which a check uses alone."""
+"""Names that are imported on first use; most need numpy, and a check uses only the mesh library."""

@@ -6,8 +6,8 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.inertial import to_inertial
 
 _DIGITS = 6
-_NOTHING = 1e-9
-"""A number smaller than this part of the largest beside it is rounding."""
+_ROUNDING = 1e-9
+"""The fraction of the largest related number below which a number is a rounding error."""
 
 Attributes = tuple[tuple[str, str], ...]
 
@@ -15,19 +15,21 @@ Attributes = tuple[tuple[str, str], ...]
 def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], ...]:
     """Return the children of an ``<inertial>`` with their attributes, in the order of writing.
 
-    The axes are those of the link. Numbers have six significant digits: the rounding is far smaller than the
+    The axes are the link's axes. Numbers have six significant digits: the rounding is far smaller than the
     uncertainty of the shape, and keeps a valid tensor valid.
     """
     inertial = to_inertial(properties)
     xyz = inertial.origin.xyz
-    x, y, z = (_number(part, 1.0) for part in xyz)  # Round to nanometres; smaller differences are negligible.
+    x, y, z = (
+        _number_text(coordinate, 1.0) for coordinate in xyz
+    )  # Round to nanometres; smaller differences are negligible.
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     moments = [getattr(inertial, name) for name in names]
     largest = max(abs(moment) for moment in moments)
     return (
         ("origin", (("xyz", f"{x} {y} {z}"), ("rpy", "0 0 0"))),
-        ("mass", (("value", _number(inertial.mass, inertial.mass)),)),
-        ("inertia", tuple((name, _number(value, largest)) for name, value in zip(names, moments, strict=True))),
+        ("mass", (("value", _number_text(inertial.mass, inertial.mass)),)),
+        ("inertia", tuple((name, _number_text(value, largest)) for name, value in zip(names, moments, strict=True))),
     )
 
 
@@ -52,7 +54,7 @@ def empty_tag(tag: str, attributes: Attributes) -> str:
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 
 
-def _number(value: float, largest: float) -> str:
-    if abs(value) <= _NOTHING * abs(largest):
+def _number_text(value: float, largest: float) -> str:
+    if abs(value) <= _ROUNDING * abs(largest):
         return "0"
     return f"{value:.{_DIGITS}g}"

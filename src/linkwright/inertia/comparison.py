@@ -1,4 +1,4 @@
-"""Comparison of the mass properties in a file with those computed from the shapes."""
+"""Comparison of the mass properties in a file with the mass properties computed from the shapes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.loading.lean_dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """The result of comparing a file's mass properties with those computed from the shapes.
+    """The result of comparing a file's mass properties with the mass properties computed from the shapes.
 
     Attributes:
         mass: the mass in the file, in kg.
@@ -21,7 +21,7 @@ class Comparison:
         center_distance: the distance between the centres of mass in m.
         moment_ratios: the principal moments per kg in the file divided by the computed ones, in the order of the
             moments, smallest first; None if they cannot be divided.
-        problems: the reasons why the file's values cannot be those of a body.
+        problems: the reasons why no body can have the file's values.
     """
 
     mass: float
@@ -39,11 +39,11 @@ def compare(present: MassProperties, computed: MassProperties) -> Comparison:
     mass_ratio = present.mass / computed.mass if present.mass > 0 and computed.mass > 0 else None
     ratios = None
     if mass_ratio is not None:
-        ours = computed.principal().moments
-        theirs = present.principal().moments
-        if ours[0] > 0:
+        computed_moments = computed.principal().moments
+        present_moments = present.principal().moments
+        if computed_moments[0] > 0:
             with np.errstate(all="ignore"):  # Values beyond the range of doubles cannot be compared.
-                first, second, third = (float(ratio) for ratio in theirs / ours / mass_ratio)
+                first, second, third = (float(ratio) for ratio in present_moments / computed_moments / mass_ratio)
             ratios = (first, second, third) if all(map(isfinite, (first, second, third))) else None
     distance = float(np.linalg.norm(present.center - computed.center))
     return Comparison(float(present.mass), mass_ratio, distance, ratios, tuple(problems(present)))

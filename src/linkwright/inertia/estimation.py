@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
 from linkwright.geometry.mass import MassProperties, combine
-from linkwright.geometry.shapes import FARTHEST, bounds_of
+from linkwright.geometry.shapes import MAX_COORDINATE, shape_bounds
 from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
@@ -15,11 +15,11 @@ from linkwright.urdf import Collision, Link, Mesh, Visual
 ShapeKind = Literal["collision", "visual"]
 
 DEFAULT_DENSITY = 1000.0
-"""kg/m3, that of water; most robots' links are near it when their hollows are counted in."""
+"""The density of water in kg/m3; most links of robots have a similar mean density, including their cavities."""
 
 
-_NOTHING = 1e-18
-"""A volume in m3, that of a grain of a thousandth of a millimetre, below which a shape is none."""
+_MIN_VOLUME = 1e-18
+"""The volume in m3 below which a shape has no volume: that of a grain of a thousandth of a millimetre."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,20 +61,22 @@ def estimate(
 
     Args:
         link: the link.
-        meshes: reads the link's meshes.
+        meshes: the library that reads the link's meshes.
         density: the requested density in kg/m3.
         mass: the requested mass in kg.
         prefer: the kind of shapes to use; the other kind is used if the link has none of these (or none with a volume).
     """
     notes: list[Phrase] = []
     kind: ShapeKind | None = None
-    parts: list[MassProperties] = []
-    other: ShapeKind = "visual" if prefer == "collision" else "collision"
-    for candidate in (prefer, other):
-        shapes = link.collisions if candidate == "collision" else link.visuals
-        parts = [part for shape in shapes if (part := _solid(shape, candidate, meshes, notes)) is not None]
-        if parts:
-            kind = candidate
+    solids: list[MassProperties] = []
+    other_kind: ShapeKind = "visual" if prefer == "collision" else "collision"
+    for candidate_kind in (prefer, other_kind):
+        shapes = link.collisions if candidate_kind == "collision" else link.visuals
+        solids = [
+            shape_solid for shape in shapes if (shape_solid := _solid(shape, candidate_kind, meshes, notes)) is not None
+        ]
+        if solids:
+            kind = candidate_kind
             break
     basis: Literal["mass", "density", "present"] = "density"
     if mass is not None:
@@ -85,12 +87,12 @@ def estimate(
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
     if kind != prefer and (link.collisions if prefer == "collision" else link.visuals):
         notes.append(phrase("the {kind} shapes are used instead", kind=term(kind)))
-    solid = combine(parts)
+    solid = combine(solids)
     if mass is not None:
         properties = solid.with_mass(mass)
     else:
         properties = solid.times(DEFAULT_DENSITY if density is None else density)
-    return Estimate(link.name, properties, kind, len(parts), basis, properties.mass / solid.mass, tuple(notes))
+    return Estimate(link.name, properties, kind, len(solids), basis, properties.mass / solid.mass, tuple(notes))
 
 
 def _solid(
@@ -101,7 +103,7 @@ def _solid(
     Returns None, and adds a note, if the shape has no volume or cannot be used.
     """
     geometry = shape.geometry
-    if max(map(abs, shape.origin.xyz)) > FARTHEST:
+    if max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
         notes.append(phrase("a {kind} shape is left out: it is too far away", kind=term(kind)))
         return None
     if isinstance(geometry, Mesh):
@@ -112,7 +114,7 @@ def _solid(
             return None
         solid = mesh.solid
         name = geometry.filename.rpartition("/")[2]
-        if not solid.mass > _NOTHING:
+        if not solid.mass > _MIN_VOLUME:
             notes.append(phrase("the {kind} mesh '{name}' is left out: it is flat", kind=term(kind), name=name))
             return None
         if not mesh.is_watertight:
@@ -122,13 +124,17 @@ def _solid(
                 )
             )
     else:
-        what = type(geometry).__name__.lower()
-        if max(bounds_of(geometry).high) > FARTHEST:
-            notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(what)))
+        shape_name = type(geometry).__name__.lower()
+        if max(shape_bounds(geometry).high) > MAX_COORDINATE:
+            notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(shape_name)))
             return None
         solid = shape_properties(geometry)
-        if not solid.mass > _NOTHING:
-            why = phrase("its volume is negligible") if solid.mass > 0 else phrase("it has a size that is not positive")
-            notes.append(phrase("a {kind} {what} is left out: {why}", kind=term(kind), what=term(what), why=why))
+        if not solid.mass > _MIN_VOLUME:
+            reason = (
+                phrase("its volume is negligible") if solid.mass > 0 else phrase("it has a size that is not positive")
+            )
+            notes.append(
+                phrase("a {kind} {what} is left out: {why}", kind=term(kind), what=term(shape_name), why=reason)
+            )
             return None
     return solid.moved(shape.origin)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.outlines import Outline, SmallMesh, read_small
-from linkwright.geometry.shapes import FARTHEST
+from linkwright.geometry.shapes import MAX_COORDINATE
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
@@ -20,10 +20,9 @@ if TYPE_CHECKING:
     from linkwright.geometry.meshes import TriangleMesh
 
 _CACHE_SIZE = 256 << 20
-"""Bytes of meshes that are kept from one description to the next."""
-_SMALL, _MOST_SMALL = 100_000, 500_000
-"""Bytes of a file, and of all files of a process, that are read for outlines without arrays. To read more, numpy is
-quicker, together with its import."""
+"""The maximum size in bytes of the meshes that are cached across descriptions."""
+_MAX_SMALL_FILE, _MAX_SMALL_FILES = 100_000, 500_000
+"""The maximum bytes of a file, and of all files in a process, to read without numpy, which is faster beyond."""
 
 
 class MeshLibrary:
@@ -32,7 +31,7 @@ class MeshLibrary:
     Meshes are cached across descriptions, and read again only if their file has changed.
 
     Args:
-        finder: finds packages.
+        finder: the finder of packages.
         folder: the folder for relative paths if the file that contains them is unknown.
     """
 
@@ -52,19 +51,19 @@ class MeshLibrary:
             element: the element in which the URI is written.
 
         Raises:
-            LinkwrightError: PKG101, the package is unknown; PKG102, the URI is invalid.
+            LinkwrightError: PKG101 if the package is not found, or PKG102 if the URI is invalid.
         """
         key = uri, self._base(element)
-        found = self._paths.get(key)
-        if found is None:
+        path_or_error = self._paths.get(key)
+        if path_or_error is None:
             try:
-                found = self._finder.resolve(*key)
+                path_or_error = self._finder.resolve(*key)
             except LinkwrightError as error:
-                found = error
-            self._paths[key] = found
-        if isinstance(found, LinkwrightError):
-            raise found
-        return found
+                path_or_error = error
+            self._paths[key] = path_or_error
+        if isinstance(path_or_error, LinkwrightError):
+            raise path_or_error
+        return path_or_error
 
     def read(self, path: Path) -> TriangleMesh:
         """Return the triangles of a mesh file, which is read at most once.
@@ -73,16 +72,16 @@ class MeshLibrary:
             LinkwrightError: the same errors as `read_mesh`.
         """
         key = os.path.realpath(path)
-        found = self._meshes.get(key)
-        if found is None:
+        mesh_or_error = self._meshes.get(key)
+        if mesh_or_error is None:
             try:
-                found = _read_cached(path, key)
+                mesh_or_error = _read_cached(path, key)
             except LinkwrightError as error:
-                found = error
-            self._meshes[key] = found
-        if isinstance(found, LinkwrightError):
-            raise found
-        return found
+                mesh_or_error = error
+            self._meshes[key] = mesh_or_error
+        if isinstance(mesh_or_error, LinkwrightError):
+            raise mesh_or_error
+        return mesh_or_error
 
     def load(self, mesh: Mesh, element: Element | None = None) -> TriangleMesh:
         """Return the triangles of a URDF mesh, scaled, in the frame of its visual or collision.
@@ -103,17 +102,17 @@ class MeshLibrary:
         path = self._checked(mesh, element)
         key = os.path.realpath(path)
         if key not in self._outlines:
-            self._outlines[key] = None if key in self._meshes else _small(key, path.suffix.lower())
+            self._outlines[key] = None if key in self._meshes else _read_small_cached(key, path.suffix.lower())
         return (self._outlines[key] or self.read(path)).scaled(mesh.scale)
 
     def _checked(self, mesh: Mesh, element: Element | None) -> Path:
         """Return the path of a mesh's file.
 
-        Raises:
+        LinkwrightError: the same errors as `locate`, or INR103 if the scale is out of range.
             LinkwrightError: the same errors as `locate`; INR103, the scale is out of range.
         """
         path = self.locate(mesh.filename, element)
-        if max(map(abs, mesh.scale)) > FARTHEST:
+        if max(map(abs, mesh.scale)) > MAX_COORDINATE:
             from linkwright.geometry.meshes import unreadable
 
             raise unreadable(path, phrase("its scale is out of range"))
@@ -125,16 +124,16 @@ class MeshLibrary:
         return Path(element.source.name).parent
 
 
-def _size_of(_: object, mesh: TriangleMesh) -> int:
+def _mesh_bytes(_: object, mesh: TriangleMesh) -> int:
     """Return the size of a mesh in bytes, doubled to account for data computed from the mesh."""
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 
-_CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_SIZE, _size_of)
+_CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_SIZE, _mesh_bytes)
 """The meshes of files, by the path, the time of the last change in ns, and the size in bytes."""
 
 
-def _read_cached(path: Path, real: str) -> TriangleMesh:
+def _read_cached(path: Path, real_path: str) -> TriangleMesh:
     """Return the triangles of a file from the cache, or read the file if it has changed.
 
     A glTF file is read each time, because it may refer to other files.
@@ -144,37 +143,40 @@ def _read_cached(path: Path, real: str) -> TriangleMesh:
     if path.suffix.lower() in (".glb", ".gltf"):
         return read_mesh(path)
     try:
-        facts = os.stat(real)  # noqa: PTH116 - a path that is already text
+        file_status = os.stat(real_path)  # noqa: PTH116 - a path that is already text
     except OSError:
         return read_mesh(path)  # This raises an error with the reason.
-    key = real, facts.st_mtime_ns, facts.st_size
-    found = _CACHE.values.get(key)
-    if found is None:
-        found = read_mesh(path)
-        _CACHE.store(key, found)
-    return found
+    key = real_path, file_status.st_mtime_ns, file_status.st_size
+    mesh = _CACHE.values.get(key)
+    if mesh is None:
+        mesh = read_mesh(path)
+        _CACHE.store(key, mesh)
+    return mesh
 
 
 _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
 """The meshes of files that were read without arrays, with the keys of `_CACHE`."""
 
 
-def _small(real: str, kind: str) -> SmallMesh | None:
+def _read_small_cached(real_path: str, kind: str) -> SmallMesh | None:
     """Return the triangles of a small file without unusual content, read without arrays.
 
-    Returns None for other files, which must be read with arrays; that also reports what is wrong with them.
+    The result is None for other files, which must be read with arrays; this also reports their errors.
     """
     try:
-        facts = os.stat(real)  # noqa: PTH116 - as above
-        key = real, facts.st_mtime_ns, facts.st_size
-        found = _SMALL_MESHES.get(key)
-        if found is not None or "numpy" in sys.modules or not stat.S_ISREG(facts.st_mode):
-            return found
-        if facts.st_size > _SMALL or facts.st_size + sum(size for _, _, size in _SMALL_MESHES) > _MOST_SMALL:
+        file_status = os.stat(real_path)  # noqa: PTH116 - as above
+        key = real_path, file_status.st_mtime_ns, file_status.st_size
+        mesh = _SMALL_MESHES.get(key)
+        if mesh is not None or "numpy" in sys.modules or not stat.S_ISREG(file_status.st_mode):
+            return mesh
+        if (
+            file_status.st_size > _MAX_SMALL_FILE
+            or file_status.st_size + sum(size for _, _, size in _SMALL_MESHES) > _MAX_SMALL_FILES
+        ):
             return None
-        found = read_small(Path(real).read_bytes(), kind[1:])
+        mesh = read_small(Path(real_path).read_bytes(), kind[1:])
     except OSError:
         return None
-    if found is not None:
-        _SMALL_MESHES[key] = found
-    return found
+    if mesh is not None:
+        _SMALL_MESHES[key] = mesh
+    return mesh

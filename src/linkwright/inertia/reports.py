@@ -13,29 +13,29 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import to_inertial
-from linkwright.inertia.verdict import Standing, Verdict, grouped, judge
+from linkwright.inertia.verdict import Standing, Verdict, grouped_digits, judge
 from linkwright.inertia.writing import Written
 from linkwright.loading.lean_typing import Any
 from linkwright.urdf import Robot
 from linkwright.urdf.bodies import Bodies
 
 _STEP = "  "
-_HEAD = (
+_COLUMN_TITLES = (
     phrase("link"),
     phrase("mass (kg)"),
     phrase("density (kg/m3)"),
     phrase("principal moments (kg m2)"),
     phrase("verdict"),
 )
-_NAMES = {
+_STANDING_NAMES = {
     Standing.IMPOSSIBLE: phrase("impossible"),
     Standing.DOUBTFUL: phrase("doubtful"),
     Standing.MISSING: phrase("missing"),
     Standing.ROUGH: phrase("rough"),
 }
-"""The words with which verdicts begin that ask for a change."""
+"""The first words of verdicts that require a change."""
 
-_BASES = {
+_BASIS_PHRASES = {
     "mass": phrase("mass as given"),
     "present": phrase("mass as in the file"),
     "density": phrase("mass from density"),
@@ -43,7 +43,10 @@ _BASES = {
 
 
 def as_text(
-    robot: Robot, estimates: Sequence[Estimate], written: Written | None = None, detailed: Collection[str] = ()
+    robot: Robot,
+    estimates: Sequence[Estimate],
+    write_result: Written | None = None,
+    detailed_links: Collection[str] = (),
 ) -> str:
     """Return a table of the links' mass properties with verdicts, the worst first.
 
@@ -52,91 +55,98 @@ def as_text(
     Args:
         robot: the robot.
         estimates: the estimates of its links.
-        written: the result of writing, if any; the verdicts apply to the values in the file before writing.
-        detailed: the links whose computed ``<inertial>`` is shown after the table.
+        write_result: the result of writing, if any; the verdicts apply to the values in the file before writing.
+        detailed_links: the links whose computed ``<inertial>`` is shown after the table.
     """
     verdicts = _verdicts(robot, estimates)
-    ordered = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
-    parts = ["\n".join(_table([_row(estimate, verdicts[estimate.link]) for estimate in ordered])) + "\n"]
-    parts += ["\n".join(_detail(estimate)) + "\n" for estimate in estimates if estimate.link in detailed]
-    if written is not None:
-        files = quoted_names(map(display_path, written.files)) if written.files else phrase("no file")
-        line = phrase("wrote {count} <inertial> to {files}", count=len(written.links), files=files)
-        parts.append(localized(line) + "\n")
-    return "\n".join(parts)
+    sorted_estimates = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
+    sections = ["\n".join(_table([_row(estimate, verdicts[estimate.link]) for estimate in sorted_estimates])) + "\n"]
+    sections += ["\n".join(_detail_lines(estimate)) + "\n" for estimate in estimates if estimate.link in detailed_links]
+    if write_result is not None:
+        files = quoted_names(map(display_path, write_result.files)) if write_result.files else phrase("no file")
+        line = phrase("wrote {count} <inertial> to {files}", count=len(write_result.links), files=files)
+        sections.append(localized(line) + "\n")
+    return "\n".join(sections)
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
     """Iterate over the lines of a table with its header; cells are left-aligned."""
-    lines = [tuple(map(localized, _HEAD)), *rows]
+    lines = [tuple(map(localized, _COLUMN_TITLES)), *rows]
     widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
     for line in lines:
         cells = (cell + " " * (width - shown_width(cell)) for cell, width in zip(line, widths, strict=True))
         yield _STEP.join(cells).rstrip()
 
 
-def _row(found: Estimate, verdict: Verdict) -> tuple[str, ...]:
-    present = verdict.present
-    mass = "-" if present is None else f"{present.mass:.4g}"
-    if found.properties is not None and found.basis != "present":
-        mass = localized(phrase("{present} ({mass:.4g} computed)", present=mass, mass=found.properties.mass))
-    moments = "-" if present is None else " ".join(f"{moment:.3g}" for moment in present.principal().moments)
-    density = "-" if verdict.density is None else grouped(verdict.density)
-    name = _NAMES.get(verdict.standing)
-    words = verdict.words if name is None else phrase("{standing}: {words}", standing=name, words=verdict.words)
-    return found.link, mass, density, moments, localized(words)
+def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
+    file_properties = verdict.file_properties
+    mass = "-" if file_properties is None else f"{file_properties.mass:.4g}"
+    if estimate.properties is not None and estimate.basis != "present":
+        mass = localized(phrase("{present} ({mass:.4g} computed)", present=mass, mass=estimate.properties.mass))
+    moments = (
+        "-" if file_properties is None else " ".join(f"{moment:.3g}" for moment in file_properties.principal().moments)
+    )
+    density = "-" if verdict.density is None else grouped_digits(verdict.density)
+    name = _STANDING_NAMES.get(verdict.standing)
+    text = verdict.reason if name is None else phrase("{standing}: {words}", standing=name, words=verdict.reason)
+    return estimate.link, mass, density, moments, localized(text)
 
 
-def _detail(found: Estimate) -> Iterator[str]:
-    yield f"{found.link}: {localized(_summary(found))}"
-    yield from (f"{_STEP}{localized(note)}" for note in found.notes)
-    if found.properties is not None:
-        yield f"{_STEP}{inertial_block(found.properties, _STEP)}"
+def _detail_lines(estimate: Estimate) -> Iterator[str]:
+    yield f"{estimate.link}: {localized(_summary(estimate))}"
+    yield from (f"{_STEP}{localized(note)}" for note in estimate.notes)
+    if estimate.properties is not None:
+        yield f"{_STEP}{inertial_block(estimate.properties, _STEP)}"
 
 
 def _verdicts(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdict]:
     bodies = Bodies(robot)
-    return {found.link: judge(robot.links[found.link], found, bodies) for found in estimates}
+    return {estimate.link: judge(robot.links[estimate.link], estimate, bodies) for estimate in estimates}
 
 
-def as_json(robot: Robot, estimates: Sequence[Estimate], written: Written | None = None) -> str:
+def as_json(robot: Robot, estimates: Sequence[Estimate], write_result: Written | None = None) -> str:
     """Return the data of `as_text` as JSON, with the links in the order of the estimates.
 
     Units are SI, and floats are written in full.
     """
     verdicts = _verdicts(robot, estimates)
-    links = [_link_data(found, verdicts[found.link], written) for found in estimates]
-    files = [] if written is None else [str(file) for file in written.files]
+    links = [_link_data(estimate, verdicts[estimate.link], write_result) for estimate in estimates]
+    files = [] if write_result is None else [str(file) for file in write_result.files]
     return json.dumps({"links": links, "files": files}, indent=2, ensure_ascii=False) + "\n"
 
 
-def _summary(found: Estimate) -> Phrase:
-    if found.properties is None:
+def _summary(estimate: Estimate) -> Phrase:
+    if estimate.properties is None:
         return phrase("no shape has a volume, so nothing is computed")
     shapes = (
-        counted("{count} collision shape", "{count} collision shapes", found.shapes)
-        if found.kind == "collision"
-        else counted("{count} visual shape", "{count} visual shapes", found.shapes)
+        counted("{count} collision shape", "{count} collision shapes", estimate.shapes)
+        if estimate.kind == "collision"
+        else counted("{count} visual shape", "{count} visual shapes", estimate.shapes)
     )
     return phrase(
         "{shapes}, {basis}: {mass:.6g} kg at {density:.4g} kg/m3",
         shapes=shapes,
-        basis=_BASES[found.basis],
-        mass=found.properties.mass,
-        density=found.density,
+        basis=_BASIS_PHRASES[estimate.basis],
+        mass=estimate.properties.mass,
+        density=estimate.density,
     )
 
 
-def _link_data(found: Estimate, verdict: Verdict, written: Written | None) -> dict[str, Any]:
-    data: dict[str, Any] = {"link": found.link, "from": found.kind, "shapes": found.shapes, "basis": found.basis}
-    data |= {"density": found.density, "notes": list(found.notes), "inertial": None, "present": None}
-    if found.properties is not None:
-        data |= _properties_data(found.properties)
+def _link_data(estimate: Estimate, verdict: Verdict, write_result: Written | None) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "link": estimate.link,
+        "from": estimate.kind,
+        "shapes": estimate.shapes,
+        "basis": estimate.basis,
+    }
+    data |= {"density": estimate.density, "notes": list(estimate.notes), "inertial": None, "present": None}
+    if estimate.properties is not None:
+        data |= _properties_data(estimate.properties)
     data["present"] = None if verdict.comparison is None else asdict(verdict.comparison)
-    data |= {"verdict": verdict.standing.value, "why": str.__str__(verdict.words), "present_density": verdict.density}
-    if written is not None:
-        data["written"] = found.link in written.links
-        data["refused"] = written.refused.get(found.link)
+    data |= {"verdict": verdict.standing.value, "why": str.__str__(verdict.reason), "present_density": verdict.density}
+    if write_result is not None:
+        data["written"] = estimate.link in write_result.links
+        data["refused"] = write_result.refusals.get(estimate.link)
     return data
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.validity import HEAVIEST_DENSITY, LIGHTEST_DENSITY, problems
+from linkwright.geometry.validity import MAX_DENSITY, MIN_DENSITY, problems
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import from_inertial
@@ -17,13 +17,13 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Mesh
 from linkwright.urdf.bodies import Bodies
 
-_DOUBTFUL = 10.0
-_ROUGH = 2.0
-"""The factor between moments and those of a solid of the same shapes from which they are rough."""
+_DOUBTFUL_RATIO = 10.0
+_ROUGH_RATIO = 2.0
+"""The ratios to the moments of a solid of the same shapes above which moments are doubtful, and rough."""
 
-_FAR = 0.5
-_OFF = 0.1
-"""The distances of a centre of mass from that of the shapes to be doubtful, and rough, in their diagonals."""
+_DOUBTFUL_DISTANCE = 0.5
+_ROUGH_DISTANCE = 0.1
+"""The distances between the centres of mass that are doubtful, and rough, as fractions of the diagonal."""
 
 
 class Standing(Enum):
@@ -46,17 +46,17 @@ class Verdict:
 
     Attributes:
         standing: the grade.
-        words: the reason, as a clause.
+        reason: the reason, as a clause.
         badness: the size of the error; comparable between verdicts with the same standing.
-        present: the values of the file, in the link frame; None if they are missing or unusable.
+        file_properties: the values of the file, in the link frame; None if they are missing or unusable.
         density: the density of the link's shapes with the file's mass, in kg/m3; None if it is unknown.
         comparison: the comparison of the file with the shapes; None if there is nothing to compare.
     """
 
     standing: Standing
-    words: Phrase
+    reason: Phrase
     badness: float = 0.0
-    present: MassProperties | None = None
+    file_properties: MassProperties | None = None
     density: float | None = None
     comparison: Comparison | None = None
 
@@ -75,97 +75,109 @@ class _Reason:
     badness: float = 0.0
 
 
-def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
+def judge(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
     """Return the verdict on a link's ``<inertial>``.
 
     Args:
         link: the link.
-        found: the estimate from its shapes.
-        bodies: the robot's links grouped by fixed joints; the mass of a link may include that of links without a mass.
+        estimate: the estimate from the link's shapes.
+        bodies: the robot's links grouped by fixed joints; a link's mass may represent links without a mass.
     """
     if link.inertial is None:
-        return _without(link, bodies)
+        return _verdict_without_inertial(link, bodies)
     if not link.inertial.is_computable:
         return Verdict(Standing.IMPOSSIBLE, phrase("its numbers are out of range"))
-    present = from_inertial(link.inertial)
-    shapes = link.collisions if found.kind == "collision" else link.visuals
-    comparison = None if found.properties is None else compare(present, found.properties)
-    computed = found.properties if found.shapes == len(shapes) else None  # A part of the shapes is not conclusive.
-    alone = not bodies.includes_massless_links(link)
-    reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(present)]
+    file_properties = from_inertial(link.inertial)
+    shapes = link.collisions if estimate.kind == "collision" else link.visuals
+    comparison = None if estimate.properties is None else compare(file_properties, estimate.properties)
+    computed = (
+        estimate.properties if estimate.shapes == len(shapes) else None
+    )  # A part of the shapes is not conclusive.
+    is_alone = not bodies.includes_massless_links(link)
+    reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(file_properties)]
     density = None
-    if alone and computed is not None and comparison is not None:
-        if present.mass > 0:
-            density = present.mass / computed.mass * found.density
-            reasons += _of_density(density, has_mesh=any(isinstance(shape.geometry, Mesh) for shape in shapes))
-        reasons += _of_comparison(comparison, computed)
+    if is_alone and computed is not None and comparison is not None:
+        if file_properties.mass > 0:
+            density = file_properties.mass / computed.mass * estimate.density
+            reasons += _density_reasons(density, has_mesh=any(isinstance(shape.geometry, Mesh) for shape in shapes))
+        reasons += _comparison_reasons(comparison, computed)
     if reasons:
-        worst = min(reasons, key=lambda reason: _ORDER.index(reason.standing)).standing
-        worst_reasons = [reason for reason in reasons if reason.standing is worst]
+        worst_standing = min(reasons, key=lambda reason: _ORDER.index(reason.standing)).standing
+        worst_reasons = [reason for reason in reasons if reason.standing is worst_standing]
         words, badness = (
             joined([reason.words for reason in worst_reasons], "; "),
             max(reason.badness for reason in worst_reasons),
         )
-        return Verdict(worst, words, badness, present, density, comparison)
+        return Verdict(worst_standing, words, badness, file_properties, density, comparison)
     if computed is None:
-        return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, present)
-    if not alone:
+        return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, file_properties)
+    if not is_alone:
         words = phrase("its mass includes links that are fixed to it")
-        return Verdict(Standing.UNJUDGED, words, 0.0, present, None, comparison)
-    return Verdict(Standing.FITS, phrase("fits its shapes"), 0.0, present, density, comparison)
+        return Verdict(Standing.UNJUDGED, words, 0.0, file_properties, None, comparison)
+    return Verdict(Standing.FITS, phrase("it fits its shapes"), 0.0, file_properties, density, comparison)
 
 
-def _without(link: Link, bodies: Bodies) -> Verdict:
+def _verdict_without_inertial(link: Link, bodies: Bodies) -> Verdict:
     """Return the verdict on a link without an ``<inertial>``."""
     body = bodies.of(link.name)
     members = [] if body is None else bodies.members(body)
-    heavy = next((member.name for member in members if member.inertial is not None and member.inertial.mass > 0), None)
-    if heavy is not None:
-        return Verdict(Standing.UNJUDGED, phrase("it is fixed to '{link}', which has a mass", link=heavy))
+    link_with_mass = next(
+        (member.name for member in members if member.inertial is not None and member.inertial.mass > 0), None
+    )
+    if link_with_mass is not None:
+        return Verdict(Standing.UNJUDGED, phrase("it is fixed to '{link}', which has a mass", link=link_with_mass))
     if link.visuals or link.collisions or (body is not None and body.joint is not None and members[0] is link):
         return Verdict(Standing.MISSING, phrase("it has no <inertial>"))
     return Verdict(Standing.UNJUDGED, phrase("it is only a frame"))
 
 
-def _of_density(density: float, *, has_mesh: bool) -> list[_Reason]:
-    if density > HEAVIEST_DENSITY:
+def _density_reasons(density: float, *, has_mesh: bool) -> list[_Reason]:
+    if density > MAX_DENSITY:
         # A mesh may be a thin skin around a heavy interior.
         standing = Standing.DOUBTFUL if has_mesh else Standing.IMPOSSIBLE
-        words = phrase("denser than any solid: osmium has {density} kg/m3", density=grouped(HEAVIEST_DENSITY))
-        return [_Reason(standing, words, log(density / HEAVIEST_DENSITY))]
-    if density < LIGHTEST_DENSITY:
-        badness = log(LIGHTEST_DENSITY / density) if density > 0 else inf  # The density is 0 for a negligible mass.
-        return [_Reason(Standing.DOUBTFUL, phrase("lighter than air"), badness)]
+        words = phrase("it is denser than any solid: osmium has {density} kg/m3", density=grouped_digits(MAX_DENSITY))
+        return [_Reason(standing, words, log(density / MAX_DENSITY))]
+    if density < MIN_DENSITY:
+        badness = log(MIN_DENSITY / density) if density > 0 else inf  # The density is 0 for a negligible mass.
+        return [_Reason(Standing.DOUBTFUL, phrase("it is lighter than air"), badness)]
     return []
 
 
-def _of_comparison(comparison: Comparison, computed: MassProperties) -> list[_Reason]:
+def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> list[_Reason]:
     reasons = []
     box = computed.equivalent_box()
-    part = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
-    if part > _OFF:
-        words = phrase("its centre of mass is {length} from that of its shapes", length=_length(comparison))
-        reasons.append(_Reason(Standing.DOUBTFUL if part > _FAR else Standing.ROUGH, words, log(part / _OFF)))
+    relative_distance = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
+    if relative_distance > _ROUGH_DISTANCE:
+        words = phrase(
+            ("its centre of mass is {length} from the centre of its shapes"), length=_length_text(comparison)
+        )
+        reasons.append(
+            _Reason(
+                Standing.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE else Standing.ROUGH,
+                words,
+                log(relative_distance / _ROUGH_DISTANCE),
+            )
+        )
     ratios = [ratio for ratio in comparison.moment_ratios or () if ratio > 0]
     if ratios:
         ratio = max(ratios, key=lambda value: abs(log(value)))
         times = max(ratio, 1 / ratio)
-        if times > _ROUGH:
-            shown = f"{times:.2g}" if times < _DOUBTFUL else grouped(times)
+        if times > _ROUGH_RATIO:
+            times_text = f"{times:.2g}" if times < _DOUBTFUL_RATIO else grouped_digits(times)
             words = (
-                phrase("its moments are {times} times those of a solid of its shapes", times=shown)
+                phrase("its moments are {times} times the moments of a solid with its shapes", times=times_text)
                 if ratio > 1
-                else phrase("its moments are 1/{times} of those of a solid of its shapes", times=shown)
+                else phrase("its moments are 1/{times} of the moments of a solid with its shapes", times=times_text)
             )
-            reasons.append(_Reason(Standing.DOUBTFUL if times > _DOUBTFUL else Standing.ROUGH, words, log(times)))
+            reasons.append(_Reason(Standing.DOUBTFUL if times > _DOUBTFUL_RATIO else Standing.ROUGH, words, log(times)))
     return reasons
 
 
-def _length(comparison: Comparison) -> str:
+def _length_text(comparison: Comparison) -> str:
     distance = comparison.center_distance
     return f"{distance:.3g} m" if distance >= 1 else f"{distance * 1000:.3g} mm"
 
 
-def grouped(number: float) -> str:
+def grouped_digits(number: float) -> str:
     """Format a number with thousands separators, or with three significant digits below 100."""
     return f"{number:,.0f}".replace(",", " ") if number >= 100 else f"{number:.3g}"

@@ -25,12 +25,12 @@ class Written:
     Attributes:
         files: the files that changed, in the order of their links.
         links: the links whose ``<inertial>`` was written to a file.
-        refused: the reason, as a clause, why a link could not be written, by link.
+        refusals: the reason, as a clause, why a link could not be written, by link.
     """
 
     files: tuple[Path, ...]
     links: tuple[str, ...]
-    refused: Mapping[str, str]
+    refusals: Mapping[str, str]
 
 
 def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:
@@ -63,11 +63,11 @@ def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[
     return edits_for(robot.links[name], properties)
 
 
-def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
+def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
     """Apply edits of several elements, writing each file once.
 
     Args:
-        edits_of: for each name, a function that returns a text as it was read and its edits; it may raise
+        edit_functions: for each name, a function that returns a text as it was read and its edits; it may raise
             `NotWritableError`.
 
     Returns:
@@ -76,23 +76,25 @@ def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Repla
     Raises:
         LinkwrightError: INR201, a file cannot be written.
     """
-    refused: dict[str, str] = {}
+    refusals: dict[str, str] = {}
     edits: dict[str, list[Replacement]] = {}
     texts: dict[str, str] = {}
     names: dict[str, list[str]] = {}
-    for name, find in edits_of.items():
+    for name, find_edits in edit_functions.items():
         try:
-            source, changes = find()
+            source, changes = find_edits()
             if source.name not in texts:
-                texts[source.name] = _current(source.name, source.text)
+                texts[source.name] = _read_unchanged(source.name, source.text)
         except NotWritableError as error:
-            refused[name] = str(error)
+            refusals[name] = str(error)
             continue
         edits.setdefault(source.name, []).extend(changes)
         names.setdefault(source.name, []).append(name)
     for file, changes in edits.items():
         _save(file, texts[file], changes)
-    return Written(tuple(map(Path, edits)), tuple(name for listed in names.values() for name in listed), refused)
+    return Written(
+        tuple(map(Path, edits)), tuple(name for link_names in names.values() for name in link_names), refusals
+    )
 
 
 def _place(link: Link) -> tuple[str, int]:
@@ -100,28 +102,28 @@ def _place(link: Link) -> tuple[str, int]:
     return ("", id(link)) if element is None or element.source is None else (element.source.name, element.offset)
 
 
-def _current(file: str, text: str) -> str:
+def _read_unchanged(file: str, text: str) -> str:
     """Return the current text of a file, including any byte order mark.
 
     Raises:
-        NotWritableError: the file has changed since `text` was read, cannot be read, or is not UTF-8.
+        NotWritableError: if the file has changed since `text` was read, cannot be read, or is not UTF-8.
     """
     try:
-        now = read_bytes(file).decode("utf-8")
+        current_text = read_bytes(file).decode("utf-8")
     except UnicodeDecodeError:
         raise NotWritableError(phrase("its file is not UTF-8")) from None
     except LinkwrightError:
         raise NotWritableError(phrase("it is not written in a file")) from None
-    if now.removeprefix(_BYTE_ORDER_MARK) != text:
+    if current_text.removeprefix(_BYTE_ORDER_MARK) != text:
         raise NotWritableError(phrase("its file has changed since it was read"))
-    return now
+    return current_text
 
 
 def _save(file: str, text: str, changes: list[Replacement]) -> None:
-    mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
-    changed = mark + apply(text.removeprefix(_BYTE_ORDER_MARK), changes)
+    byte_order_mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
+    new_text = byte_order_mark + apply(text.removeprefix(_BYTE_ORDER_MARK), changes)
     try:
-        write_whole_file(file, changed)
+        write_whole_file(file, new_text)
     except OSError as error:
         message = phrase(
             "cannot write '{file}': {strerror}", file=display_path(file), strerror=foreign(error.strerror or error)

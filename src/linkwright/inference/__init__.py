@@ -1,4 +1,4 @@
-"""Inference of elements that a description lacks for a simulated world: with reasons, and added on request."""
+"""Infer the elements that a description lacks for simulation, with reasons; they are added on request."""
 
 from linkwright.inference.infer import infer
 from linkwright.inference.model import Drive, DriveKind, Finding, Inference, Wheel

@@ -1,6 +1,6 @@
-"""The kind of drive that a robot's wheels suggest.
+"""Infer the kind of drive from a robot's wheels.
 
-If they suggest none, a finding names the option to use.
+If the kind cannot be inferred, a finding names the option that sets it.
 """
 
 from __future__ import annotations
@@ -12,24 +12,24 @@ from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.inference.model import Drive, DriveKind, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 
-_IN_LINE = 0.06
-"""The greatest offset of a left wheel to the front or rear of its right one, as a part of their distance."""
+_MAX_OFFSET = 0.06
+"""The maximum offset along x between the wheels of a pair, as a share of their distance."""
 
-_ALIKE = 0.05
-"""How far the radii of a pair may differ, as a part of the larger."""
+_MAX_RADIUS_DIFFERENCE = 0.05
+"""The maximum difference between the radii of a pair, as a share of the larger radius."""
 
-_MUCH_SMALLER = 0.8
-"""A pair of wheels with less than this part of another pair's radius may be there for support only."""
+_SUPPORT_RADIUS_SHARE = 0.8
+"""A wheel with less than this share of another pair's radius may only support the robot."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The drive that the wheels suggest.
+    """The drive that the wheels suggest, and why.
 
     Attributes:
         drive: the drive; None if it is unknown.
-        reason: the reason for the drive, or why it is unknown; a clause.
-        extra_casters: the links of wheels that are casters in view of the other wheels.
+        reason: why it is this drive, or why it is unknown; a clause.
+        extra_casters: the links of wheels that turn out to be casters, because other wheels form pairs.
     """
 
     drive: Drive | None
@@ -41,101 +41,113 @@ Pair = tuple[Wheel, Wheel]
 
 
 def judge(
-    survey: Survey, under: Undercarriage, wanted: DriveKind | None = None, chosen: Sequence[Wheel] = ()
+    survey: Survey,
+    undercarriage: Undercarriage,
+    requested_kind: DriveKind | None = None,
+    chosen_wheels: Sequence[Wheel] = (),
 ) -> Verdict:
     """Return the drive of a robot with wheels.
 
     Args:
-        survey: the robot.
-        under: its undercarriage.
-        wanted: the kind requested by the user; None to infer it from the wheels.
-        chosen: the driven wheels named by the user; empty to find them.
+        survey: the facts about the robot.
+        undercarriage: the wheels and casters of the robot.
+        requested_kind: the kind that the user has chosen; None to infer it from the wheels.
+        chosen_wheels: the driven wheels that the user has chosen; empty to find them.
     """
-    wheels = tuple(chosen) or under.wheels
-    if not chosen and under.crooked and wanted is None:
-        names = quoted_names([wheel.joint for wheel in under.crooked])
+    wheels = tuple(chosen_wheels) or undercarriage.wheels
+    if not chosen_wheels and undercarriage.misaligned and requested_kind is None:
+        names = quoted_names([wheel.joint for wheel in undercarriage.misaligned])
         return Verdict(None, phrase("the wheels on {names} do not roll forward along x", names=names))
-    fixed, single = _pairs([wheel for wheel in wheels if wheel.steering is None or chosen])
-    steered, single_steered = _pairs([] if chosen else [wheel for wheel in wheels if wheel.steering is not None])
-    if wanted == "ackermann" and chosen:
-        steered, single_steered = _pairs([wheel for wheel in under.wheels if wheel.steering is not None])
-        fixed = [pair for pair in fixed if pair not in steered]
-    if single_steered:
-        names = quoted_names([wheel.joint for wheel in single_steered])
+    fixed_pairs, unpaired = _pair_wheels([wheel for wheel in wheels if wheel.steering is None or chosen_wheels])
+    steered_pairs, unpaired_steered = _pair_wheels(
+        [] if chosen_wheels else [wheel for wheel in wheels if wheel.steering is not None]
+    )
+    if requested_kind == "ackermann" and chosen_wheels:
+        steered_pairs, unpaired_steered = _pair_wheels(
+            [wheel for wheel in undercarriage.wheels if wheel.steering is not None]
+        )
+        fixed_pairs = [pair for pair in fixed_pairs if pair not in steered_pairs]
+    if unpaired_steered:
+        names = quoted_names([wheel.joint for wheel in unpaired_steered])
         return Verdict(None, phrase("the wheels on {names} are steered, but are not a pair", names=names))
     casters: list[str] = []
-    if single:
-        casters = [wheel.link for wheel in single if _supports_only(wheel, fixed)]
-        others = [wheel.joint for wheel in single if wheel.link not in casters]
-        if others and (chosen or wanted is None):
-            return Verdict(None, phrase("no wheel is opposite {names}", names=quoted_names(others)))
-    verdict = _of_pairs(survey, fixed, steered, wanted)
+    if unpaired:
+        casters = [wheel.link for wheel in unpaired if _supports_only(wheel, fixed_pairs)]
+        unpaired_joints = [wheel.joint for wheel in unpaired if wheel.link not in casters]
+        if unpaired_joints and (chosen_wheels or requested_kind is None):
+            return Verdict(None, phrase("no wheel is opposite {names}", names=quoted_names(unpaired_joints)))
+    verdict = _drive_from_pairs(survey, fixed_pairs, steered_pairs, requested_kind)
     return Verdict(verdict.drive, verdict.reason, tuple(casters))
 
 
-def _of_pairs(survey: Survey, fixed: list[Pair], steered: list[Pair], wanted: DriveKind | None) -> Verdict:
-    kind = wanted or _kind_of(survey, fixed, steered)
+def _drive_from_pairs(
+    survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair], requested_kind: DriveKind | None
+) -> Verdict:
+    kind = requested_kind or _suggested_kind(survey, fixed_pairs, steered_pairs)
     if kind is None:
-        return Verdict(None, _why_none(fixed, steered))
-    lacks = _lacking(kind, fixed, steered)
-    if lacks is not None:
-        return Verdict(None, lacks)
+        return Verdict(None, _why_unknown(fixed_pairs, steered_pairs))
+    problem = _missing_wheels(kind, fixed_pairs, steered_pairs)
+    if problem is not None:
+        return Verdict(None, problem)
     if kind == "differential":
-        fixed = fixed[:1]
+        fixed_pairs = fixed_pairs[:1]
     if kind == "ackermann":
-        front = steered[0][0].center[0]
-        fixed = sorted(fixed, key=lambda pair: -abs(pair[0].center[0] - front))[:1]
-    left, right = tuple(pair[0] for pair in fixed), tuple(pair[1] for pair in fixed)
-    separation = sum(abs(a.center[1] - b.center[1]) for a, b in fixed) / len(fixed)
-    drive = Drive(kind, left, right, steered[0] if kind == "ackermann" else (), separation)
-    return Verdict(drive, _reason(drive))
+        front_x = steered_pairs[0][0].center[0]
+        fixed_pairs = sorted(fixed_pairs, key=lambda pair: -abs(pair[0].center[0] - front_x))[:1]
+    left, right = tuple(pair[0] for pair in fixed_pairs), tuple(pair[1] for pair in fixed_pairs)
+    separation = sum(
+        abs(left_wheel.center[1] - right_wheel.center[1]) for left_wheel, right_wheel in fixed_pairs
+    ) / len(fixed_pairs)
+    drive = Drive(kind, left, right, steered_pairs[0] if kind == "ackermann" else (), separation)
+    return Verdict(drive, _drive_reason(drive))
 
 
-def _kind_of(survey: Survey, fixed: list[Pair], steered: list[Pair]) -> DriveKind | None:
+def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> DriveKind | None:
     """Return the kind of drive that the wheel pairs suggest; None if they suggest several kinds or none."""
-    if steered:
-        return "ackermann" if len(steered) == 1 and fixed else None
-    if not fixed:
+    if steered_pairs:
+        return "ackermann" if len(steered_pairs) == 1 and fixed_pairs else None
+    if not fixed_pairs:
         return None
-    if len(fixed) == 1:
+    if len(fixed_pairs) == 1:
         return "differential"
-    radii = [wheel.radius for pair in fixed for wheel in pair]
-    if min(radii) < _MUCH_SMALLER * max(radii):
+    radii = [wheel.radius for pair in fixed_pairs for wheel in pair]
+    if min(radii) < _SUPPORT_RADIUS_SHARE * max(radii):
         return None
-    if len(fixed) == 2 and survey.is_mecanum(tuple(wheel for pair in fixed for wheel in pair)):
+    if len(fixed_pairs) == 2 and survey.is_mecanum(tuple(wheel for pair in fixed_pairs for wheel in pair)):
         return "mecanum"
     return "skid"
 
 
-def _why_none(fixed: list[Pair], steered: list[Pair]) -> Phrase:
-    if len(steered) > 1:
-        return phrase("there are {count} pairs of steered wheels", count=len(steered))
-    if steered:
+def _why_unknown(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
+    if len(steered_pairs) > 1:
+        return phrase("there are {count} pairs of steered wheels", count=len(steered_pairs))
+    if steered_pairs:
         return phrase("there are steered wheels, but no other pair that could drive")
-    if fixed:
+    if fixed_pairs:
         return phrase("there are pairs of wheels of different sizes, one of which may only support the robot")
     return phrase("there is no pair of wheels, one on the left and one on the right")
 
 
-def _lacking(kind: DriveKind, fixed: list[Pair], steered: list[Pair]) -> Phrase | None:
-    """Return what a kind of drive lacks, or None if it lacks nothing."""
-    if kind == "ackermann" and len(steered) != 1:
+def _missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase | None:
+    """Return what the wheels lack for a kind of drive; None if they lack nothing."""
+    if kind == "ackermann" and len(steered_pairs) != 1:
         return phrase(
-            "it needs one pair of wheels that vertical joints steer, but there are {count}", count=len(steered)
+            "it needs one pair of wheels that are steered by vertical joints, but there are {count}",
+            count=len(steered_pairs),
         )
-    least = {"mecanum": 2, "skid": 2}.get(kind, 1)
-    if len(fixed) < least:
+    min_pairs = {"mecanum": 2, "skid": 2}.get(kind, 1)
+    if len(fixed_pairs) < min_pairs:
         return phrase(
             "it needs {least} pairs of wheels, each with one on the left and one on the right, but there are {count}",
-            least=least,
-            count=len(fixed),
+            least=min_pairs,
+            count=len(fixed_pairs),
         )
-    if kind == "differential" and len(fixed) > 1:
-        return phrase("it needs one pair of driven wheels, but there are {count}", count=len(fixed))
+    if kind == "differential" and len(fixed_pairs) > 1:
+        return phrase("it needs one pair of driven wheels, but there are {count}", count=len(fixed_pairs))
     return None
 
 
-def _reason(drive: Drive) -> Phrase:
+def _drive_reason(drive: Drive) -> Phrase:
     names = quoted_names([wheel.joint for pair in zip(drive.left, drive.right, strict=True) for wheel in pair])
     size = phrase(
         "{separation:.4g} m apart, with wheels of {diameter:.4g} m",
@@ -152,40 +164,40 @@ def _reason(drive: Drive) -> Phrase:
     return phrase("{names} turn wheels on the ground, {size}", names=names, size=size)
 
 
-def _pairs(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
-    """Return the pairs of opposite left and right wheels, the foremost first, and the remaining wheels."""
-    left = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda other: -other.center[0])
-    right = [wheel for wheel in wheels if wheel.center[1] <= 0.0]
+def _pair_wheels(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
+    """Return the pairs of opposite left and right wheels, the foremost pair first, and the other wheels."""
+    left_wheels = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda other: -other.center[0])
+    right_wheels = [wheel for wheel in wheels if wheel.center[1] <= 0.0]
     pairs: list[Pair] = []
-    alone: list[Wheel] = []
-    for wheel in left:
-        opposite = min(right, key=lambda other: _skew(wheel, other), default=None)
-        if opposite is None or not _fit(wheel, opposite):
-            alone.append(wheel)
+    unpaired: list[Wheel] = []
+    for wheel in left_wheels:
+        opposite = min(right_wheels, key=lambda other: _mirror_distance(wheel, other), default=None)
+        if opposite is None or not _are_pair(wheel, opposite):
+            unpaired.append(wheel)
             continue
-        right.remove(opposite)
+        right_wheels.remove(opposite)
         pairs.append((wheel, opposite))
-    return pairs, alone + right
+    return pairs, unpaired + right_wheels
 
 
-def _skew(left: Wheel, right: Wheel) -> float:
-    """Return by how much a wheel differs from the mirror image of another wheel, in m."""
+def _mirror_distance(left: Wheel, right: Wheel) -> float:
+    """Return how far a wheel is from the mirror image of another wheel, in m."""
     return abs(left.center[0] - right.center[0]) + abs(left.center[1] + right.center[1])
 
 
-def _fit(left: Wheel, right: Wheel) -> bool:
-    apart = left.center[1] - right.center[1]
+def _are_pair(left: Wheel, right: Wheel) -> bool:
+    distance = left.center[1] - right.center[1]
     return (
-        apart > min(left.radius, right.radius) * 0.5
-        and abs(left.center[0] - right.center[0]) <= _IN_LINE * apart
-        and abs(left.radius - right.radius) <= _ALIKE * max(left.radius, right.radius)
+        distance > min(left.radius, right.radius) * 0.5
+        and abs(left.center[0] - right.center[0]) <= _MAX_OFFSET * distance
+        and abs(left.radius - right.radius) <= _MAX_RADIUS_DIFFERENCE * max(left.radius, right.radius)
     )
 
 
 def _supports_only(wheel: Wheel, pairs: list[Pair]) -> bool:
-    """Return whether a wheel without an opposite wheel is a caster.
+    """Return whether a wheel without an opposite wheel only supports the robot.
 
-    A caster is a ball, or much smaller than the paired wheels.
+    Such a caster is a ball, or is much smaller than the paired wheels.
     """
-    largest = max((wheel.radius for pair in pairs for wheel in pair), default=0.0)
-    return bool(pairs) and (wheel.width is None or wheel.radius < _MUCH_SMALLER * largest)
+    max_radius = max((wheel.radius for pair in pairs for wheel in pair), default=0.0)
+    return bool(pairs) and (wheel.width is None or wheel.radius < _SUPPORT_RADIUS_SHARE * max_radius)

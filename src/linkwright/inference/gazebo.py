@@ -1,6 +1,6 @@
-"""The ``<gazebo>`` elements with which Gazebo Classic, and the simulation here, drive a robot.
+"""The ``<gazebo>`` elements with which Gazebo Classic and Linkwright's simulation drive a robot.
 
-Source: the plugins of gazebo_ros_pkgs for ROS 2 and, for joints that hold their positions, of gz-sim, with their
+Sources: the plugins of gazebo_ros_pkgs for ROS 2, and of gz-sim for joints that hold their positions, with their
 parameters.
 """
 
@@ -16,48 +16,50 @@ from linkwright.sdf.plugins import library_name, original_library
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element, Text
 
-_DRIVES = re.compile(
+_DRIVE_PATTERN = re.compile(
     r"diff[_-]?drive|skid[_-]?steer|planar[_-]?move|ackermann|mecanum|tricycle|omni[_-]?drive|object_controller"
     r"|velocity[_-]control|hoverboard|ros2?_control|multicopter|track(?:ed)?[_-]",
     re.IGNORECASE,
 )
-_JOINT_STATES = re.compile(r"joint[_-]state[_-]publisher", re.IGNORECASE)
-_JOINTS = re.compile(r"joint[_-](?:position|pose|trajectory|controller)", re.IGNORECASE)
-_CONTROL = re.compile(r"ros2?_control")
-_SIMULATED = "linkwright.simulated_plugins"
-_SIMULATORS = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
+_JOINT_STATES_PATTERN = re.compile(r"joint[_-]state[_-]publisher", re.IGNORECASE)
+_JOINT_CONTROL_PATTERN = re.compile(r"joint[_-](?:position|pose|trajectory|controller)", re.IGNORECASE)
+_ROS2_CONTROL_PATTERN = re.compile(r"ros2?_control")
+_PLUGIN_GROUP = "linkwright.simulated_plugins"
+_SIMULATOR_PATTERN = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
 
-_ACCELERATION = 1.0
-"""The greatest acceleration of wheels, in m/s2, so that they do not spin on the spot."""
+_MAX_ACCELERATION = 1.0
+"""The maximum acceleration of wheels in m/s2; with more, they would spin on the spot."""
 
-_FRICTION = "0.0"
-"""The friction of a caster: a ball that turns about only one axis slides where it would roll."""
+_CASTER_FRICTION = "0.0"
+"""The friction of a caster: it is simulated without its swivel, so it slides where it would roll."""
 
 _GRAVITY = 9.81
-_SPEED = 1.0
-"""The rim speed, in m/s, that a wheel's motor reaches against the damping of its joint."""
-_SCRUBBING = 4.0
-"""The motor torque of a robot that turns by slipping, as a multiple of the torque at which the wheels slip;
-measured: with less they stall."""
+_MOTOR_RIM_SPEED = 1.0
+"""The rim speed in m/s that a motor reaches against the damping of its wheel's joint."""
+_SKID_TORQUE_FACTOR = 4.0
+"""The motor torque of a skid-steered robot, as a multiple of the torque at which the wheels slip.
 
-_RATE = "50"
+With less torque the wheels stalled in our measurements.
+"""
+
+_UPDATE_RATE = "50"
 
 
 def own_drive(robot: Robot) -> Element | None:
-    """Return the plugin with which a description already drives the robot, if the plugin works here."""
-    return next((plugin for plugin in _drives(robot) if _works(plugin)), None)
+    """Return the plugin of the description that drives the robot; None if there is none that works here."""
+    return next((plugin for plugin in _drive_plugins(robot) if _is_working(plugin)), None)
 
 
 def idle_drive(robot: Robot) -> Element | None:
-    """Return the plugin or ``<ros2_control>`` with which a description drives the robot, if it has no effect here.
+    """Return a plugin or ``<ros2_control>`` of the description that should drive the robot but has no effect here.
 
-    Examples are controllers of ROS 1, controllers whose parameter file does not exist, and a ``<ros2_control>`` for a
-    simulator without the plugin that runs it, which is often in a separate file for launches.
+    Examples are controllers of ROS 1, controllers with a missing parameter file, and a ``<ros2_control>`` for a
+    simulator without the plugin that runs it; that plugin is often in a separate file for launches.
     """
-    idle = next((plugin for plugin in _drives(robot) if not _works(plugin)), None)
-    if idle is not None:
-        return idle
-    if any(_CONTROL.search(plugin.attributes.get("filename", "")) for plugin in _drives(robot)):
+    idle_plugin = next((plugin for plugin in _drive_plugins(robot) if not _is_working(plugin)), None)
+    if idle_plugin is not None:
+        return idle_plugin
+    if any(_ROS2_CONTROL_PATTERN.search(plugin.attributes.get("filename", "")) for plugin in _drive_plugins(robot)):
         return None
     return next(
         (
@@ -65,14 +67,14 @@ def idle_drive(robot: Robot) -> Element | None:
             for extension in robot.extensions
             if extension.tag == "ros2_control"
             for hardware in extension.elements("hardware")
-            if any(_SIMULATORS.search(plugin.text()) for plugin in hardware.elements("plugin"))
+            if any(_SIMULATOR_PATTERN.search(plugin.text()) for plugin in hardware.elements("plugin"))
         ),
         None,
     )
 
 
 def commanded_joints(robot: Robot) -> frozenset[str]:
-    """Return the joints that controllers command, by ``<ros2_control>`` or, as in ROS 1, by ``<transmission>``."""
+    """Return the joints that ``<ros2_control>``, or ``<transmission>`` as in ROS 1, lets controllers command."""
     return frozenset(
         joint.attributes.get("name", "")
         for extension in robot.extensions
@@ -82,25 +84,25 @@ def commanded_joints(robot: Robot) -> frozenset[str]:
     )
 
 
-def _drives(robot: Robot) -> Iterator[Element]:
+def _drive_plugins(robot: Robot) -> Iterator[Element]:
     for extension in robot.extensions:
         for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
-            if _DRIVES.search(f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}"):
+            if _DRIVE_PATTERN.search(f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}"):
                 yield plugin
 
 
-def _works(plugin: Element) -> bool:
-    """Return whether a plugin is simulated, and its files exist."""
-    known = extensions(_SIMULATED)
+def _is_working(plugin: Element) -> bool:
+    """Return whether the simulation supports a plugin, and the parameter files of the plugin exist."""
+    supported = extensions(_PLUGIN_GROUP)
     names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
     files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
-    return any(name in known for name in names) and all(file.exists() for file in files if file.is_absolute())
+    return any(name in supported for name in names) and all(file.exists() for file in files if file.is_absolute())
 
 
 def publishes_joint_states(robot: Robot) -> bool:
     """Return whether a plugin of the description publishes joint states."""
     return any(
-        _JOINT_STATES.search(plugin.attributes.get("filename", ""))
+        _JOINT_STATES_PATTERN.search(plugin.attributes.get("filename", ""))
         for extension in robot.extensions
         if extension.tag == "gazebo"
         for plugin in extension.elements("plugin")
@@ -110,21 +112,21 @@ def publishes_joint_states(robot: Robot) -> bool:
 def controlled_joints(robot: Robot) -> frozenset[str]:
     """Return the joints that plugins of the description hold and move.
 
-    A plugin that names none controls all.
+    A plugin that names no joints controls all joints.
     """
-    found: set[str] = set()
+    controlled: set[str] = set()
     for extension in robot.extensions:
         for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
-            if _JOINTS.search(plugin.attributes.get("filename", "")):
+            if _JOINT_CONTROL_PATTERN.search(plugin.attributes.get("filename", "")):
                 names = {
                     element.text().strip() for element in plugin.elements() if element.tag in ("joint_name", "joint")
                 }
-                found |= names or set(robot.joints)
-    return frozenset(found)
+                controlled |= names or set(robot.joints)
+    return frozenset(controlled)
 
 
 def has_friction(robot: Robot, link: str) -> bool:
-    """Return whether a ``<gazebo>`` sets the friction of a link."""
+    """Return whether a ``<gazebo>`` element sets the friction of a link."""
     return any(
         extension.tag == "gazebo"
         and extension.attributes.get("reference") == link
@@ -134,19 +136,19 @@ def has_friction(robot: Robot, link: str) -> bool:
 
 
 def slippery(link: str) -> Element:
-    """Return the element that lets a caster slide."""
+    """Return the ``<gazebo>`` element that lets a caster slide without friction."""
     element = Element("gazebo", {"reference": link})
-    element.children += [_with_text("mu1", _FRICTION), _with_text("mu2", _FRICTION)]
+    element.children += [_text_element("mu1", _CASTER_FRICTION), _text_element("mu2", _CASTER_FRICTION)]
     return element
 
 
 def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
-    """Return the plugin that drives wheels, in its ``<gazebo>``.
+    """Return the ``<gazebo>`` element with the plugin that drives the wheels.
 
     Args:
         robot: the robot.
         drive: a drive of any kind except `joints`.
-        base_frame: the child frame of odometry.
+        base_frame: the child frame of the odometry.
         mass: the mass of the robot in kg.
     """
     makers = {"differential": _diff_drive, "skid": _diff_drive, "mecanum": _planar_move, "ackermann": _ackermann}
@@ -157,21 +159,23 @@ def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> El
         ("publish_odom", "true"),
         ("publish_odom_tf", "true"),
     ]
-    return _gazebo(_plugin(name, filename, [*parameters, *odometry]))
+    return _gazebo_element(_plugin_element(name, filename, [*parameters, *odometry]))
 
 
 def joint_states(joints: Sequence[str]) -> Element:
-    """Return the plugin that publishes the positions of joints."""
+    """Return the ``<gazebo>`` element with the plugin that publishes the positions of joints."""
     names = [("joint_name", name) for name in joints]
-    plugin = _plugin("joint_states", "libgazebo_ros_joint_state_publisher.so", [("update_rate", _RATE), *names])
-    return _gazebo(plugin)
+    plugin = _plugin_element(
+        "joint_states", "libgazebo_ros_joint_state_publisher.so", [("update_rate", _UPDATE_RATE), *names]
+    )
+    return _gazebo_element(plugin)
 
 
 def joint_controllers(joints: Iterable[str]) -> Element:
-    """Return plugins that hold the positions of joints and move them on command."""
-    return _gazebo(
+    """Return the ``<gazebo>`` element with plugins that hold joints in position, and move them on command."""
+    return _gazebo_element(
         *(
-            _plugin(
+            _plugin_element(
                 "gz::sim::systems::JointPositionController",
                 "gz-sim-joint-position-controller-system",
                 [("joint_name", name), ("use_velocity_commands", "true")],
@@ -184,17 +188,17 @@ def joint_controllers(joints: Iterable[str]) -> Element:
 def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     count = len(drive.left)
     pairs = [("num_wheel_pairs", str(count))] if count > 1 else []
-    separations = [abs(a.center[1] - b.center[1]) for a, b in zip(drive.left, drive.right, strict=True)]
+    separations = [abs(left.center[1] - right.center[1]) for left, right in zip(drive.left, drive.right, strict=True)]
     diameters = [a.radius + b.radius for a, b in zip(drive.left, drive.right, strict=True)]
     parameters = [
-        ("update_rate", _RATE),
+        ("update_rate", _UPDATE_RATE),
         *pairs,
         *(("left_joint", wheel.joint) for wheel in drive.left),
         *(("right_joint", wheel.joint) for wheel in drive.right),
         *(("wheel_separation", number(separation)) for separation in separations),
         *(("wheel_diameter", number(diameter)) for diameter in diameters),
         ("max_wheel_torque", f"{torque:.3g}"),
-        ("max_wheel_acceleration", number(_ACCELERATION)),
+        ("max_wheel_acceleration", number(_MAX_ACCELERATION)),
         ("odometry_source", "0"),
         ("publish_wheel_tf", "false"),
     ]
@@ -202,14 +206,18 @@ def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, 
 
 
 def _planar_move(_drive: Drive, _torque: float) -> tuple[str, str, list[tuple[str, str]]]:
-    return "planar_move", "libgazebo_ros_planar_move.so", [("update_rate", _RATE), ("publish_rate", _RATE)]
+    return (
+        "planar_move",
+        "libgazebo_ros_planar_move.so",
+        [("update_rate", _UPDATE_RATE), ("publish_rate", _UPDATE_RATE)],
+    )
 
 
 def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     left, right = drive.steered
     gains = f"{10.0 * torque:.3g} 0 {0.1 * torque:.3g}"
     parameters = [
-        ("update_rate", _RATE),
+        ("update_rate", _UPDATE_RATE),
         ("front_left_joint", left.joint),
         ("front_right_joint", right.joint),
         ("rear_left_joint", drive.left[0].joint),
@@ -228,14 +236,16 @@ def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, s
 
 
 def _torque(robot: Robot, drive: Drive, mass: float) -> float:
-    """Return the maximum torque of a wheel in N m: the slipping torque, plus its joint's friction and damping."""
+    """Return the maximum torque of a wheel in N m: the slip torque, plus friction and damping of the joint."""
     wheels = (*drive.left, *drive.right)
-    slipping = _GRAVITY * mass * drive.radius / len(wheels)
+    slip_torque = _GRAVITY * mass * drive.radius / len(wheels)
     dynamics = [robot.joints[wheel.joint].dynamics for wheel in wheels]
-    resisting = [
-        dynamic.friction + dynamic.damping * _SPEED / drive.radius for dynamic in dynamics if dynamic is not None
+    joint_torques = [
+        dynamic.friction + dynamic.damping * _MOTOR_RIM_SPEED / drive.radius
+        for dynamic in dynamics
+        if dynamic is not None
     ]
-    return (_SCRUBBING if drive.kind == "skid" else 1.0) * slipping + max(resisting, default=0.0)
+    return (_SKID_TORQUE_FACTOR if drive.kind == "skid" else 1.0) * slip_torque + max(joint_torques, default=0.0)
 
 
 def number(value: float) -> str:
@@ -243,19 +253,19 @@ def number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def _gazebo(*plugins: Element) -> Element:
+def _gazebo_element(*plugins: Element) -> Element:
     element = Element("gazebo")
     element.children += plugins
     return element
 
 
-def _plugin(name: str, filename: str, parameters: Iterable[tuple[str, str]]) -> Element:
+def _plugin_element(name: str, filename: str, parameters: Iterable[tuple[str, str]]) -> Element:
     element = Element("plugin", {"name": name, "filename": filename})
-    element.children += [_with_text(tag, text) for tag, text in parameters]
+    element.children += [_text_element(tag, text) for tag, text in parameters]
     return element
 
 
-def _with_text(tag: str, text: str) -> Element:
+def _text_element(tag: str, text: str) -> Element:
     element = Element(tag)
     element.children.append(Text(text))
     return element

@@ -1,4 +1,4 @@
-"""The inferences about a robot, each with its reason and its URDF elements."""
+"""Inferences about a robot, each with its reason and its URDF elements."""
 
 from __future__ import annotations
 
@@ -12,22 +12,25 @@ from linkwright.geometry.single import Vector3
 from linkwright.xmltree import Element
 
 DriveKind = Literal["differential", "skid", "ackermann", "mecanum", "joints"]
-"""Two driven wheels; four or more that turn by slipping; two steered and two driven; wheels with rollers, which go
-every way; and no wheels: the base does not move, and the joints hold their commanded positions."""
+"""Differential: two driven wheels. Skid: four or more, which turn by slipping. Ackermann: two steered and two driven.
+
+Mecanum: wheels with rollers, which drive in any direction. Joints: no wheels; the base is fixed, and the joints hold
+their commanded positions.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Wheel:
-    """A wheel, with all joints at zero.
+    """A wheel of a robot, with all joints at zero.
 
     Attributes:
         joint: the joint about which the wheel rotates.
         link: the link that the joint moves.
         center: the centre of the wheel in the base frame, in m.
-        axis: the unit vector of the joint in the base frame, with the direction given in the file.
+        axis: the unit vector of the joint's axis in the base frame, in the direction that the file declares.
         radius: the radius in m.
         width: the width in m; None for a ball.
-        steering: the parent joint that steers the wheel or lets it swivel; None if there is none.
+        steering: the joint above that steers the wheel or lets it swivel; None if there is none.
     """
 
     joint: str
@@ -46,7 +49,7 @@ class Drive:
     Attributes:
         kind: the kind of drive.
         left: the driven wheels on the left, the foremost first; empty for `joints`.
-        right: the driven wheels on the right, in the order of the wheels opposite to them in `left`.
+        right: the driven wheels on the right, in the order of the opposite wheels in `left`.
         steered: for `ackermann`, the steered wheels, left and right.
         separation: the distance between the left and the right driven wheels in m; 0 for `joints`.
     """
@@ -66,14 +69,14 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """An inference about a robot.
+    """A fact that was inferred about a robot, or a fact that could not be inferred.
 
     Attributes:
-        diagnostic: the inference and its reason, at the place of its subject in the user's file.
+        diagnostic: the inference and its reason, at the position of its subject in the user's file.
         owner: the element of the description that gets the new elements: a ``<link>``, a ``<joint>`` or the root; None
             if nothing is written.
-        added: the new elements; an element that the owner can have only once replaces the existing one.
-        inertial: the values of a new ``<inertial>``, in the link frame.
+        added: the new elements. A new element that the owner can have only once replaces the existing one.
+        inertial: the values of a new ``<inertial>``, in the link frame; None if there is none.
     """
 
     diagnostic: Diagnostic
@@ -84,18 +87,18 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Inference:
-    """All inferences about a robot.
+    """Everything that was inferred about a robot.
 
     Attributes:
-        drive: the inferred drive; None if the robot's file has one, or if it is unknown.
-        findings: the successful and failed inferences, in the order of the file for each kind.
+        drive: the inferred drive; None if the description has a working one, or if it is unknown.
+        findings: the findings by kind, and in the order of the file within a kind.
         base_frame: the child frame of the odometry: ``base_footprint``, ``base_link`` or the root.
-        casters: the links that touch the ground and only slide or roll along.
-        held: the joints, other than those of wheels, that hold their position and can be moved, in file order.
+        casters: the links that touch the ground and only slide, or roll without a drive.
+        held: the joints, except those of wheels, that hold their position and can be commanded, in file order.
         fixed_base: whether the robot's root is fixed to the world.
-        ground: the z of the ground, which is that of the lowest point, in the root's frame, in m, with all joints at
-            zero. A robot is placed in a world at minus this height.
-        masses: link -> its mass in kg, own or inferred.
+        ground: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest wheel, or
+            without wheels of the lowest point; 0 for a fixed base. A robot is placed in a world at minus this height.
+        masses: the mass of each link in kg, declared or inferred.
     """
 
     drive: Drive | None

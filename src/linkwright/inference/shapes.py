@@ -1,4 +1,4 @@
-"""Properties of link shapes: how low they reach, and whether they are round about an axis."""
+"""Measure the shapes of links: how low they reach, and whether they are round about an axis."""
 
 from __future__ import annotations
 
@@ -10,36 +10,38 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.shapes import FARTHEST, Placement, bounds_of, placement, rotated
-from linkwright.geometry.single import Vector3, cross, dot, length, scaled, subtracted
+from linkwright.geometry.shapes import MAX_COORDINATE, Placement, placement, rotated, shape_bounds
+from linkwright.geometry.single import Vector3, cross, dot, length, scaled, subtract_vectors
 from linkwright.inertia import MeshLibrary
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Mesh, Sphere, Visual
 
 Shape = Collision | Visual
 
-_ALONG = cos(radians(5.0))
-"""From this cosine on two axes count as parallel: people write 1.57 for a right angle."""
+_PARALLEL_COSINE = cos(radians(5.0))
+"""The cosine from which two axes count as parallel: 5 degrees, because people write 1.57 for a right angle."""
 
-_OFF_AXIS = 0.1
-"""The greatest distance of the middle of a round shape from its axis, as a part of its radius."""
+_MAX_OFF_AXIS = 0.1
+"""The maximum distance of the middle of a round shape from its axis, as a share of its radius."""
 
-_ROUND = 0.92
-"""A mesh whose least reach in any direction across its axis is this part of the greatest is round: a dodecagon is, a
-square is not."""
+_MIN_ROUNDNESS = 0.92
+"""The minimum reach of a round mesh in any direction across its axis, as a share of its maximum reach.
 
-_DIRECTIONS = 36
-_LONGEST = 4.0
-"""A round shape longer than so many radii is a roller or a shaft."""
+A regular dodecagon is round, a square is not.
+"""
+
+_DIRECTION_COUNT = 36
+_MAX_WIDTH = 4.0
+"""The maximum length of a wheel in radii; a longer round shape is a roller or a shaft."""
 
 
-class Round(NamedTuple):
+class RoundShape(NamedTuple):
     """A shape that is round about an axis.
 
     Attributes:
         radius: the radius in m.
         width: the width along the axis in m; None for a ball.
-        along: the position of the shape's middle along the axis, relative to the axis's given point, in m.
-        shape: the shape.
+        along: the position of the shape's middle along the axis, relative to the given point of the axis, in m.
+        shape: the collision or visual.
     """
 
     radius: float
@@ -49,31 +51,31 @@ class Round(NamedTuple):
 
 
 def shapes_of(link: Link) -> tuple[Shape, ...]:
-    """Return a link's collisions, or its visuals if it has no collisions."""
+    """Return a link's collisions, or its visuals if it has none."""
     return link.collisions or link.visuals
 
 
 def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
-    """Return the vertices of a mesh in its link's frame, shape (vertices, 3).
+    """Return the vertices of a mesh in its link's frame, in m, shape (vertices, 3).
 
-    Returns None if it cannot be read.
+    Return None if the mesh is empty, too far away, or cannot be read.
     """
     assert isinstance(shape.geometry, Mesh), "other shapes have no corners to ask for"
     try:
         mesh = meshes.load(shape.geometry, shape.element)
     except LinkwrightError:
         return None
-    if not len(mesh.faces) or max(map(abs, shape.origin.xyz)) > FARTHEST:
+    if not len(mesh.faces) or max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
         return None
     frame = placement(shape.origin)
     corners: Array = mesh.vertices[np.unique(mesh.faces)] @ np.array(frame.rotation).T + np.array(frame.position)
     return corners
 
 
-def lowest(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | None:
-    """Return the z of a shape's lowest point in the reference frame of `link_frame`.
+def lowest_z(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | None:
+    """Return the z in m of a shape's lowest point, in the reference frame of `link_frame`.
 
-    Returns None for an unreadable mesh.
+    Return None for a mesh that cannot be read.
     """
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
@@ -86,20 +88,22 @@ def lowest(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | 
     if isinstance(geometry, Sphere):
         return z - geometry.radius
     if isinstance(geometry, Box):
-        return z - sum(abs(part) * edge / 2.0 for part, edge in zip(frame.rotation[2], geometry.size, strict=True))
-    upright = abs(frame.rotation[2][2])
+        return z - sum(
+            abs(component) * edge / 2.0 for component, edge in zip(frame.rotation[2], geometry.size, strict=True)
+        )
+    vertical = abs(frame.rotation[2][2])
     if isinstance(geometry, Capsule):
-        return z - upright * geometry.length / 2.0 - geometry.radius
-    return z - upright * geometry.length / 2.0 - sqrt(max(0.0, 1.0 - upright * upright)) * geometry.radius
+        return z - vertical * geometry.length / 2.0 - geometry.radius
+    return z - vertical * geometry.length / 2.0 - sqrt(max(0.0, 1.0 - vertical * vertical)) * geometry.radius
 
 
 def round_shape(
     members: Iterable[tuple[Link, Placement]], point: Vector3, axis: Vector3, meshes: MeshLibrary
-) -> tuple[Round | None, list[str]]:
-    """Return the shape of a body that rolls about an axis, and the names of unreadable meshes.
+) -> tuple[RoundShape | None, list[str]]:
+    """Return the shape with which a body rolls about an axis, and the names of meshes that cannot be read.
 
-    It is the largest shape that is round about the axis, with collisions preferred to visuals. A body whose other
-    shapes extend beyond it does not roll.
+    It is the largest shape that is round about the axis; collisions take precedence over visuals. It is None if no
+    shape is round, or if another shape extends beyond it, so that the body cannot roll.
 
     Args:
         members: the links of the body, with their poses in a common frame.
@@ -108,23 +112,23 @@ def round_shape(
         meshes: the library of meshes.
     """
     links = list(members)
-    unread: list[str] = []
-    for of_kind in (_collisions, _visuals):
-        found: list[Round] = []
-        reach = 0.0
-        for shape, frame in of_kind(links):
-            farthest = _reach(shape, frame, point, axis, meshes)
+    unreadable: list[str] = []
+    for list_shapes in (_collisions, _visuals):
+        round_shapes: list[RoundShape] = []
+        max_reach = 0.0
+        for shape, frame in list_shapes(links):
+            farthest = _distance_bound(shape, frame, point, axis, meshes)
             if farthest is None:
-                unread.append(_name(shape))
+                unreadable.append(_name(shape))
                 continue
-            reach = max(reach, farthest)
-            each = _as_round(shape, frame, point, axis, meshes)
-            if each is not None:
-                found.append(each)
-        if found:
-            best = max(found, key=lambda item: (item.radius, item.width or 0.0))
-            return (best if reach <= best.radius * (1.0 + _OFF_AXIS) else None), unread
-    return None, unread
+            max_reach = max(max_reach, farthest)
+            candidate = _measure_round(shape, frame, point, axis, meshes)
+            if candidate is not None:
+                round_shapes.append(candidate)
+        if round_shapes:
+            best = max(round_shapes, key=lambda item: (item.radius, item.width or 0.0))
+            return (best if max_reach <= best.radius * (1.0 + _MAX_OFF_AXIS) else None), unreadable
+    return None, unreadable
 
 
 def _collisions(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Placement]]:
@@ -135,86 +139,95 @@ def _visuals(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Place
     return ((shape, frame) for link, frame in links for shape in link.visuals)
 
 
-def _as_round(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> Round | None:
-    """Return a shape as round about an axis; None if it is not round."""
+def _measure_round(
+    shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary
+) -> RoundShape | None:
+    """Return a shape with its size about an axis; None if it is not round about the axis."""
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
-        return _round_mesh(shape, frame, point, axis, meshes)
+        return _measure_round_mesh(shape, frame, point, axis, meshes)
     if not isinstance(geometry, Cylinder | Sphere):
         return None
-    own = placement(shape.origin).inside(frame)
-    along, off = _split(subtracted(own.position, point), axis)
-    if not 0.0 < geometry.radius < FARTHEST or off > _OFF_AXIS * geometry.radius:
+    shape_frame = placement(shape.origin).inside(frame)
+    along, off_axis = _split_along(subtract_vectors(shape_frame.position, point), axis)
+    if not 0.0 < geometry.radius < MAX_COORDINATE or off_axis > _MAX_OFF_AXIS * geometry.radius:
         return None
     if isinstance(geometry, Sphere):
-        return Round(geometry.radius, None, along, shape)
-    direction = rotated(own.rotation, (0.0, 0.0, 1.0))
-    if abs(dot(direction, axis)) < _ALONG or not 0.0 < geometry.length <= _LONGEST * geometry.radius:
+        return RoundShape(geometry.radius, None, along, shape)
+    direction = rotated(shape_frame.rotation, (0.0, 0.0, 1.0))
+    if abs(dot(direction, axis)) < _PARALLEL_COSINE or not 0.0 < geometry.length <= _MAX_WIDTH * geometry.radius:
         return None
-    return Round(geometry.radius, geometry.length, along, shape)
+    return RoundShape(geometry.radius, geometry.length, along, shape)
 
 
-def _round_mesh(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> Round | None:
-    placed = _placed(shape, frame, point, meshes)
-    if placed is None:
+def _measure_round_mesh(
+    shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary
+) -> RoundShape | None:
+    points = _points_from(shape, frame, point, meshes)
+    if points is None:
         return None
-    first = _across(axis)
+    first = _perpendicular(axis)
     second = cross(axis, first)
-    flat = placed @ np.array((first, second)).T
-    angles = np.arange(_DIRECTIONS) * (2.0 * pi / _DIRECTIONS)
-    reaches = (flat @ np.array((np.cos(angles), np.sin(angles)))).max(axis=0)
-    radius, least = float(reaches.max()), float(reaches.min())
-    if not 0.0 < radius < FARTHEST or least < _ROUND * radius:
+    projected = points @ np.array((first, second)).T
+    angles = np.arange(_DIRECTION_COUNT) * (2.0 * pi / _DIRECTION_COUNT)
+    reaches = (projected @ np.array((np.cos(angles), np.sin(angles)))).max(axis=0)
+    radius, min_reach = float(reaches.max()), float(reaches.min())
+    if not 0.0 < radius < MAX_COORDINATE or min_reach < _MIN_ROUNDNESS * radius:
         return None
-    heights = placed @ np.array(axis)
-    low, high = float(heights.min()), float(heights.max())
-    if not 0.0 < high - low <= _LONGEST * radius:
+    positions = points @ np.array(axis)
+    start, end = float(positions.min()), float(positions.max())
+    if not 0.0 < end - start <= _MAX_WIDTH * radius:
         return None
-    return Round(radius, high - low, (low + high) / 2.0, shape)
+    return RoundShape(radius, end - start, (start + end) / 2.0, shape)
 
 
-def _reach(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> float | None:
+def _distance_bound(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> float | None:
     """Return an upper bound of a shape's distance from an axis, in m.
 
-    Returns None for an unreadable mesh.
+    Return None for a mesh that cannot be read.
     """
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
-        placed = _placed(shape, frame, point, meshes)
-        if placed is None:
+        points = _points_from(shape, frame, point, meshes)
+        if points is None:
             return None
-        across = placed - np.outer(placed @ np.array(axis), np.array(axis))
-        return float(np.sqrt((across * across).sum(axis=1).max()))
-    own = placement(shape.origin).inside(frame)
+        perpendicular = points - np.outer(points @ np.array(axis), np.array(axis))
+        return float(np.sqrt((perpendicular * perpendicular).sum(axis=1).max()))
+    shape_frame = placement(shape.origin).inside(frame)
     if isinstance(geometry, Sphere):
-        return _split(subtracted(own.position, point), axis)[1] + geometry.radius
-    if isinstance(geometry, Cylinder) and abs(dot(rotated(own.rotation, (0.0, 0.0, 1.0)), axis)) >= _ALONG:
-        return _split(subtracted(own.position, point), axis)[1] + geometry.radius
-    box = bounds_of(geometry)
+        return _split_along(subtract_vectors(shape_frame.position, point), axis)[1] + geometry.radius
+    if (
+        isinstance(geometry, Cylinder)
+        and abs(dot(rotated(shape_frame.rotation, (0.0, 0.0, 1.0)), axis)) >= _PARALLEL_COSINE
+    ):
+        return _split_along(subtract_vectors(shape_frame.position, point), axis)[1] + geometry.radius
+    box = shape_bounds(geometry)
     corners = [
         (x, y, z)
         for x in (box.low[0], box.high[0])
         for y in (box.low[1], box.high[1])
         for z in (box.low[2], box.high[2])
     ]
-    return max(_split(subtracted(own.point(corner), point), axis)[1] for corner in corners)
+    return max(_split_along(subtract_vectors(shape_frame.point(corner), point), axis)[1] for corner in corners)
 
 
-def _placed(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLibrary) -> Array | None:
+def _points_from(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLibrary) -> Array | None:
     corners = vertices(shape, meshes)
     return (
-        None if corners is None else corners @ np.array(frame.rotation).T + np.array(subtracted(frame.position, point))
+        None
+        if corners is None
+        else corners @ np.array(frame.rotation).T + np.array(subtract_vectors(frame.position, point))
     )
 
 
-def _split(vector: Vector3, axis: Vector3) -> tuple[float, float]:
-    """Return the length of a vector along an axis, with its sign, and perpendicular to the axis."""
+def _split_along(vector: Vector3, axis: Vector3) -> tuple[float, float]:
+    """Return the components of a vector along an axis, which has a sign, and perpendicular to it."""
     along = dot(vector, axis)
-    return along, length(subtracted(vector, scaled(axis, along)))
+    return along, length(subtract_vectors(vector, scaled(axis, along)))
 
 
-def _across(axis: Vector3) -> Vector3:
-    """Return a unit vector perpendicular to another one."""
+def _perpendicular(axis: Vector3) -> Vector3:
+    """Return a unit vector that is perpendicular to a unit vector."""
     x, y, z = axis
     if abs(z) < 0.9:
         size = hypot(x, y)

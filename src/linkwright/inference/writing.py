@@ -1,4 +1,4 @@
-"""Writing of inferences to the source files of a description, which leaves everything else unchanged."""
+"""Write inferences to the source files of a description, and leave everything else unchanged."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from linkwright.inference.model import Finding, Inference
 from linkwright.lint.fix import is_literal, value_edit
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Element, Text
-from linkwright.xmltree.patches import Replacement, inserted
+from linkwright.xmltree.patches import Replacement, insertion
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """The result of writing.
+    """The result of writing an inference.
 
     Attributes:
         files: the files that changed.
         count: the number of inferences written.
-        refused: a finding (DRIVE301) with the reason, for each inference that was not written.
+        refused: a diagnostic (DRIVE301) with the reason, for each inference that was not written.
     """
 
     files: tuple[Path, ...]
@@ -39,33 +39,33 @@ class Written:
 
 
 def write_inference(robot: Robot, inference: Inference) -> Written:
-    """Write an inference to the source files of the robot.
+    """Write an inference to the source files of a robot.
 
-    In xacro files only literal elements are changed; an element created by a macro or an expression is refused.
+    In xacro files only literal elements are changed; an element that a macro or an expression creates is refused.
 
     Args:
-        robot: the robot, read from a file, possibly through xacro.
+        robot: the robot, read from a file, directly or through xacro.
         inference: the inference about the robot.
 
     Raises:
         LinkwrightError: INR201, a file cannot be written.
     """
-    groups: dict[int, list[Finding]] = {}
+    findings_by_owner: dict[int, list[Finding]] = {}
     for finding in inference.findings:
         if finding.owner is not None:
-            groups.setdefault(id(finding.owner), []).append(finding)
-    by_key = {str(key): findings for key, findings in groups.items()}
+            findings_by_owner.setdefault(id(finding.owner), []).append(finding)
+    by_key = {str(key): findings for key, findings in findings_by_owner.items()}
     writer = _Writer(robot)
-    done = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
-    refused = tuple(_refusal(finding, why) for key, why in done.refused.items() for finding in by_key[key])
-    return Written(done.files, sum(len(by_key[key]) for key in done.links), refused)
+    written = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
+    refused = tuple(_refusal(finding, why) for key, why in written.refusals.items() for finding in by_key[key])
+    return Written(written.files, sum(len(by_key[key]) for key in written.links), refused)
 
 
 class _Writer:
-    """Finds the edits for an inference.
+    """Determines the edits that write an inference.
 
     Args:
-        robot: the robot, read from a file, possibly through xacro.
+        robot: the robot, read from a file, directly or through xacro.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -74,80 +74,82 @@ class _Writer:
         self._joints = {id(joint.element): joint for joint in robot.joints.values()}
         elements = [link.element for link in robot.links.values()]
         elements += [joint.element for joint in robot.joints.values()]
-        self._times = Counter(_place(element) for element in elements if element is not None)
+        self._uses_by_position = Counter(_place(element) for element in elements if element is not None)
 
     def edits(self, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
-        """Return the text and the edits for the findings of one owner.
+        """Return the source text, and the edits for the findings of one owner.
 
         Raises:
             NotWritableError: the owner is not a literal element of a file.
         """
         owner = findings[0].owner
         assert owner is not None, "findings without an owner add nothing"
-        if self._times[_place(owner)] > 1:
+        if self._uses_by_position[_place(owner)] > 1:
             raise NotWritableError(phrase("its text in the file defines several links or joints"))
         if id(owner) in self._links:
-            return self._in_link(owner, findings)
+            return self._link_edits(owner, findings)
         if id(owner) in self._joints:
-            return self._in_joint(owner, findings)
-        return self._in_root(owner, findings)
+            return self._joint_edits(owner, findings)
+        return self._root_edits(owner, findings)
 
-    def _in_link(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def _link_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         link = self._links[id(owner)]
         written = written_link(link)
-        source = _source(written)
+        source = _source_text(written)
         changes: list[Replacement] = []
-        new: list[Element] = []
+        added: list[Element] = []
         for finding in findings:
             if finding.inertial is not None and written.children:
                 changes += edits_for(link, finding.inertial)[1]
             else:
-                new += finding.added
-        return source, [*changes, *_inserted(written, new)]
+                added += finding.added
+        return source, [*changes, *_insertion(written, added)]
 
-    def _in_joint(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def _joint_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         written = written_element(owner, "joint")
-        source = _source(written)
+        source = _source_text(written)
         (axis,) = (element for finding in findings for element in finding.added)
-        old = written.first("axis")
-        if old is None:
-            return source, list(_inserted(written, [axis]))
-        edit = value_edit(old, "xyz", axis.attributes["xyz"]) if is_literal(old, "xyz") else None
+        old_axis = written.first("axis")
+        if old_axis is None:
+            return source, list(_insertion(written, [axis]))
+        edit = value_edit(old_axis, "xyz", axis.attributes["xyz"]) if is_literal(old_axis, "xyz") else None
         if edit is None:
             raise NotWritableError(phrase("its <axis> is written with expressions"))
         return source, [Replacement(edit.start, edit.end, edit.replacement)]
 
-    def _in_root(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def _root_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         written = written_element(owner, owner.tag)
-        new = [element for finding in findings for element in finding.added]
-        for name in sorted(_named(new)):
-            part: Joint | Link | None = self._robot.joints.get(name) or self._robot.links.get(name)
-            if part is not None and (part.element is None or not is_literal(part.element, "name")):
+        added = [element for finding in findings for element in finding.added]
+        for name in sorted(_possible_names(added)):
+            joint_or_link: Joint | Link | None = self._robot.joints.get(name) or self._robot.links.get(name)
+            if joint_or_link is not None and (
+                joint_or_link.element is None or not is_literal(joint_or_link.element, "name")
+            ):
                 raise NotWritableError(phrase("the name '{name}' in it comes from an expression", name=name))
-        return _source(written), list(_inserted(written, new))
+        return _source_text(written), list(_insertion(written, added))
 
 
-def _named(elements: Iterable[Element]) -> set[str]:
-    """Return the words of elements that may be names of links and joints."""
-    found: set[str] = set()
+def _possible_names(elements: Iterable[Element]) -> set[str]:
+    """Return the texts in elements that may be names of links and joints."""
+    names: set[str] = set()
     for element in elements:
-        for inner in element.walk():
-            found |= {value for name, value in inner.attributes.items() if name in ("reference", "link")}
-            found |= {child.data for child in inner.children if isinstance(child, Text)}
-    return found
+        for descendant in element.walk():
+            names |= {value for name, value in descendant.attributes.items() if name in ("reference", "link")}
+            names |= {child.data for child in descendant.children if isinstance(child, Text)}
+    return names
 
 
-def _inserted(owner: Element, new: list[Element]) -> Iterator[Replacement]:
-    """Yield the edits that insert elements at the end of an element in a file."""
-    if not new:
+def _insertion(owner: Element, added: list[Element]) -> Iterator[Replacement]:
+    """Yield the edit that inserts elements at the end of an element in a file."""
+    if not added:
         return
-    edit = inserted(owner, new)
+    edit = insertion(owner, added)
     if edit is None:
         raise NotWritableError(phrase("it is not written in a file"))
     yield edit
 
 
-def _source(element: Element) -> SourceText:
+def _source_text(element: Element) -> SourceText:
     assert element.source is not None, "it was read from a file"
     return element.source
 
@@ -157,7 +159,9 @@ def _place(element: Element) -> tuple[str, int]:
 
 
 def _refusal(finding: Finding, why: str) -> Diagnostic:
-    refused = finding.diagnostic
-    message = phrase("an inferred element is not written into the file: {what}: {why}", what=refused.message, why=why)
+    diagnostic = finding.diagnostic
+    message = phrase(
+        ("an inferred element is not written to the file, because {why}: {what}"), what=diagnostic.message, why=why
+    )
     hint = phrase("edit the macro or the expression; `linkwright drive FILE --show` prints the text")
-    return Diagnostic("DRIVE301", message, refused.span, hint=hint, source=refused.source)
+    return Diagnostic("DRIVE301", message, diagnostic.span, hint=hint, source=diagnostic.source)

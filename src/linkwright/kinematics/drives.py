@@ -26,15 +26,15 @@ class DifferentialDrive:
     left_radius: float
     right_radius: float
 
-    def wheel_speeds(self, forward: float, turning: float) -> tuple[float, float]:
+    def wheel_speeds(self, forward: float, angular: float) -> tuple[float, float]:
         """Return the angular velocities of the left and the right wheel in rad/s."""
-        aside = turning * self.separation / 2.0
-        return (forward - aside) / self.left_radius, (forward + aside) / self.right_radius
+        rotation_speed = angular * self.separation / 2.0
+        return (forward - rotation_speed) / self.left_radius, (forward + rotation_speed) / self.right_radius
 
-    def motion(self, left: float, right: float) -> tuple[float, float]:
+    def motion(self, left_speed: float, right_speed: float) -> tuple[float, float]:
         """Return the forward velocity (m/s) and angular velocity (rad/s) for two wheel speeds."""
-        left, right = left * self.left_radius, right * self.right_radius
-        return (left + right) / 2.0, (right - left) / self.separation
+        left_speed, right_speed = left_speed * self.left_radius, right_speed * self.right_radius
+        return (left_speed + right_speed) / 2.0, (right_speed - left_speed) / self.separation
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,17 +49,17 @@ class MecanumDrive:
     arm: float
     radius: float
 
-    def wheel_speeds(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float, float]:
+    def wheel_speeds(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float, float]:
         """Return the angular velocities of the wheels in rad/s.
 
         The order is front left, front right, rear left, rear right.
         """
-        aside = turning * self.arm
+        rotation_speed = angular * self.arm
         return (
-            (forward - sideways - aside) / self.radius,
-            (forward + sideways + aside) / self.radius,
-            (forward + sideways - aside) / self.radius,
-            (forward - sideways + aside) / self.radius,
+            (forward - sideways - rotation_speed) / self.radius,
+            (forward + sideways + rotation_speed) / self.radius,
+            (forward + sideways - rotation_speed) / self.radius,
+            (forward - sideways + rotation_speed) / self.radius,
         )
 
     def motion(
@@ -79,7 +79,7 @@ class MecanumDrive:
 
 @dataclass(frozen=True, slots=True)
 class CarDrive:
-    """A drive with a driven and a steered axle, whose frame is in the middle of the driven axle.
+    """A drive with a driven and a steered axle; its frame is in the middle of the driven axle.
 
     Attributes:
         wheelbase: the distance between the axles in m, positive.
@@ -93,43 +93,47 @@ class CarDrive:
     steering_track: float
     radius: float
 
-    def steering_angle(self, forward: float, turning: float) -> float:
+    def steering_angle(self, forward: float, angular: float) -> float:
         """Return the angle of a virtual wheel in the middle of the steered axle in rad; 0 at rest."""
-        return 0.0 if forward == 0.0 else atan(turning * self.wheelbase / forward)
+        return 0.0 if forward == 0.0 else atan(angular * self.wheelbase / forward)
 
     def steering_angles(self, angle: float) -> tuple[float, float]:
         """Return the angles of the left and right steered wheel in rad.
 
-        `angle` is that of a virtual wheel in the middle.
+        `angle` is the angle of a virtual wheel in the middle, in rad.
         """
         slope = tan(angle)
         return ackermann_angles(slope, self.steering_track * slope / self.wheelbase)
 
-    def middle_angle(self, left: float, right: float) -> float:
+    def middle_angle(self, left_angle: float, right_angle: float) -> float:
         """Return the angle of a virtual wheel in the middle, in rad, for the angles of both wheels.
 
         The result is the mean of the angles that correspond to the left and to the right wheel.
         """
-        half = self.steering_track / 2.0
-        of_left = atan2(self.wheelbase * sin(left), self.wheelbase * cos(left) + half * sin(left))
-        of_right = atan2(self.wheelbase * sin(right), self.wheelbase * cos(right) - half * sin(right))
-        return (of_left + of_right) / 2.0
+        half_track = self.steering_track / 2.0
+        angle_from_left = atan2(
+            self.wheelbase * sin(left_angle), self.wheelbase * cos(left_angle) + half_track * sin(left_angle)
+        )
+        angle_from_right = atan2(
+            self.wheelbase * sin(right_angle), self.wheelbase * cos(right_angle) - half_track * sin(right_angle)
+        )
+        return (angle_from_left + angle_from_right) / 2.0
 
     def wheel_speeds(self, forward: float, angle: float) -> tuple[float, float]:
         """Return the angular velocities of the left and right driven wheel in rad/s.
 
         `angle` is the steering angle in rad.
         """
-        speed, aside = forward / self.radius, self._wheel_speed_difference(angle)
-        return speed * (1.0 - aside), speed * (1.0 + aside)
+        speed, difference = forward / self.radius, self._wheel_speed_difference(angle)
+        return speed * (1.0 - difference), speed * (1.0 + difference)
 
-    def motion(self, left: float, right: float, angle: float) -> tuple[float, float]:
+    def motion(self, left_speed: float, right_speed: float, angle: float) -> tuple[float, float]:
         """Return the forward velocity (m/s) and angular velocity (rad/s) for two wheel speeds.
 
-        `angle` is the steering angle in rad. The forward velocity is the mean of those of both wheels.
+        `angle` is the steering angle in rad. The forward velocity is the mean of the values for both wheels.
         """
-        aside = self._wheel_speed_difference(angle)
-        forward = (left / (1.0 - aside) + right / (1.0 + aside)) * self.radius / 2.0
+        difference = self._wheel_speed_difference(angle)
+        forward = (left_speed / (1.0 - difference) + right_speed / (1.0 + difference)) * self.radius / 2.0
         return forward, forward * tan(angle) / self.wheelbase
 
     def _wheel_speed_difference(self, angle: float) -> float:
@@ -142,7 +146,8 @@ def ackermann_angles(slope: float, track: float) -> tuple[float, float]:
 
     Args:
         slope: the tangent of the angle of a virtual wheel in the middle; positive to the left.
-        track: the distance between the wheels, divided by the radius of the circle of the other axle's middle.
+        track: the distance between the wheels, divided by the radius of the circle on which the middle of the other
+            axle moves.
     """
     return atan2(slope, 1.0 - track / 2.0), atan2(slope, 1.0 + track / 2.0)
 
@@ -161,16 +166,16 @@ class TricycleDrive:
     wheelbase: float
     radius: float
 
-    def wheel(self, forward: float, turning: float) -> tuple[float, float]:
+    def wheel(self, forward: float, angular: float) -> tuple[float, float]:
         """Return the angular velocity of the wheel in rad/s, and its steering angle in rad.
 
         To rotate in place, the angle is a right angle.
         """
-        across = turning * self.wheelbase
-        rim = hypot(forward, across)
+        lateral_speed = angular * self.wheelbase
+        wheel_speed = hypot(forward, lateral_speed)
         if forward == 0.0:
-            return rim / self.radius, copysign(_QUARTER_TURN, turning) if turning else 0.0
-        return copysign(rim, forward) / self.radius, atan(across / forward)
+            return wheel_speed / self.radius, copysign(_QUARTER_TURN, angular) if angular else 0.0
+        return copysign(wheel_speed, forward) / self.radius, atan(lateral_speed / forward)
 
     def motion(self, speed: float, angle: float) -> tuple[float, float]:
         """Return the forward velocity in m/s and the angular velocity in rad/s.
@@ -179,5 +184,5 @@ class TricycleDrive:
             speed: the angular velocity of the wheel, in rad/s.
             angle: the steering angle, in rad.
         """
-        rim = speed * self.radius
-        return rim * cos(angle), rim * sin(angle) / self.wheelbase
+        wheel_speed = speed * self.radius
+        return wheel_speed * cos(angle), wheel_speed * sin(angle) / self.wheelbase

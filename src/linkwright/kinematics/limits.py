@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 Bounds = tuple[float, float]
-"""The least and the greatest value."""
+"""The minimum and the maximum of a value."""
 
 UNBOUNDED: Bounds = (-inf, inf)
 
@@ -50,19 +50,19 @@ class SpeedLimiter:
 
     def restart(self) -> None:
         """Reset the velocity and the acceleration to zero."""
-        self.speed = self._before = 0.0
+        self.speed = self._previous_speed = 0.0
 
-    def follow(self, wanted: float, seconds: float) -> float:
-        """Return the next velocity towards a wanted one, `seconds` after the last call."""
+    def follow(self, target: float, seconds: float) -> float:
+        """Return the next velocity on the way to a target, `seconds` after the last call."""
         speed = self.speed
-        change, changed = wanted - speed, speed - self._before
-        if not self._brakes_freely or (change - changed) * change > 0.0:
-            change = changed + _within(self._jerk, change - changed, seconds * seconds)
+        change, last_change = target - speed, speed - self._previous_speed
+        if not self._brakes_freely or (change - last_change) * change > 0.0:
+            change = last_change + _clamp(self._jerk, change - last_change, seconds * seconds)
         direction = (speed > 0.0) - (speed < 0.0)
-        change = _within(self._accelerations[direction + 1], change, seconds)
-        self.speed, self._before = _within(self._velocity, speed + change), speed
+        change = _clamp(self._accelerations[direction + 1], change, seconds)
+        self.speed, self._previous_speed = _clamp(self._velocity, speed + change), speed
         return self.speed
 
 
-def _within(bounds: Bounds, value: float, factor: float = 1.0) -> float:
+def _clamp(bounds: Bounds, value: float, factor: float = 1.0) -> float:
     return min(max(value, bounds[0] * factor), bounds[1] * factor)

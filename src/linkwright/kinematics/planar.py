@@ -7,7 +7,7 @@ from math import cos, sin
 from linkwright.geometry.single import Transform
 from linkwright.loading.lean_dataclasses import dataclass
 
-_STRAIGHT = 1e-6
+_MIN_ARC_ANGLE = 1e-6
 """The angle in rad below which an arc is a straight line: dividing by less loses digits."""
 
 
@@ -25,9 +25,9 @@ class PlanarPose:
         `forward` and `sideways` (to the left) are distances in m. Source: the second-order Runge-Kutta method, as in
         gazebo_ros_diff_drive.
         """
-        middle = self.yaw + turn / 2.0
-        self.x += forward * cos(middle) - sideways * sin(middle)
-        self.y += forward * sin(middle) + sideways * cos(middle)
+        middle_yaw = self.yaw + turn / 2.0
+        self.x += forward * cos(middle_yaw) - sideways * sin(middle_yaw)
+        self.y += forward * sin(middle_yaw) + sideways * cos(middle_yaw)
         self.yaw += turn
 
     def follow_arc(self, forward: float, sideways: float, turn: float) -> None:
@@ -36,7 +36,7 @@ class PlanarPose:
         The path is a circular arc, without integration error. Source: diff_drive_controller, which does so only for
         forward motion.
         """
-        if abs(turn) < _STRAIGHT:
+        if abs(turn) < _MIN_ARC_ANGLE:
             self.advance(forward, sideways, turn)
             return
         yaw = self.yaw + turn

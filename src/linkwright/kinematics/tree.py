@@ -8,7 +8,7 @@ joint with z along the joint's axis. Then a joint rotates its body about z or tr
 
 There are two ways to compute link frames. For one configuration the overhead of array operations dominates, so frames
 are composed along paths that double in length with each step. For many configurations memory access dominates: the last
-axis is that of the configurations, the tree is computed level by level for a block of them that fits in the cache, and
+axis counts the configurations, the tree is computed level by level for a block of them that fits in the cache, and
 results are written once.
 """
 
@@ -27,8 +27,8 @@ from linkwright.urdf import Joint, Robot, children_of, parent_joints
 
 Indices = NDArray[np.intp]
 
-_TURNING = ("revolute", "continuous")
-MOVING = (*_TURNING, "prismatic")
+_ROTATING_TYPES = ("revolute", "continuous")
+MOVING = (*_ROTATING_TYPES, "prismatic")
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Layout:
 
 def compute_layout(robot: Robot) -> Layout:
     """Return the layout of a robot, without links that are not connected to its root."""
-    children, above = children_of(robot), parent_joints(robot)
+    children, joints_by_child = children_of(robot), parent_joints(robot)
     link_names = [robot.root]
     link_bodies = [0]
     offsets = [np.eye(4)]
@@ -66,13 +66,13 @@ def compute_layout(robot: Robot) -> Layout:
     parents, depths, mounts = [0], [0], [np.eye(4)]
     # A queue ensures that parents are processed before children and, level by level, bodies in the order of their
     # depth.
-    at = 0
-    while at < len(link_names):
-        for joint in children[link_names[at]]:
-            if above[joint.child] is not joint:
+    index = 0
+    while index < len(link_names):
+        for joint in children[link_names[index]]:
+            if joints_by_child[joint.child] is not joint:
                 continue  # Like urdfdom, ignore a second parent.
-            body = link_bodies[at]
-            to_joint = offsets[at] @ matrix_from_pose(row_from_pose(joint.origin))
+            body = link_bodies[index]
+            to_joint = offsets[index] @ matrix_from_pose(row_from_pose(joint.origin))
             align = _align_z(joint.axis) if joint.type in MOVING else None
             if align is None:
                 link_bodies.append(body)
@@ -85,19 +85,19 @@ def compute_layout(robot: Robot) -> Layout:
                 depths.append(depths[body] + 1)
                 mounts.append(to_joint @ align)
             link_names.append(joint.child)
-        at += 1
+        index += 1
     order = np.argsort(depths, kind="stable")
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
+    new_indexes = np.empty_like(order)
+    new_indexes[order] = np.arange(len(order))
     joints = tuple(joint for body in order if (joint := body_joints[body]) is not None)
     return Layout(
         tuple(link_names),
         joints,
-        place[np.array(parents)[order]],
+        new_indexes[np.array(parents)[order]],
         np.array(depths)[order],
         np.array([False, *(joint.type == "prismatic" for joint in joints)]),
         np.array(mounts)[order],
-        place[np.array(link_bodies)],
+        new_indexes[np.array(link_bodies)],
         np.array(offsets),
     )
 
@@ -128,39 +128,39 @@ class MimicRelation:
     offset: float = 0.0
 
 
-def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, MimicRelation]]:
+def resolve_mimics(robot: Robot, moving_joints: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, MimicRelation]]:
     """Resolve each chain of mimic joints to its end.
 
     Args:
         robot: the robot.
-        moving: the names of the joints that move.
+        moving_joints: the names of the joints that move.
 
     Returns:
         The moving joints that have their own position, in the order of the file; and the relation of each moving joint
         to its leader, by name. A joint whose chain ends in a cycle or at a joint that does not exist moves
         independently.
     """
-    following: dict[str, MimicRelation] = {}
+    relations: dict[str, MimicRelation] = {}
     for name in robot.joints:
-        if name in moving:
-            following[name] = _follow(name, robot)
-    return tuple(name for name, how in following.items() if how.leader == name), following
+        if name in moving_joints:
+            relations[name] = _resolve_mimic(name, robot)
+    return tuple(name for name, relation in relations.items() if relation.leader == name), relations
 
 
-def _follow(name: str, robot: Robot) -> MimicRelation:
+def _resolve_mimic(name: str, robot: Robot) -> MimicRelation:
     leader, factor, offset = name, 1.0, 0.0
-    seen = {name}
+    visited = {name}
     while (mimic := robot.joints[leader].mimic) is not None:
-        if mimic.joint in seen or mimic.joint not in robot.joints:
+        if mimic.joint in visited or mimic.joint not in robot.joints:
             return MimicRelation(name)
-        seen.add(mimic.joint)
+        visited.add(mimic.joint)
         leader = mimic.joint
         offset += factor * mimic.offset
         factor *= mimic.multiplier
     return MimicRelation(leader, factor, offset)
 
 
-_BLOCK = 384
+_BLOCK_SIZE = 384
 
 
 class OneConfiguration:
@@ -171,13 +171,13 @@ class OneConfiguration:
         mounts = layout.mounts[1:]
         # The frame of a body in its parent is 1 * A + cos(q) * B + sin(q) * C + q * D, entry by entry.
         terms = np.zeros((count - 1, 4, 4, 4))
-        turns, slides = ~layout.slides[1:], layout.slides[1:]
-        terms[turns, 0, :, 2:] = mounts[turns, :, 2:]
-        terms[turns, 1, :, :2] = mounts[turns, :, :2]
-        terms[turns, 2, :, 0] = mounts[turns, :, 1]
-        terms[turns, 2, :, 1] = -mounts[turns, :, 0]
-        terms[slides, 0] = mounts[slides]
-        terms[slides, 3, :, 3] = mounts[slides, :, 2]
+        is_rotating, is_sliding = ~layout.slides[1:], layout.slides[1:]
+        terms[is_rotating, 0, :, 2:] = mounts[is_rotating, :, 2:]
+        terms[is_rotating, 1, :, :2] = mounts[is_rotating, :, :2]
+        terms[is_rotating, 2, :, 0] = mounts[is_rotating, :, 1]
+        terms[is_rotating, 2, :, 1] = -mounts[is_rotating, :, 0]
+        terms[is_sliding, 0] = mounts[is_sliding]
+        terms[is_sliding, 3, :, 3] = mounts[is_sliding, :, 2]
         self._terms = terms.reshape(count - 1, 4, 16)
         self._jumps = _doubling_jumps(layout.parents, layout.depths)
         self._link_bodies = layout.link_bodies
@@ -197,9 +197,9 @@ class OneConfiguration:
         bodies = np.empty((count + 1, 4, 4))
         bodies[0] = _IDENTITY
         np.matmul(factors.T[:, None, :], self._terms, bodies[1:].reshape(count, 1, 16))
-        for first, above in self._jumps:
-            deep = bodies[first:]
-            deep[...] = bodies.take(above, 0) @ deep
+        for first_body, ancestors in self._jumps:
+            deep_frames = bodies[first_body:]
+            deep_frames[...] = bodies.take(ancestors, 0) @ deep_frames
         frames: Array = bodies.take(self._link_bodies, 0) @ self._offsets
         return frames
 
@@ -221,16 +221,16 @@ class ManyConfigurations:
         count, links = len(positions), len(self._link_bodies)
         frames = np.empty((count, links, 4, 4))
         frames[:, :, 3] = _IDENTITY[3]
-        for start in range(0, count, _BLOCK):
-            block = positions[start : start + _BLOCK]
+        for start in range(0, count, _BLOCK_SIZE):
+            block = positions[start : start + _BLOCK_SIZE]
             size = len(block)
             # Axes: body, column, row, configuration. The last row of the matrices is constant and not stored.
             bodies = np.empty((self._bodies, 4, 3, size))
             bodies[0] = _IDENTITY.T[:, :3, None]
-            by_joint = np.ascontiguousarray(block.T)
-            cosines, sines = np.cos(by_joint), np.sin(by_joint)
+            positions_by_joint = np.ascontiguousarray(block.T)
+            cosines, sines = np.cos(positions_by_joint), np.sin(positions_by_joint)
             for level in self._levels:
-                level.compute(bodies, by_joint, cosines, sines)
+                level.compute(bodies, positions_by_joint, cosines, sines)
             columns = bodies.reshape(self._bodies, 4, 3 * size).take(self._link_bodies, 0)
             columns = self._offsets_transposed @ columns
             frames[start : start + size, :, :3] = columns.reshape(links, 4, 3, size).transpose(3, 0, 2, 1)
@@ -242,9 +242,9 @@ class _Level:
 
     def __init__(self, layout: Layout, depth: int) -> None:
         members = np.flatnonzero(layout.depths == depth)
-        self._turning = members[~layout.slides[members]]
-        self._sliding = members[layout.slides[members]]
-        members = np.concatenate((self._turning, self._sliding))
+        self._rotating_bodies = members[~layout.slides[members]]
+        self._translating_bodies = members[layout.slides[members]]
+        members = np.concatenate((self._rotating_bodies, self._translating_bodies))
         self._members = members
         self._parents = layout.parents[members]
         self._mounts_transposed = np.ascontiguousarray(layout.mounts[members].transpose(0, 2, 1))
@@ -252,20 +252,20 @@ class _Level:
     def compute(self, bodies: Array, positions: Array, cosines: Array, sines: Array) -> None:
         count, size = len(self._members), bodies.shape[-1]
         parents = bodies.take(self._parents, 0).reshape(count, 4, 3 * size)
-        mounted = (self._mounts_transposed @ parents).reshape(count, 4, 3, size)
-        turning = len(self._turning)
-        if turning:
-            joints = self._turning - 1
+        mounted_frames = (self._mounts_transposed @ parents).reshape(count, 4, 3, size)
+        rotating_count = len(self._rotating_bodies)
+        if rotating_count:
+            joints = self._rotating_bodies - 1
             cosine, sine = cosines[joints, None], sines[joints, None]
-            x, y = mounted[:turning, 0], mounted[:turning, 1]
-            turned = x * cosine + y * sine
+            x, y = mounted_frames[:rotating_count, 0], mounted_frames[:rotating_count, 1]
+            rotated_x = x * cosine + y * sine
             y *= cosine
             y -= x * sine
-            mounted[:turning, 0] = turned
-        if turning < count:
-            joints = self._sliding - 1
-            mounted[turning:, 3] += mounted[turning:, 2] * positions[joints, None]
-        bodies[self._members] = mounted
+            mounted_frames[:rotating_count, 0] = rotated_x
+        if rotating_count < count:
+            joints = self._translating_bodies - 1
+            mounted_frames[rotating_count:, 3] += mounted_frames[rotating_count:, 2] * positions[joints, None]
+        bodies[self._members] = mounted_frames
 
 
 def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
@@ -295,10 +295,10 @@ class UnknownNameError(LinkwrightError):
         name: the requested name.
     """
 
-    def __init__(self, code: str, kind: str, name: str, known: Sequence[str], hint: Phrase | None = None) -> None:
+    def __init__(self, code: str, kind: str, name: str, candidates: Sequence[str], hint: Phrase | None = None) -> None:
         self.name = name
         message = phrase("the robot has no {kind} '{name}'", kind=term(kind), name=name)
-        super().__init__(Diagnostic(code, message, hint=hint or did_you_mean(name, known)))
+        super().__init__(Diagnostic(code, message, hint=hint or did_you_mean(name, candidates)))
 
 
 class KinematicTree:
@@ -317,24 +317,26 @@ class KinematicTree:
 
     def __init__(self, robot: Robot) -> None:
         layout = compute_layout(robot)
-        moving = {joint.name for joint in layout.body_joints}
-        free, followers = resolve_mimics(robot, moving)
-        self.joint_names: tuple[str, ...] = free
+        moving_joints = {joint.name for joint in layout.body_joints}
+        independent_joints, relations = resolve_mimics(robot, moving_joints)
+        self.joint_names: tuple[str, ...] = independent_joints
         self.link_names: tuple[str, ...] = layout.link_names
-        self._joint_places = {name: place for place, name in enumerate(free)}
-        self._link_places = {name: place for place, name in enumerate(layout.link_names)}
-        self._followers = followers
+        self._joint_indexes = {name: index for index, name in enumerate(independent_joints)}
+        self._link_indexes = {name: place for place, name in enumerate(layout.link_names)}
+        self._relations = relations
         self._types = {joint.name: joint.type for joint in robot.joints.values()}
         names = [joint.name for joint in layout.body_joints]
-        sources = np.array([self._joint_places.get(followers[name].leader, -1) for name in names], dtype=np.intp)
-        self._sources = sources
-        self._factors = np.array([followers[name].factor for name in names])
-        self._offsets = np.array([followers[name].offset for name in names])
-        self._plain = bool(
-            np.all(self._factors == 1) and np.all(self._offsets == 0) and np.all(sources >= 0) and len(names) > 0
+        leader_indexes = np.array(
+            [self._joint_indexes.get(relations[name].leader, -1) for name in names], dtype=np.intp
         )
-        self._one = OneConfiguration(layout)
-        self._many = ManyConfigurations(layout)
+        self._sources = leader_indexes
+        self._factors = np.array([relations[name].factor for name in names])
+        self._offsets = np.array([relations[name].offset for name in names])
+        self._copies_positions = bool(
+            np.all(self._factors == 1) and np.all(self._offsets == 0) and np.all(leader_indexes >= 0) and len(names) > 0
+        )
+        self._one_configuration = OneConfiguration(layout)
+        self._many_configurations = ManyConfigurations(layout)
 
     def forward(self, positions: ArrayLike | Mapping[str, float]) -> Array:
         """Return the frames of all links in the root link's frame.
@@ -347,62 +349,62 @@ class KinematicTree:
             Homogeneous matrices, shape (links, 4, 4) or (..., links, 4, 4) in the order of `link_names`, float64.
 
         Raises:
-            ValueError: the shape is wrong.
-            UnknownNameError: a name in the mapping is not one of `joint_names`.
+            ValueError: if the shape is wrong.
+            UnknownNameError: if a name in the mapping is not one of `joint_names`.
         """
         if isinstance(positions, Mapping):
             positions = self.positions(positions)
-        given = np.asarray(positions, dtype=np.float64)
+        array = np.asarray(positions, dtype=np.float64)
         count = len(self.joint_names)
-        if given.ndim == 0 or given.shape[-1] != count:
-            raise ValueError(f"positions of shape {given.shape}; ({count},) or (configurations, {count}) is expected")
-        if given.ndim == 1:
-            return self._one.frames(self._body_positions(given))
-        shape = given.shape[:-1]
-        flat = self._body_positions(given.reshape(prod(shape), count))
-        return self._many.frames(flat).reshape(*shape, len(self.link_names), 4, 4)
+        if array.ndim == 0 or array.shape[-1] != count:
+            raise ValueError(f"positions of shape {array.shape}; ({count},) or (configurations, {count}) is expected")
+        if array.ndim == 1:
+            return self._one_configuration.frames(self._body_positions(array))
+        shape = array.shape[:-1]
+        flat = self._body_positions(array.reshape(prod(shape), count))
+        return self._many_configurations.frames(flat).reshape(*shape, len(self.link_names), 4, 4)
 
-    def positions(self, by_name: Mapping[str, float], default: float = 0.0) -> Array:
+    def positions(self, positions_by_name: Mapping[str, float], default: float = 0.0) -> Array:
         """Convert positions by joint name to an array in the order of `joint_names`.
 
         Joints without a given position get the default.
 
         Raises:
-            UnknownNameError: KIN101, a name is not a joint of the robot; KIN102, a joint has no position of its own.
+            UnknownNameError: KIN101 if a name is not a joint of the robot, or KIN102 if a joint has no own position.
         """
         positions = np.full(len(self.joint_names), default, dtype=np.float64)
-        for name, position in by_name.items():
-            place = self._joint_places.get(name)
-            if place is None:
+        for name, position in positions_by_name.items():
+            index = self._joint_indexes.get(name)
+            if index is None:
                 raise self._unknown_joint(name)
-            positions[place] = position
+            positions[index] = position
         return positions
 
     def link_index(self, name: str) -> int:
         """Return the index of a link in `link_names`.
 
         Raises:
-            UnknownNameError: KIN103, the robot has no such link.
+            UnknownNameError: KIN103 if the robot has no such link.
         """
         try:
-            return self._link_places[name]
+            return self._link_indexes[name]
         except KeyError:
             raise UnknownNameError("KIN103", "link", name, self.link_names) from None
 
     def _body_positions(self, positions: Array) -> Array:
         """Return the positions of all moving joints, including mimics, of shape (..., bodies - 1)."""
-        if self._plain:
+        if self._copies_positions:
             return positions.take(self._sources, axis=-1)
         if not len(self.joint_names):
             positions = np.zeros((*positions.shape[:-1], 1))
-        followed = positions.take(np.maximum(self._sources, 0), axis=-1)
-        followed[..., self._sources < 0] = 0.0  # Leaders that do not move stay at 0.
-        followed *= self._factors
-        followed += self._offsets
-        return followed
+        body_positions = positions.take(np.maximum(self._sources, 0), axis=-1)
+        body_positions[..., self._sources < 0] = 0.0  # Leaders that do not move stay at 0.
+        body_positions *= self._factors
+        body_positions += self._offsets
+        return body_positions
 
     def _unknown_joint(self, name: str) -> UnknownNameError:
-        follower = self._followers.get(name)
+        follower = self._relations.get(name)
         if follower is not None:
             hint = phrase("it mimics '{leader}': give the position of that joint", leader=follower.leader)
             return UnknownNameError("KIN102", "joint with a position of its own called", name, (), hint)

@@ -19,7 +19,7 @@ from linkwright.language.workspace import Workspace
 from linkwright.language.written import MACRO, WrittenElement, innermost, written_elements
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.symbols import MATHEMATICS
-from linkwright.xmltree.patches import indentation, newline_of
+from linkwright.xmltree.patches import indentation, line_ending
 from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
 
 _NUMBER = lazy_pattern(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -218,7 +218,7 @@ def start_with_comments(text: str, start: int) -> int:
 def insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
     """Return the edit that inserts lines before an offset, with the indentation there."""
     blanks = indentation(text, start)
-    separator = "" if blanks is None else f"{newline_of(text)}{blanks}"
+    separator = "" if blanks is None else f"{line_ending(text)}{blanks}"
     return Edit(file, start, start, new + separator)
 
 

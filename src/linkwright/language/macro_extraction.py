@@ -15,7 +15,7 @@ from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import WrittenElement, written_elements
-from linkwright.xmltree.patches import indentation, newline_of
+from linkwright.xmltree.patches import indentation, line_ending
 from linkwright.xmltree.tokens import Kind, tokens
 
 _STEP = "  "
@@ -77,7 +77,7 @@ def extract_macro(
     start, end, top = siblings[0].start, siblings[-1].end, siblings[0].top
     assert top is not None
     name = unique_name(project, texts, file, _macro_name(siblings[0]))
-    newline, blanks = newline_of(text), indentation(text, top.start) or ""
+    newline, blanks = line_ending(text), indentation(text, top.start) or ""
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
     starts = dict.fromkeys((start, start_with_comments(text, start)))  # a comment above a call is lost, so it may move

@@ -15,7 +15,7 @@ from linkwright.language.written import innermost, written_elements
 from linkwright.lint.suppression import directives
 from linkwright.lint.targets import XML_FILES
 from linkwright.packages.readers.cmake_syntax import statements
-from linkwright.xmltree.patches import newline_of
+from linkwright.xmltree.patches import line_ending
 from linkwright.xmltree.tokens import Kind, tokens
 
 REASON = "reason"
@@ -70,7 +70,7 @@ def _in_xml(text: str, file: Path, code: str, offset: int) -> list[Edit]:
     comment = f"<!-- linkwright: ignore {code} ({REASON}) -->"
     line = text.rfind("\n", 0, element.start) + 1
     blanks = text[line : element.start]
-    above = [] if blanks.strip() else [Edit(file, line, line, f"{blanks}{comment}{newline_of(text)}")]
+    above = [] if blanks.strip() else [Edit(file, line, line, f"{blanks}{comment}{line_ending(text)}")]
     end = _line_end(text, offset)
     behind = [Edit(file, end, end, f" {comment}")]
     inside = [Edit(file, element.start, element.start, f"{comment} ")]
@@ -91,7 +91,7 @@ def _in_lines(text: str, file: Path, code: str, offset: int) -> list[Edit]:
     line, end = text.rfind("\n", 0, offset) + 1, _line_end(text, offset)
     written = text[line:end]
     blanks = written[: len(written) - len(written.lstrip())]
-    return [Edit(file, line, line, f"{blanks}{comment}{newline_of(text)}"), Edit(file, end, end, f"  {comment}")]
+    return [Edit(file, line, line, f"{blanks}{comment}{line_ending(text)}"), Edit(file, end, end, f"  {comment}")]
 
 
 def _line_end(text: str, offset: int) -> int:

@@ -13,7 +13,7 @@ from linkwright.language.mentions import FILES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding
-from linkwright.lint.folders import Examined, relevant_package_findings, reported
+from linkwright.lint.folders import Examined, relevant_findings, relevant_package_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets, walk
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
@@ -234,7 +234,7 @@ class Workspace:
         targets = Targets((subject,), self.index.packages, named)
         checked, trouble = self._checker.check_file(subject, targets, overlay, Contexts())
         examined = Examined.of(checked, subject)
-        return (*trouble, *reported(examined, [examined], targets, [subject]))
+        return (*trouble, *relevant_findings(examined, [examined], targets, [subject]))
 
     def _of_files(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""

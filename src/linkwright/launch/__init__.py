@@ -1,4 +1,4 @@
-"""Launch descriptions and the engine that runs them.
+"""Launch descriptions, and the engine that runs them.
 
 Descriptions consist of actions, substitutions, conditions and events.
 """

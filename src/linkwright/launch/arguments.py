@@ -21,53 +21,53 @@ from linkwright.launch.model.substitution import describe
 from linkwright.process.assignments import parse_assignments
 
 UNDECLARED = frozenset({"launch-prefix", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "ros_namespace"})
-"""Launch configurations that have an effect without being declared."""
+"""Launch configurations that have an effect even if they are not declared."""
 
 
 def parse_arguments(words: Iterable[str]) -> dict[str, str]:
-    """Parse launch arguments into a mapping of names to values.
+    """Return a mapping of names to values for launch arguments in the form ``name:=value``.
 
-    The last value of a repeated name wins.
+    If a name is repeated, the last value counts.
 
     Raises:
-        LinkwrightError: LAUNCH111, listing all arguments that are not of the form ``name:=value``.
+        LinkwrightError: LAUNCH111, some arguments do not have this form; the error lists all of them.
     """
-    return parse_assignments(words, _malformed)
+    return parse_assignments(words, _malformed_error)
 
 
-def _malformed(word: str, hint: Phrase) -> Diagnostic:
-    return Diagnostic("LAUNCH111", phrase("malformed launch argument '{word}'", word=word), hint=hint)
+def _malformed_error(argument: str, hint: Phrase) -> Diagnostic:
+    return Diagnostic("LAUNCH111", phrase("launch argument '{word}' is malformed", word=argument), hint=hint)
 
 
-def check_arguments(description: LaunchDescription, given: Mapping[str, str]) -> list[Diagnostic]:
-    """Check the arguments against the declarations of the launch file, before anything starts.
+def check_arguments(description: LaunchDescription, values: Mapping[str, str]) -> list[Diagnostic]:
+    """Return warnings about launch arguments, which are checked before the launch starts.
 
     Returns:
-        Warnings (LAUNCH113) about undeclared arguments. As in ROS, these arguments are still set.
+        Warnings (LAUNCH113) about undeclared arguments, which are still set, as in ROS.
 
     Raises:
-        LinkwrightError: LAUNCH112 and LAUNCH114, listing all invalid values and all missing arguments.
+        LinkwrightError: LAUNCH112 and LAUNCH114, values are not valid or arguments are missing; the error lists all.
     """
-    declared = description.get_launch_arguments()
-    names = [argument.name for argument in declared]
-    undeclared = undeclared_names(description.entities, [name for name in given if name not in UNDECLARED])
+    declared_arguments = description.get_launch_arguments()
+    declared_names = [argument.name for argument in declared_arguments]
+    undeclared = undeclared_names(description.entities, [name for name in values if name not in UNDECLARED])
     errors: list[Diagnostic] = []
-    for argument in declared:
-        value = given.get(argument.name)
+    for argument in declared_arguments:
+        value = values.get(argument.name)
         if value is not None and argument.choices is not None and not argument.conditionally_included:
-            errors += _argument_errors(argument, given)
+            errors += _argument_errors(argument, values)
         elif value is None and argument.default_value is None and not argument.conditionally_included:
-            errors += [_misspelt(argument.name, undeclared, error) for error in _argument_errors(argument, given)]
+            errors += [_misspelt(argument.name, undeclared, error) for error in _argument_errors(argument, values)]
     if errors:
         raise LinkwrightError(*errors)
-    return [_undeclared(name, names) for name in undeclared]
+    return [_undeclared_warning(name, declared_names) for name in undeclared]
 
 
-def _argument_errors(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequence[Diagnostic]:
+def _argument_errors(argument: DeclareLaunchArgument, values: Mapping[str, str]) -> Sequence[Diagnostic]:
     from linkwright.launch.model.context import LaunchContext
 
     context = LaunchContext()
-    context.launch_configurations.update(given)
+    context.launch_configurations.update(values)
     try:
         argument.execute(context)
     except LinkwrightError as error:
@@ -76,41 +76,43 @@ def _argument_errors(argument: DeclareLaunchArgument, given: Mapping[str, str]) 
 
 
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
-    """Add a hint on a similar undeclared argument, if any, to the error for a missing argument."""
-    near = nearest(name, undeclared, limit=1)
+    """Return the error for a missing argument, with a hint if an undeclared argument has a similar name."""
+    similar_names = nearest(name, undeclared, limit=1)
     return (
-        error.with_changes(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name))
-        if near
+        error.with_changes(
+            hint=phrase(("argument '{near}' was passed; did you mean '{name}'?"), near=similar_names[0], name=name)
+        )
+        if similar_names
         else error
     )
 
 
-def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
-    hint = did_you_mean(name, declared)
+def _undeclared_warning(name: str, declared_names: Sequence[str]) -> Diagnostic:
+    hint = did_you_mean(name, declared_names)
     if hint is None:
         hint = (
-            phrase("it declares {names}", names=quoted_names(declared))
-            if declared
-            else phrase("it declares no arguments")
+            phrase("the launch file declares {names}", names=quoted_names(declared_names))
+            if declared_names
+            else phrase("the launch file declares no arguments")
         )
     message = phrase("argument '{name}' is not declared by the launch file", name=name)
     return Diagnostic("LAUNCH113", message, severity=Severity.WARNING, hint=hint)
 
 
 def format_arguments(description: LaunchDescription) -> str:
-    """Return the text that ``ros2 launch --show-args`` prints.
+    """Return the text that ``ros2 launch --show-args`` prints for a launch description.
 
-    The text lists the names, descriptions and defaults of the declared arguments.
+    The text contains the names, descriptions and default values of the declared arguments.
     """
     lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
-    declared = description.get_launch_arguments()
-    for argument in declared:
+    declared_arguments = description.get_launch_arguments()
+    for argument in declared_arguments:
         lines += ["", f"    '{argument.name}':{'*' if argument.conditionally_included else ''}"]
         lines.append(f"        {argument.description}")
         if argument.default_value is not None:
             lines.append(f"        (default: {describe(argument.default_value)})")
-    if not declared:
+    if not declared_arguments:
         lines += ["", "  No arguments."]
-    if any(argument.conditionally_included for argument in declared):
+    if any(argument.conditionally_included for argument in declared_arguments):
         lines += ["", "* argument(s) which are only used if specific conditions occur"]
     return "\n".join(lines)

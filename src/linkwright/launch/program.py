@@ -1,4 +1,4 @@
-"""Runs a single executable of a package without a launch file."""
+"""Runs an executable of a package without a launch file."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from linkwright.packages.programs.workspace_environment import workspace_environ
 
 @dataclass(frozen=True)
 class Program:
-    """An executable that is ready to run.
+    """An executable with its command and environment.
 
     Attributes:
         command: the command as a list of arguments.
-        environment: the environment in which to run the executable.
-        is_ours: whether the executable is a node that comes with Linkwright.
+        environment: the environment variables of the process.
+        is_ours: whether the executable is one of Linkwright's own nodes.
     """
 
     command: list[str]
@@ -35,22 +35,22 @@ class Program:
 
 
 def find_program(finder: PackageFinder, package: str, executable: str) -> Program:
-    """Return an executable of a package, ready to run.
+    """Return the command and environment for an executable of a package.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such package or executable.
     """
-    found = find_executable(finder, package, executable)
+    executable_of_package = find_executable(finder, package, executable)
     environment = process_environment(workspace_environment(finder, os.environ))
-    return Program(found.command, environment, found.origin is Origin.OURS)
+    return Program(executable_of_package.command, environment, executable_of_package.origin is Origin.LINKWRIGHT)
 
 
 def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
-    """Run the viewer in place of RViz until the user ends it.
+    """Run the viewer, which replaces RViz, until the user ends it.
 
     Args:
         arguments: the command-line arguments of ``rviz2``.
-        options: the options of the viewer's page.
+        options: the options of the viewer; None for the defaults.
 
     Returns:
         The exit status, see `linkwright.launch.run_launch`.

@@ -18,7 +18,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 
 
 class MultipleLaunchFilesError(Exception):
-    """Raised when a package has several files with the same name.
+    """Raised when a package has several launch files with the same name.
 
     Attributes:
         paths: the paths of the files.
@@ -38,43 +38,43 @@ def get_share_file_path_from_package(*, package_name: str, file_name: str) -> st
         MultipleLaunchFilesError: the package has several files with this name.
     """
     share = current_finder().share(package_name)
-    found = [str(Path(folder, file_name)) for folder, _, files in os.walk(share) if file_name in files]
-    where = f"in the share directory of package '{package_name}'"
-    if not found:
-        raise FileNotFoundError(f"file '{file_name}' was not found {where} which is at '{share}'")
-    if len(found) > 1:
-        listed = ", ".join(f"'{path}'" for path in found)
-        raise MultipleLaunchFilesError(f"file '{file_name}' was found more than once {where}: [{listed}]", found)
-    return found[0]
+    paths = [str(Path(folder, file_name)) for folder, _, files in os.walk(share) if file_name in files]
+    location = f"in the share directory of package '{package_name}'"
+    if not paths:
+        raise FileNotFoundError(f"file '{file_name}' was not found {location} which is at '{share}'")
+    if len(paths) > 1:
+        paths_text = ", ".join(f"'{path}'" for path in paths)
+        raise MultipleLaunchFilesError(f"file '{file_name}' was found more than once {location}: [{paths_text}]", paths)
+    return paths[0]
 
 
 def get_launch_file_paths(*, path: str) -> list[str]:
-    """Return the paths of the launch files in a folder and its subfolders."""
-    inside = (str(Path(folder, name)) for folder, _, files in os.walk(path) for name in files)
-    return [candidate for candidate in inside if is_launch_file(candidate)]
+    """Return the paths of all launch files in a folder and its subfolders."""
+    file_paths = (str(Path(folder, name)) for folder, _, files in os.walk(path) for name in files)
+    return [candidate for candidate in file_paths if is_launch_file(candidate)]
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether a path names an existing file with the name of a launch file."""
+    """Return whether a path is that of an existing file with the name of a launch file."""
     return is_launch_file_name(str(path)) and Path(path).is_file()
 
 
 def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, str]]:
-    """Parse arguments ``name:=value`` into pairs.
+    """Return pairs of name and value for arguments in the form ``name:=value``.
 
-    The last value of a repeated name wins.
+    If a name is repeated, the last value counts.
 
     Raises:
-        RuntimeError: an argument is malformed.
+        RuntimeError: an argument does not have this form.
     """
-    parsed: dict[str, str] = {}
+    values: dict[str, str] = {}
     for argument in launch_arguments:
-        name, sign, value = argument.partition(":=")
-        if not name or not sign or not value:
+        name, separator, value = argument.partition(":=")
+        if not name or not separator or not value:
             text = f"malformed launch argument '{argument}', expected format '<name>:=<value>'"
             raise RuntimeError(text)
-        parsed[name] = value
-    return list(parsed.items())
+        values[name] = value
+    return list(values.items())
 
 
 def print_a_launch_file(*, launch_file_path: str) -> None:
@@ -83,7 +83,7 @@ def print_a_launch_file(*, launch_file_path: str) -> None:
 
 
 def print_arguments_of_launch_file(*, launch_file_path: str) -> None:
-    """Print the arguments of a launch file."""
+    """Print the arguments that a launch file declares."""
     print(format_arguments(load_launch_file(Path(launch_file_path))))
 
 
@@ -98,11 +98,11 @@ def launch_a_launch_file(
     """Launch a file with arguments, and wait for the launch to end.
 
     Returns:
-        0, or 1 if something in the launch failed.
+        0 if the launch succeeded, and 1 if something in it failed.
     """
     service = LaunchService(argv=launch_file_arguments, noninteractive=noninteractive, debug=debug)
-    included = IncludeLaunchDescription(
+    include_action = IncludeLaunchDescription(
         launch_file_path, launch_arguments=parse_launch_arguments(launch_file_arguments)
     )
-    service.include_launch_description(LaunchDescription([included]))
+    service.include_launch_description(LaunchDescription([include_action]))
     return service.run()

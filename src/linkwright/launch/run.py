@@ -27,22 +27,23 @@ from linkwright.packages import PackageFinder
 
 @dataclass(frozen=True)
 class LaunchOptions:
-    """The options of a launch.
+    """The options of a launch from the command line.
 
     Attributes:
-        host: the address to which the viewer's server binds.
-        port: the port of the viewer's server; None for the default or the next free port.
+        host: the address on which the server of the viewer listens.
+        port: the port of the server; None for the default port, or the next one that is free.
         open_browser: whether to open the page in the user's browser.
         isolate: whether Linkwright's own nodes run in separate processes.
         debug: whether to log details.
         noninteractive: whether there is no terminal, so that Ctrl-C does not reach the processes directly.
-        prefix: a prefix for the command lines of processes.
-        prefix_filter: a regular expression for the names of the programs that get the prefix.
+        prefix: a command to insert before the command lines of processes; None for no prefix.
+        prefix_filter: a regular expression for the names of the programs that get the prefix; None for all programs.
         foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
-        skip_missing: whether to skip parts whose package, program or file is missing.
-        command_to_skip_missing: the command that launches with `skip_missing`, for the hint about missing parts.
-        network: whether the nodes of this process join the ROS 2 network, so that other programs can discover them.
-        history: the memory in bytes for the viewer's history of the last minutes; 0 for no history.
+        skip_missing: whether to skip the parts of the launch whose package, program or file is missing.
+        command_to_skip_missing: the command that repeats the launch with `skip_missing`, for a hint; None for no hint.
+        network: whether the nodes of the launcher's process join the ROS 2 network, where other programs discover
+            them.
+        history: the memory in bytes for the last minutes in the viewer; 0 to store none.
     """
 
     host: str = "127.0.0.1"
@@ -62,11 +63,11 @@ class LaunchOptions:
     @property
     def configurations(self) -> dict[str, str]:
         """The launch configurations that these options set."""
-        given = {"launch-prefix": self.prefix, "launch-prefix-filter": self.prefix_filter}
-        return {name: value for name, value in given.items() if value is not None}
+        values = {"launch-prefix": self.prefix, "launch-prefix-filter": self.prefix_filter}
+        return {name: value for name, value in values.items() if value is not None}
 
     def for_session(self, title: str) -> SessionOptions:
-        """Return the options of the launch session."""
+        """Return the corresponding options of the launch session, with the title of the launch."""
         return SessionOptions(
             self.host,
             self.port,
@@ -85,20 +86,20 @@ def run_launch(
 ) -> int:
     """Run a launch file until all its processes and nodes have ended or the user ends it.
 
-    The modules that launch files import must be available: see `linkwright.standins.activate`.
+    The modules that launch files import must be available, see `linkwright.standins.activate`.
 
     Args:
         target: the launch file.
-        arguments: name -> value of the launch arguments.
-        options: the options of the launch.
+        arguments: maps the names of launch arguments to their values; None for no arguments.
+        options: the options of the launch; None for the defaults.
 
     Returns:
-        The exit status: 0, 1 if something in the launch failed, or 128 plus the signal's number after a signal.
+        The exit status: 0 if the launch succeeded, 1 if something failed, or 128 plus the number of a received signal.
 
     Raises:
-        LinkwrightError: the errors in the target, the launch file or the arguments.
+        LinkwrightError: the target, the launch file or the arguments have errors.
     """
-    given = dict(arguments or {})
+    argument_values = dict(arguments or {})
     finder = target.finder()
     options = options or LaunchOptions()
 
@@ -110,18 +111,18 @@ def run_launch(
             if options.skip_missing:
                 add_no_skip_note(error)
             raise
-        log.diagnostics(check_arguments(description, given))
+        log.diagnostics(check_arguments(description, argument_values))
         return description, {
             "current_launch_file_path": str(path),
             "current_launch_file_directory": str(path.parent),
         }
 
     title = f"{target.package} {target.file}" if target.package else Path(target.file).name
-    return run_description(load, given, finder, options, title)
+    return run_description(load, argument_values, finder, options, title)
 
 
 def show_arguments(target: LaunchTarget) -> str:
-    """Return the text of ``--show-args`` for a launch file.
+    """Return the text that ``--show-args`` prints for a launch file.
 
     Raises:
         LinkwrightError: the errors in the target or the launch file.
@@ -130,7 +131,7 @@ def show_arguments(target: LaunchTarget) -> str:
 
 
 def print_description(target: LaunchTarget) -> str:
-    """Return the text of ``--print`` for a launch file: the tree of its entities.
+    """Return the text that ``--print`` prints for a launch file, which is the tree of its entities.
 
     Raises:
         LinkwrightError: the errors in the target or the launch file.
@@ -141,9 +142,9 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
-    """Read a launch file without launching it, and return a text about its description.
+    """Return a text about a launch file, which is read but not launched.
 
-    The function `describe` returns the text.
+    The function `describe` returns the text for the launch description.
     """
     finder = target.finder()
     with own_environment(finder):
@@ -160,36 +161,38 @@ def run_description(
     """Run a launch description until the launch ends.
 
     Args:
-        load: returns the description and the initial locals of the context.
-        configurations: name -> value of the launch configurations.
-        finder: the package finder.
+        load: returns the launch description, and the initial locals of the launch context.
+        configurations: maps the names of launch configurations to their values.
+        finder: the finder of ROS packages.
         options: the options of the launch.
-        title: the title of the launch.
+        title: the title of the launch in the viewer.
 
     Returns:
         The exit status, see `run_launch`.
 
     Raises:
-        LinkwrightError: the error of `load`.
+        LinkwrightError: `load` raised the error.
     """
     log = LaunchLog(debug=options.debug)
 
     def run(signals: SignalWatch) -> bool:
         with use_descriptions(Descriptions(finder)):
-            description, values = load(log)
+            description, initial_locals = load(log)
             if options.foxglove is not None:
                 description.add_action(_foxglove_bridge_action(options.foxglove))
             session = partial(LaunchSession, finder, options.for_session(title), log)
-            given = {**options.configurations, **configurations}
+            all_configurations = {**options.configurations, **configurations}
             quiet = options.noninteractive
-            return signals.run(lambda: _run(description, values, given, session, signals, noninteractive=quiet))
+            return signals.run(
+                lambda: _run(description, initial_locals, all_configurations, session, signals, noninteractive=quiet)
+            )
 
     return run_to_end(run, finder, log)
 
 
 async def _run(
     description: LaunchDescription,
-    values: dict[str, Any],
+    initial_locals: dict[str, Any],
     configurations: Mapping[str, str],
     make_session: Callable[[LaunchContext], LaunchSession],
     signals: SignalWatch,
@@ -200,11 +203,11 @@ async def _run(
     session = make_session(LaunchContext(argv=argv, noninteractive=noninteractive))
     session.context.launch_configurations.update(configurations)
     signals.session = session
-    return await session.run(description, values)
+    return await session.run(description, initial_locals)
 
 
 def _foxglove_bridge_action(port: int) -> Action:
-    """Return the action that starts the node to which Foxglove and Lichtblick connect."""
+    """Return the action that starts the node for connections from Foxglove and Lichtblick."""
     from linkwright.launch.ros import Node
 
     package = executable = "foxglove_bridge"

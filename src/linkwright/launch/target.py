@@ -1,4 +1,4 @@
-"""The launch file to run, given by a path, or by a package and a file name."""
+"""The launch file to run, which is named by a path, or by a package and a file name."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from linkwright.packages.launch_files import is_launch_file_name, launch_files_b
 
 @dataclass(frozen=True)
 class LaunchTarget:
-    """A launch file as the user names it.
+    """A launch file as it is named on the command line.
 
     Attributes:
-        file: the path of the file. If a package is given: the file's name, or its path below the package's share
-            folder.
-        package: the package, or None.
+        file: the path of the file. If there is a package, the name of the file, or its path relative to the package's
+            share folder.
+        package: the name of the package, or None.
     """
 
     file: str
     package: str | None = None
 
     def finder(self) -> PackageFinder:
-        """Return a package finder that starts in the launch file's folder and the current folder."""
+        """Return a finder of ROS packages that starts in the launch file's folder and the current folder."""
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
         return PackageFinder()
@@ -36,7 +36,7 @@ class LaunchTarget:
         """Return the absolute path of the launch file.
 
         Raises:
-            LinkwrightError: PKG101, there is no such package; LAUNCH101, the package has no such file, or several.
+            LinkwrightError: PKG101, there is no such package; LAUNCH101, the package has no such file, or has several.
         """
         if self.package is None:
             return Path(self.file).absolute()
@@ -47,19 +47,21 @@ class LaunchTarget:
         return self._search(share)
 
     def _search(self, share: Path) -> Path:
-        present = launch_files_below(share)
-        found = [path for path in present if path.name == self.file]
-        if len(found) == 1:
-            return found[0]
-        if found:
+        launch_files = launch_files_below(share)
+        matching_files = [path for path in launch_files if path.name == self.file]
+        if len(matching_files) == 1:
+            return matching_files[0]
+        if matching_files:
             message = phrase(
                 "package '{package}' has several launch files '{file}'", package=self.package, file=self.file
             )
-            listed = ", ".join(str(path.relative_to(share)) for path in found)
+            paths_text = ", ".join(str(path.relative_to(share)) for path in matching_files)
             raise LinkwrightError(
-                Diagnostic("LAUNCH101", message, hint=phrase("give the path of one of them: {listed}", listed=listed))
+                Diagnostic(
+                    "LAUNCH101", message, hint=phrase("give the path of one of them: {listed}", listed=paths_text)
+                )
             )
-        names = [path.name for path in present]
+        names = [path.name for path in launch_files]
         message = phrase(
             "package '{package}' has no launch file '{file}' (in {share})",
             package=self.package,
@@ -71,15 +73,15 @@ class LaunchTarget:
             hint = (
                 phrase("it has {names}", names=joined(names))
                 if names
-                else phrase("it has no launch files; does its setup.py install them?")
+                else phrase("it has no launch files; check that its setup.py installs them")
             )
         raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=hint))
 
 
 def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, str]]:
-    """Parse a command line that names a launch file and its arguments.
+    """Return the launch file and the arguments that a command line names.
 
-    The forms are ``launch PACKAGE FILE [name:=value ...]`` and ``launch PATH [name:=value ...]``.
+    The command line is ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
 
     Args:
         words: the arguments after ``launch``.
@@ -88,34 +90,37 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
         The launch file, and the values of the launch arguments by name.
 
     Raises:
-        LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, arguments are malformed.
+        LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, an argument is malformed.
     """
-    split = next((index for index, word in enumerate(words) if ":=" in word), len(words))
-    split = min(split, 2)
-    if split == 2 and _is_file(words[0]):  # the second word is probably a malformed launch argument
-        split = 1
-    named, rest = words[:split], words[split:]
-    arguments = parse_arguments(rest)
-    if not named:
-        raise _incomplete(
-            phrase("no launch file is given"), phrase("name a PACKAGE and a FILE in it, or the PATH of a launch file")
+    split_index = next((index for index, argument in enumerate(words) if ":=" in argument), len(words))
+    split_index = min(split_index, 2)
+    if split_index == 2 and _is_file(words[0]):  # the second argument is probably a malformed launch argument
+        split_index = 1
+    target_names, argument_texts = words[:split_index], words[split_index:]
+    values = parse_arguments(argument_texts)
+    if not target_names:
+        raise _incomplete_error(
+            phrase("no launch file is given"),
+            phrase("name a PACKAGE and a FILE in it, or give the PATH of a launch file"),
         )
-    if len(named) == 1:
-        if not _is_file(named[0]) and not _is_path(named[0]):
-            files = [path.name for path in _files_of_package(named[0])]
+    if len(target_names) == 1:
+        if not _is_file(target_names[0]) and not _is_path(target_names[0]):
+            files = [path.name for path in _files_of_package(target_names[0])]
             if files:
                 hint = phrase("it has {names}", names=joined(files))
-                raise _incomplete(phrase("'{named}' is a package: also name a launch file in it", named=named[0]), hint)
-        return LaunchTarget(named[0]), arguments
-    return LaunchTarget(named[1], named[0]), arguments
+                raise _incomplete_error(
+                    phrase(("'{named}' is a package; also name a launch file in it"), named=target_names[0]), hint
+                )
+        return LaunchTarget(target_names[0]), values
+    return LaunchTarget(target_names[1], target_names[0]), values
 
 
-def _is_file(word: str) -> bool:
-    return Path(word).is_file()
+def _is_file(argument: str) -> bool:
+    return Path(argument).is_file()
 
 
-def _is_path(word: str) -> bool:
-    return os.sep in word or is_launch_file_name(word) or word.endswith((".py", ".xml", ".yaml"))
+def _is_path(argument: str) -> bool:
+    return os.sep in argument or is_launch_file_name(argument) or argument.endswith((".py", ".xml", ".yaml"))
 
 
 def _files_of_package(name: str) -> list[Path]:
@@ -123,5 +128,5 @@ def _files_of_package(name: str) -> list[Path]:
     return [] if share is None else launch_files_below(share)
 
 
-def _incomplete(message: Phrase, hint: Phrase) -> LinkwrightError:
+def _incomplete_error(message: Phrase, hint: Phrase) -> LinkwrightError:
     return LinkwrightError(Diagnostic("LAUNCH110", message, hint=hint))

@@ -16,11 +16,11 @@ from linkwright.xmltree import parse
 from linkwright.xmltree.reader import read_bytes
 
 _MAX_PASSES = 20
-_MARK = b"\xef\xbb\xbf"
-_XML_ENDINGS = (".urdf", ".xacro", ".xml")
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_XML_SUFFIXES = (".urdf", ".xacro", ".xml")
 
 Check = Callable[[str | None], Iterable[Diagnostic]]
-"""Checks the main file again, with another text where one is given."""
+"""A function that checks the main file again, with the given text if it is not None."""
 
 
 @dataclass(slots=True)
@@ -57,20 +57,22 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
     Raises:
         LinkwrightError: LINT201 if a file cannot be written.
     """
-    home = _home(path)
+    allowed_folder = _allowed_folder(path)
     result = FixResult()
     for _ in range(_MAX_PASSES):
-        found = check(result.texts.get(str(path)) if not write else None)
-        done = {file for file in result.texts if not write and file != str(path)}
+        findings = check(result.texts.get(str(path)) if not write else None)
+        fixed_files = {file for file in result.texts if not write and file != str(path)}
         fixes = [
-            (fixable.code, fixable.fix) for fixable in _fixable(found, unsafe) if _may_change(fixable.fix, home, done)
+            (fixable.code, fixable.fix)
+            for fixable in _fixable(findings, unsafe)
+            if _may_change(fixable.fix, allowed_folder, fixed_files)
         ]
-        changed = _apply(fixes, result, {} if write else result.texts)
-        if not changed:
+        new_texts = _apply_fixes(fixes, result, {} if write else result.texts)
+        if not new_texts:
             break
-        result.texts.update(changed)
+        result.texts.update(new_texts)
         if write:
-            for file, text in changed.items():
+            for file, text in new_texts.items():
                 write_text(Path(file), text)
     return result
 
@@ -89,8 +91,10 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
         LinkwrightError: LINT201 if the file cannot be written.
     """
     try:
-        before = path.read_bytes()
-        write_whole_file(path, (_MARK if before.startswith(_MARK) else b"") + text.encode(encoding))
+        old_content = path.read_bytes()
+        write_whole_file(
+            path, (_BYTE_ORDER_MARK if old_content.startswith(_BYTE_ORDER_MARK) else b"") + text.encode(encoding)
+        )
     except OSError as error:
         message = phrase(
             "cannot write '{path}': {strerror}", path=display_path(path), strerror=foreign(error.strerror or error)
@@ -106,57 +110,58 @@ class _FixableFinding:
     fix: Fix
 
 
-def _fixable(found: Iterable[Diagnostic], unsafe: bool) -> Iterator[_FixableFinding]:
-    for diagnostic in found:
+def _fixable(findings: Iterable[Diagnostic], unsafe: bool) -> Iterator[_FixableFinding]:
+    for diagnostic in findings:
         if isinstance(diagnostic, Finding) and diagnostic.fix and (diagnostic.fix.safe or unsafe):
             yield _FixableFinding(diagnostic.code, diagnostic.fix)
 
 
-def _home(path: Path) -> Path:
+def _allowed_folder(path: Path) -> Path:
     folder = path.absolute().parent
     package = enclosing_package(folder)
     return (package[1] if package else folder).resolve()
 
 
-def _may_change(fix: Fix, home: Path, done: set[str]) -> bool:
+def _may_change(fix: Fix, allowed_folder: Path, fixed_files: set[str]) -> bool:
     return all(
-        edit.source_file not in done and Path(edit.source_file).resolve().is_relative_to(home) for edit in fix.edits
+        edit.source_file not in fixed_files and Path(edit.source_file).resolve().is_relative_to(allowed_folder)
+        for edit in fix.edits
     )
 
 
-def _apply(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Mapping[str, str]) -> dict[str, str]:
+def _apply_fixes(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Mapping[str, str]) -> dict[str, str]:
     """Return the new text of each file that the fixes change, by path.
 
     Of overlapping fixes, the first is applied. The result is empty if one of the files cannot be read. A file whose new
     text would not be well-formed XML is left out.
     """
-    taken: dict[str, list[Edit]] = {}
+    accepted_edits: dict[str, list[Edit]] = {}
     counts: dict[str, int] = {}
-    before: dict[str, str | None] = {}
+    old_texts: dict[str, str | None] = {}
     for code, fix in fixes:
-        if all(_fits(edit, taken.get(edit.source_file, ())) for edit in fix.edits):
+        if all(_fits(edit, accepted_edits.get(edit.source_file, ())) for edit in fix.edits):
             for edit in fix.edits:
-                taken.setdefault(edit.source_file, []).append(edit)
+                accepted_edits.setdefault(edit.source_file, []).append(edit)
             counts[code] = counts.get(code, 0) + 1
-    changed = {}
-    for file, edits in taken.items():
-        text = before.setdefault(file, texts.get(file) if file in texts else _text(file))
+    new_texts = {}
+    for file, edits in accepted_edits.items():
+        text = old_texts.setdefault(file, texts.get(file) if file in texts else _text(file))
         if text is None:
             return {}
-        new = _edited(text, edits)
-        if new != text and _is_sound(file, new):
-            changed[file] = new
-    if changed:
+        new_text = _apply_edits(text, edits)
+        if new_text != text and _is_well_formed(file, new_text):
+            new_texts[file] = new_text
+    if new_texts:
         for code, count in counts.items():
             result.counts[code] = result.counts.get(code, 0) + count
-    return changed
+    return new_texts
 
 
 def _fits(edit: Edit, others: Iterable[Edit]) -> bool:
     return all(edit.end < other.start or other.end < edit.start for other in others)
 
 
-def _edited(text: str, edits: Iterable[Edit]) -> str:
+def _apply_edits(text: str, edits: Iterable[Edit]) -> str:
     for edit in sorted(edits, key=lambda edit: edit.start, reverse=True):
         text = text[: edit.start] + edit.replacement + text[edit.end :]
     return text
@@ -165,13 +170,13 @@ def _edited(text: str, edits: Iterable[Edit]) -> str:
 def _text(file: str) -> str | None:
     """Return the text of a file without a byte order mark, or None if it is not readable UTF-8."""
     try:
-        return read_bytes(file).removeprefix(_MARK).decode("utf-8")
+        return read_bytes(file).removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
     except (LinkwrightError, UnicodeDecodeError):
         return None
 
 
-def _is_sound(file: str, text: str) -> bool:
-    if not file.endswith(_XML_ENDINGS):
+def _is_well_formed(file: str, text: str) -> bool:
+    if not file.endswith(_XML_SUFFIXES):
         return True
     try:
         parse(text.lstrip(), file)

@@ -13,8 +13,8 @@ from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, Robot
 from linkwright.xmltree import Document
 
-_RULES = "LW3"
-"""The rules about masses and inertias."""
+_CODE_PREFIX = "LW3"
+"""The prefix of the codes of the rules about masses and inertias."""
 
 
 def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Diagnostic]]:
@@ -29,27 +29,27 @@ def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Dia
     name = source.name if source else robot.name
     description = Description(name, Document(robot.element, source), Reading(robot, ()))
     subject = Subject(description, finder, Settings())
-    rules = [rule for rule in all_rules() if rule.default and rule.code.startswith(_RULES)]
-    found = [diagnostic for rule in rules for diagnostic in rule.check(subject)]
-    owners = _owners(robot)
+    rules = [rule for rule in all_rules() if rule.default and rule.code.startswith(_CODE_PREFIX)]
+    findings = [diagnostic for rule in rules for diagnostic in rule.check(subject)]
+    link_names = _link_names(robot)
     return [
         (link, diagnostic)
-        for diagnostic in Suppressions(subject, subject.settings).apply(found)
+        for diagnostic in Suppressions(subject, subject.settings).apply(findings)
         if diagnostic.severity is not Severity.INFO
-        if (link := _link_of(diagnostic, owners)) is not None
+        if (link := _link_name(diagnostic, link_names)) is not None
     ]
 
 
-def _owners(robot: Robot) -> dict[int, str]:
+def _link_names(robot: Robot) -> dict[int, str]:
     """Return the name of the link that contains each element, by the `id` of the element."""
-    owners: dict[int, str] = {}
+    link_names: dict[int, str] = {}
     for link in robot.links.values():
         if link.element is not None:
-            owners.update((id(element), link.name) for element in link.element.walk())
-    return owners
+            link_names.update((id(element), link.name) for element in link.element.walk())
+    return link_names
 
 
-def _link_of(diagnostic: Diagnostic, owners: dict[int, str]) -> str | None:
+def _link_name(diagnostic: Diagnostic, link_names: dict[int, str]) -> str | None:
     if not isinstance(diagnostic, Finding) or diagnostic.element is None:
         return None
-    return owners.get(id(diagnostic.element))
+    return link_names.get(id(diagnostic.element))

@@ -11,7 +11,7 @@ from linkwright.lint.configuration import read_settings, settings_for
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.engine import Checked, examine, examine_package
 from linkwright.lint.finding import without_element
-from linkwright.lint.folders import MISSING_PACKAGE, Examined, relevant_package_findings, reported
+from linkwright.lint.folders import MISSING_PACKAGE, Examined, relevant_findings, relevant_package_findings
 from linkwright.lint.rule import Scope
 from linkwright.lint.selector_words import canonical
 from linkwright.lint.settings import Settings
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 
 class UniqueFindings:
-    """A collection without duplicates: a file that two robots include has its findings twice."""
+    """A collection of findings without duplicates, which occur if two robots include the same file."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, Span | None, str], Diagnostic] = {}
 
-    def add(self, more: Iterable[Diagnostic]) -> None:
+    def add(self, findings: Iterable[Diagnostic]) -> None:
         """Add the findings that are not in the collection yet, without their elements."""
-        for diagnostic in more:
+        for diagnostic in findings:
             key = (diagnostic.code, _place(diagnostic), diagnostic.message)
             if key not in self._found:
                 self._found[key] = without_element(diagnostic)
@@ -82,18 +82,20 @@ class Checker:
         """
         folder = file.absolute().parent
         if folder not in self._finders:
-            start = [folder, *self.folders, Path.cwd()]
-            first = next(iter(self._finders.values()), None)
+            start_folders = [folder, *self.folders, Path.cwd()]
+            first_finder = next(iter(self._finders.values()), None)
             self._finders[folder] = (
-                first.starting_at(start) if first else PackageFinder(start=start, sources_first=True)
+                first_finder.starting_at(start_folders)
+                if first_finder
+                else PackageFinder(start=start_folders, sources_first=True)
             )
         return self._finders[folder]
 
     def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
         """Return the settings for a file or folder, and the findings about the settings file."""
-        settings, trouble = settings_for(path) if self.config is None else read_settings(self.config)
+        settings, settings_findings = settings_for(path) if self.config is None else read_settings(self.config)
         select = None if self.select is None else tuple(map(canonical, self.select))
-        return settings.with_command_line(select, tuple(map(canonical, self.ignore))), trouble
+        return settings.with_command_line(select, tuple(map(canonical, self.ignore))), settings_findings
 
     def check(self, targets: Targets, paths: Sequence[Path]) -> tuple[list[Diagnostic], Checked | None]:
         """Check files and packages.
@@ -105,36 +107,36 @@ class Checker:
         Returns:
             All findings without duplicates, and the result of the last file, or None if there is no file.
         """
-        found, contexts = UniqueFindings(), Contexts()
+        findings, contexts = UniqueFindings(), Contexts()
         checked = None
-        examined: list[Examined] = []
-        of_settings: list[tuple[Diagnostic, ...]] = []
+        examined_files: list[Examined] = []
+        all_settings_findings: list[tuple[Diagnostic, ...]] = []
         for file in targets.files:
-            checked, trouble = self.check_file(file, targets, contexts=contexts)
-            examined.append(Examined.of(checked, file))
-            of_settings.append(trouble)
-        for result, trouble in zip(examined, of_settings, strict=True):
-            found.add((*trouble, *reported(result, examined, targets, paths)))
+            checked, settings_findings = self.check_file(file, targets, contexts=contexts)
+            examined_files.append(Examined.of(checked, file))
+            all_settings_findings.append(settings_findings)
+        for result, settings_findings in zip(examined_files, all_settings_findings, strict=True):
+            findings.add((*settings_findings, *relevant_findings(result, examined_files, targets, paths)))
         for folder in targets.packages:
-            diagnostics, trouble = self.check_package(folder, contexts=contexts)
-            found.add((*trouble, *relevant_package_findings(diagnostics, paths)))
-        return found.all(), checked
+            diagnostics, settings_findings = self.check_package(folder, contexts=contexts)
+            findings.add((*settings_findings, *relevant_package_findings(diagnostics, paths)))
+        return findings.all(), checked
 
     def check_file(
         self, file: Path, targets: Targets, overlay: Overlay | None = None, contexts: Contexts | None = None
     ) -> tuple[Checked, tuple[Diagnostic, ...]]:
-        """Check a file with the given arguments or, if none are given, with those of its callers.
+        """Check a file with `values`, else with the configured argument sets, else with the callers' argument sets.
 
         Args:
             file: the file.
             targets: the targets of the whole check, whose packages are searched for callers.
-            overlay: texts that replace those of files.
+            overlay: texts that replace the contents of files.
             contexts: data that checks of the same file contents share.
 
         Returns:
             The result, and the findings about the settings.
         """
-        settings, trouble = self.settings(file)
+        settings, settings_findings = self.settings(file)
         finder = self.finder(file)
 
         def with_values(values: Mapping[str, str], xacro: bool | None = None) -> Checked:
@@ -150,23 +152,23 @@ class Checker:
             )
 
         if self.values:
-            return with_values(self.values), trouble
-        check = SetCheck(file, finder, settings, with_values, is_named=file in targets.named)
-        configured = settings.arguments_of(file)
-        if configured:
-            return check.with_configured(configured), trouble
-        return check.with_callers(lambda: self._argument_sets(file, targets.packages)), trouble
+            return with_values(self.values), settings_findings
+        check = SetCheck(file, finder, settings, with_values, is_named=file in targets.named_files)
+        configured_sets = settings.arguments_of(file)
+        if configured_sets:
+            return check.with_configured(configured_sets), settings_findings
+        return check.with_callers(lambda: self._argument_sets(file, targets.packages)), settings_findings
 
     def check_package(
         self, folder: Path, overlay: Overlay | None = None, contexts: Contexts | None = None
     ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-        """Return the findings about a package without its descriptions, and those about its settings."""
-        settings, trouble = self.settings(folder)
+        """Return the findings about a package without its descriptions, and the findings about its settings."""
+        settings, settings_findings = self.settings(folder)
         checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
-        return checked.diagnostics, trouble
+        return checked.diagnostics, settings_findings
 
     def calls(self, file: Path, packages: Sequence[Path]) -> list[tuple[Mapping[str, str], Span | None]]:
-        """Return the values with which a description is expanded: those of the settings, or else of its callers.
+        """Return the argument values of a description: from the settings, or else from its callers.
 
         Args:
             file: the description.
@@ -176,10 +178,14 @@ class Checker:
             The complete sets of values, each with the location of the call, or None for values of the settings.
         """
         settings, _ = self.settings(file)
-        configured = settings.arguments_of(file)
-        if configured:
-            return [(values, None) for values in configured]
-        return [(found.values, found.span) for found in self._argument_sets(file, packages) if found.is_complete]
+        configured_sets = settings.arguments_of(file)
+        if configured_sets:
+            return [(values, None) for values in configured_sets]
+        return [
+            (argument_set.values, argument_set.span)
+            for argument_set in self._argument_sets(file, packages)
+            if argument_set.is_complete
+        ]
 
     def _argument_sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
         """Return the argument sets that callers pass to a file.

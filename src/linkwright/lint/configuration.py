@@ -43,7 +43,7 @@ _PROJECT_TABLE = ("tool", "linkwright")
 KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments", "format")
 
 _HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
-_PLACE = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
+_POSITION = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
 _KINDS = {
     bool: phrase("true or false"),
     int: phrase("an integer"),
@@ -55,8 +55,8 @@ _KINDS = {
 
 def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
     """Return the settings for a file or folder, and the findings about its configuration."""
-    found = find_configuration(path)
-    return (Settings(), ()) if found is None else read_settings(found)
+    file = find_configuration(path)
+    return (Settings(), ()) if file is None else read_settings(file)
 
 
 def find_configuration(path: Path) -> Path | None:
@@ -66,9 +66,9 @@ def find_configuration(path: Path) -> Path | None:
     """
     start = path.absolute()
     for folder in (start, *start.parents):
-        own = folder / CONFIGURATION
-        if own.is_file():
-            return own
+        configuration = folder / CONFIGURATION
+        if configuration.is_file():
+            return configuration
         project = folder / _PROJECT
         if project.is_file() and _has_table(project):
             return project
@@ -93,11 +93,11 @@ def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic,
     # Imported here: most robots are checked without a configuration.
     tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
-        whole = tomllib.loads(source.text)
+        document = tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:
         return Settings(), (_syntax_error(source, error),)
     prefix = _PROJECT_TABLE if file.name == _PROJECT else ()
-    table: Any = whole
+    table: Any = document
     for key in prefix:
         table = table.get(key, {}) if isinstance(table, dict) else {}
     reader = _Reader(source, prefix)
@@ -114,9 +114,9 @@ def _has_table(project: Path) -> bool:
 
 def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
     message = str(error)
-    place = _PLACE.search(message)
-    start = source.offset(int(place[1]), int(place[2])) if place else len(source.text)
-    reason = _PLACE.sub("", message).replace("(at end of document)", "").strip()
+    position = _POSITION.search(message)
+    start = source.offset(int(position[1]), int(position[2])) if position else len(source.text)
+    reason = _POSITION.sub("", message).replace("(at end of document)", "").strip()
     return Diagnostic(
         "LINT101",
         phrase("this is not TOML: {reason}", reason=foreign(f"{reason[:1].lower()}{reason[1:]}")),
@@ -127,7 +127,7 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
 
 
 class _Reader:
-    """The reader that turns a TOML table into settings and collects the mistakes in `found`."""
+    """A reader that turns a TOML table into settings and collects the mistakes in `findings`."""
 
     def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
         self._source = source
@@ -136,7 +136,9 @@ class _Reader:
 
     def settings(self, table: Any, folder: Path) -> Settings:
         if not isinstance(table, dict):
-            self._wrong(("linkwright",), phrase("is not a table"), phrase("write [tool.linkwright] above the settings"))
+            self._report_invalid(
+                ("linkwright",), phrase("is not a table"), phrase("write [tool.linkwright] above the settings")
+            )
             return Settings(folder=folder)
         for key in table:
             if key not in KEYS:
@@ -148,50 +150,54 @@ class _Reader:
             self._selectors(("extend-select",), table.get("extend-select", [])),
             self._selectors(("ignore",), table.get("ignore", [])),
             dict(self._severities(self._table("severity", table))),
-            tuple(self._per_file(self._table("per-file-ignores", table))),
+            tuple(self._per_file_ignores(self._table("per-file-ignores", table))),
             dict(self._options(self._table("options", table))),
             folder,
             tuple(self._arguments(self._table("arguments", table))),
-            Style(**dict(self._style(self._table("format", table)))),
+            Style(**dict(self._style_settings(self._table("format", table)))),
         )
 
     def _table(self, key: str, table: Mapping[str, Any]) -> Mapping[str, Any]:
         value = table.get(key, {})
         if isinstance(value, dict):
             return value
-        self._wrong((key,), phrase("is not a table"), phrase("write [{value}]", value=".".join((*self._prefix, key))))
+        self._report_invalid(
+            (key,), phrase("is not a table"), phrase("write [{value}]", value=".".join((*self._prefix, key)))
+        )
         return {}
 
     def _selectors(self, path: tuple[str, ...], value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            self._wrong(
+            self._report_invalid(
                 path,
                 phrase("is not a list of strings"),
-                phrase('write {written} = ["LW204", "limit-inverted"]', written=_written(path[-1])),
+                phrase('write {written} = ["LW204", "limit-inverted"]', written=_toml_key(path[-1])),
             )
             return ()
-        return tuple(word for item in value if (word := self._selector(path, item, item)))
+        return tuple(selector for item in value if (selector := self._selector(path, item, item)))
 
-    def _selector(self, path: tuple[str, ...], word: str, mark: str) -> str | None:
-        if is_selector(word):
-            return canonical(word)
-        self._add("LINT104", phrase("there is no rule '{word}'", word=word), path, selector_hint(word), mark=mark)
+    def _selector(self, path: tuple[str, ...], selector: str, mark: str) -> str | None:
+        if is_selector(selector):
+            return canonical(selector)
+        self._add(
+            "LINT104", phrase("there is no rule '{word}'", word=selector), path, selector_hint(selector), mark=mark
+        )
         return None
 
     def _severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
-        words = [severity.value for severity in Severity]
+        severity_names = [severity.value for severity in Severity]
         for key, value in table.items():
             path = ("severity", key)
             selector = self._selector(path, key, key)
-            if value not in words:
-                hint = did_you_mean(str(value), words) or phrase(
-                    "use one of {words}; to silence a rule, use ignore", words=joined(words)
+            if value not in severity_names:
+                hint = did_you_mean(str(value), severity_names) or phrase(
+                    "use one of {words}; to silence a rule, use ignore", words=joined(severity_names)
                 )
-                self._wrong(path, phrase("is not a severity"), hint, shown=value)
+                self._report_invalid(path, phrase("is not a severity"), hint, shown=value)
             elif selector:
                 yield selector, Severity(value)
 
-    def _per_file(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def _per_file_ignores(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
         for pattern, value in table.items():
             yield pattern, self._selectors(("per-file-ignores", pattern), value)
 
@@ -201,7 +207,7 @@ class _Reader:
             if all(isinstance(item, dict) and all(map(_is_plain, item.values())) for item in sets):
                 yield pattern, tuple({name: _as_argument(item[name]) for name in item} for item in sets)
             else:
-                self._wrong(
+                self._report_invalid(
                     ("arguments", pattern),
                     phrase("is neither a set of values nor a list of sets"),
                     phrase(
@@ -209,14 +215,16 @@ class _Reader:
                     ),
                 )
 
-    def _style(self, table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
+    def _style_settings(self, table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
         for key, value in table.items():
             path = ("format", key)
             if key not in Style._fields:
                 hint = did_you_mean(key, Style._fields) or phrase("the settings are {keys}", keys=joined(Style._fields))
                 self._add("LINT102", phrase("there is no setting '{key}'", key=key), path, hint)
             elif type(value) is not int or value < 1:
-                self._wrong(path, phrase("is not a positive integer"), phrase("write {key} = 2", key=key), shown=value)
+                self._report_invalid(
+                    path, phrase("is not a positive integer"), phrase("write {key} = 2", key=key), shown=value
+                )
             else:
                 yield key, value
 
@@ -226,19 +234,21 @@ class _Reader:
             if rule is None:
                 self._add("LINT104", phrase("there is no rule '{key}'", key=key), ("options", key), selector_hint(key))
             elif not isinstance(value, dict):
-                self._wrong(("options", key), phrase("is not a table"), phrase("write [options.{key}]", key=key))
+                self._report_invalid(
+                    ("options", key), phrase("is not a table"), phrase("write [options.{key}]", key=key)
+                )
             else:
                 yield rule.name, dict(self._rule_options(rule, key, value))
 
     def _rule_options(self, rule: Rule, key: str, table: Mapping[str, Any]) -> Iterator[tuple[str, OptionValue]]:
-        known = {option.name: option for option in rule.options}
+        options = {option.name: option for option in rule.options}
         for name, value in table.items():
             path = ("options", key, name)
-            option = known.get(name)
+            option = options.get(name)
             if option is None:
-                hint = did_you_mean(name, known) or (
-                    phrase("its options are {known}", known=joined(known))
-                    if known
+                hint = did_you_mean(name, options) or (
+                    phrase("its options are {known}", known=joined(options))
+                    if options
                     else phrase("{code} has no options", code=rule.code)
                 )
                 self._add(
@@ -250,7 +260,7 @@ class _Reader:
             elif not _fits(option, value):
                 from linkwright.lint.explain import toml
 
-                self._wrong(
+                self._report_invalid(
                     path,
                     phrase("is not {kind}", kind=_KINDS[type(option.default)]),
                     phrase("the default is {toml}", toml=toml(option.default)),
@@ -258,8 +268,8 @@ class _Reader:
             else:
                 yield name, value
 
-    def _wrong(self, path: tuple[str, ...], what: Phrase, hint: Phrase, *, shown: object = None) -> None:
-        message = phrase("'{key}' {what}", key=path[-1], what=what)
+    def _report_invalid(self, path: tuple[str, ...], problem: Phrase, hint: Phrase, *, shown: object = None) -> None:
+        message = phrase("'{key}' {what}", key=path[-1], what=problem)
         if shown is not None:
             message = joined([message, quoted(shown)], ": ")
         self._add("LINT103", message, path, hint)
@@ -288,7 +298,7 @@ def _as_argument(value: str | float) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _written(key: str) -> str:
+def _toml_key(key: str) -> str:
     return key if re.fullmatch(r"[\w-]+", key) else f'"{key}"'
 
 
@@ -302,38 +312,38 @@ def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span
     headers = list(_HEADER.finditer(source.text))
     ends = [header.start() for header in headers] + [len(source.text)]
     tables.append(((), 0, ends[0]))
-    tables += [(_keys(header[1]), header.start(1), end) for header, end in zip(headers, ends[1:], strict=True)]
+    tables += [(_header_keys(header[1]), header.start(1), end) for header, end in zip(headers, ends[1:], strict=True)]
     for name, start, end in sorted(tables, key=lambda table: -len(table[0])):
-        rest = path[len(name) :]
+        remaining_keys = path[len(name) :]
         if name != path[: len(name)]:
             continue
-        if not rest:
-            last = source.text.rindex(path[-1], start, source.text.index("]", start))
-            return source.span(last, last + len(path[-1]))
-        found = _find_key(source.text, start, end, rest)
-        if found is None:
+        if not remaining_keys:
+            key_start = source.text.rindex(path[-1], start, source.text.index("]", start))
+            return source.span(key_start, key_start + len(path[-1]))
+        key_range = _find_key(source.text, start, end, remaining_keys)
+        if key_range is None:
             continue
         if mark is not None and mark != path[-1]:
-            quoted = re.compile(rf"""["']({re.escape(mark)})["']""").search(source.text, found[1], end)
-            if quoted:
-                return source.span(*quoted.span(1))
-        return source.span(*found)
+            quoted_match = re.compile(rf"""["']({re.escape(mark)})["']""").search(source.text, key_range[1], end)
+            if quoted_match:
+                return source.span(*quoted_match.span(1))
+        return source.span(*key_range)
     return source.span(0)
 
 
 def _find_key(text: str, start: int, end: int, keys: tuple[str, ...]) -> tuple[int, int] | None:
     """Return the character range of a plain, dotted or inline key, or None if it is not found."""
-    at, span = start, None
+    offset, key_range = start, None
     for index, key in enumerate(keys):
-        before = r"[.{,=][ \t]*\{?" if index else "^"
-        pattern = re.compile(rf"""{before}[ \t]*(["']?)({re.escape(key)})\1(?=[ \t]*[=.])""", re.MULTILINE)
-        found = pattern.search(text, at, end)
-        if found is None:
+        prefix = r"[.{,=][ \t]*\{?" if index else "^"
+        pattern = re.compile(rf"""{prefix}[ \t]*(["']?)({re.escape(key)})\1(?=[ \t]*[=.])""", re.MULTILINE)
+        match = pattern.search(text, offset, end)
+        if match is None:
             return None
-        span = found.span(2)
-        at = found.end(2)
-    return span
+        key_range = match.span(2)
+        offset = match.end(2)
+    return key_range
 
 
-def _keys(header: str) -> tuple[str, ...]:
+def _header_keys(header: str) -> tuple[str, ...]:
     return tuple(match[2] or match[3] for match in re.finditer(r"""(["'])(.*?)\1|([\w-]+)""", header))

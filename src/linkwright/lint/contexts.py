@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import XacroFacts
 
 _NOT_COMPARED = ()
-"""The content of the first description of its parts, until there is another one of the same parts."""
+"""The key of the first description with certain elements, before its content is needed for a comparison."""
 
 
 class _StoredResults(NamedTuple):
@@ -39,16 +39,16 @@ class Contexts:
 
     def __init__(self) -> None:
         self.packages: dict[Path, PackageContext] = {}
-        self._last: FileContext | None = None
+        self._last_context: FileContext | None = None
 
     def of_file(self, path: Path) -> FileContext:
         """Return the data that checks of a file with the same settings share.
 
         Only the data of the last file is stored.
         """
-        if self._last is None or self._last.path != path:
-            self._last = FileContext(path)
-        return self._last
+        if self._last_context is None or self._last_context.path != path:
+            self._last_context = FileContext(path)
+        return self._last_context
 
 
 class FileContext:
@@ -61,8 +61,8 @@ class FileContext:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._facts: dict[Hashable, XacroFacts] = {}
-        self._done: dict[Hashable, dict[tuple[object, ...], _StoredResults]] = {}
-        self._places: dict[Hashable, int] = {}
+        self._results: dict[Hashable, dict[tuple[object, ...], _StoredResults]] = {}
+        self._frame_numbers: dict[Hashable, int] = {}
 
     def facts(self, facts: XacroFacts) -> XacroFacts:
         """Return the stored facts about the same files and arguments, or store and return `facts`.
@@ -70,14 +70,14 @@ class FileContext:
         The values of arguments only matter if names are composed from them.
         """
         documents = tuple(id(file.document) for file in facts.files.values())
-        key = (facts.is_library, frozenset(facts.given), documents)
-        known = self._facts.get(key)
-        if known is None or (known.given != facts.given and known.substitutes_arguments):
-            known = self._facts[key] = facts
-        return known
+        key = (facts.is_library, frozenset(facts.arguments), documents)
+        stored_facts = self._facts.get(key)
+        if stored_facts is None or (stored_facts.arguments != facts.arguments and stored_facts.substitutes_arguments):
+            stored_facts = self._facts[key] = facts
+        return stored_facts
 
     def results_for(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
-        """Return the shared results for a description with this expansion, which the caller extends.
+        """Return the results that descriptions with this expansion share; the caller adds its results.
 
         The results are empty for the first description with this expansion.
 
@@ -86,40 +86,50 @@ class FileContext:
             root: the root element of the expansion.
             is_whole: whether no part is missing.
         """
-        parts = tuple((element.tag, element.offset) for element in root.elements())
-        known = self._done.setdefault((facts, is_whole, parts), {})
-        done = _StoredResults(root, {})
-        if not known:
-            known[_NOT_COMPARED] = done  # most expansions differ in their elements, so no content is compared
-            return done.results
-        if _NOT_COMPARED in known:
-            first = known.pop(_NOT_COMPARED)
-            known[self._content(first.root)] = first
-        return known.setdefault(self._content(root), done).results
+        element_positions = tuple((element.tag, element.offset) for element in root.elements())
+        stored_results = self._results.setdefault((facts, is_whole, element_positions), {})
+        new_results = _StoredResults(root, {})
+        if not stored_results:
+            stored_results[_NOT_COMPARED] = (
+                new_results  # most expansions differ in their elements, so no content is compared
+            )
+            return new_results.results
+        if _NOT_COMPARED in stored_results:
+            first_results = stored_results.pop(_NOT_COMPARED)
+            stored_results[self._content(first_results.root)] = first_results
+        return stored_results.setdefault(self._content(root), new_results).results
 
     def _content(self, root: Element) -> tuple[object, ...]:
         """Return the content of an expanded element, with numbers for the origins of its elements.
 
         Sources are identified by `id`, which is safe because the stored elements keep them alive.
         """
-        found: list[object] = []
+        content: list[object] = []
         numbers: dict[int, int] = {}
         pending: list[tuple[Element, int | None]] = [(root, None)]
         while pending:
             node, number = pending.pop()
-            own = self._number(node.origin, numbers) if number is None else number
+            origin_number = self._number(node.origin, numbers) if number is None else number
             while isinstance(node, LazyCopy) and node.original is not None:
-                node, number = node.original, own  # not copied yet: the original's content, the copy's origin
+                node, number = node.original, origin_number  # not copied yet: the original's content, the copy's origin
             attributes, children = node.attributes, node.children
-            found += (own, node.tag, node.offset, id(node.source), len(attributes), *attributes.items(), len(children))
+            content += (
+                origin_number,
+                node.tag,
+                node.offset,
+                id(node.source),
+                len(attributes),
+                *attributes.items(),
+                len(children),
+            )
             for child in children:
                 if isinstance(child, Element):
-                    found.append(None)  # a marker for a child element, whose content follows later
+                    content.append(None)  # a marker for a child element, whose content follows later
                     pending.append((child, number))
                 else:
                     is_cdata = child.cdata if isinstance(child, Text) else None
-                    found += (type(child), child.data, is_cdata, child.offset, id(child.source))
-        return tuple(found)
+                    content += (type(child), child.data, is_cdata, child.offset, id(child.source))
+        return tuple(content)
 
     def _number(self, origin: object, numbers: dict[int, int]) -> int:
         """Return the number of a chain of macro calls and includes, or 0 if there is no chain.
@@ -133,6 +143,6 @@ class FileContext:
             frame = frame.around
         number = 0 if frame is None else numbers[id(frame)]
         for outer in reversed(chain):
-            number = self._places.setdefault((outer.macro, id(outer.site), number), len(self._places) + 1)
+            number = self._frame_numbers.setdefault((outer.macro, id(outer.site), number), len(self._frame_numbers) + 1)
             numbers[id(outer)] = number
         return number

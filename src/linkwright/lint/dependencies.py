@@ -13,7 +13,7 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.xmltree import parse_file
 
-_OF_EVERY_INSTALLATION = frozenset(
+_ALWAYS_INSTALLED = frozenset(
     {
         *(
             "ament_index_python",
@@ -37,7 +37,7 @@ _OF_EVERY_INSTALLATION = frozenset(
         *("robot_state_publisher", "tf2", "tf2_ros", "tf2_py", "tf2_msgs", "kdl_parser", "urdf", "rosbag2_transport"),
     }
 )
-"""Packages of the variant `ros_base` (REP 2001), the least that is installed with names of its own."""
+"""Packages of the variant `ros_base` (REP 2001), which every installation is assumed to contain."""
 _FAMILIES = (
     ("navigation2", "nav2_"),
     ("nav2_bringup", "nav2_"),
@@ -47,13 +47,13 @@ _FAMILIES = (
     ("joint_state_publisher_gui", "joint_state_publisher"),
     ("ros2_controllers", "controller_manager"),
 )
-"""Packages that bring all those whose names begin so."""
-_MOST = 200
+"""Packages, each with the name prefix of the packages that it brings as dependencies."""
+_MAX_FILES = 200
 
 
 def is_always_installed(package: str) -> bool:
     """Return whether every installation of ROS 2 contains a package."""
-    return package in _OF_EVERY_INSTALLATION
+    return package in _ALWAYS_INSTALLED
 
 
 def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
@@ -67,7 +67,7 @@ def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinde
         finder: the finder of packages.
     """
     return any(
-        name == package or any(name == one and package.startswith(family) for one, family in _FAMILIES)
+        name == package or any(name == metapackage and package.startswith(prefix) for metapackage, prefix in _FAMILIES)
         for name in _transitive_dependencies(manifest, finder)
     )
 
@@ -75,15 +75,17 @@ def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinde
 def would_form_cycle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
     """Return whether depending on another package would form a cycle, which colcon refuses.
 
-    This is so if the other package depends on the manifest's package.
+    This is the case if the other package depends on the manifest's package.
 
     Args:
         manifest: the manifest of the package that uses the other package.
         package: the name of the other package.
         finder: the finder of packages.
     """
-    other = _manifest_of(package, finder)
-    return other is not None and any(name == manifest.name for name in _transitive_dependencies(other, finder))
+    other_manifest = _find_manifest(package, finder)
+    return other_manifest is not None and any(
+        name == manifest.name for name in _transitive_dependencies(other_manifest, finder)
+    )
 
 
 def _transitive_dependencies(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
@@ -91,19 +93,19 @@ def _transitive_dependencies(manifest: Manifest, finder: PackageFinder) -> Itera
 
     Dependencies of a package that is not found are left out.
     """
-    waiting, met = [manifest], {manifest.name}
-    while waiting and len(met) < _MOST:
-        for dependency in waiting.pop().dependencies:
-            if dependency.tag in ("test_depend", "doc_depend") or dependency.name in met:
+    pending_manifests, visited_names = [manifest], {manifest.name}
+    while pending_manifests and len(visited_names) < _MAX_FILES:
+        for dependency in pending_manifests.pop().dependencies:
+            if dependency.tag in ("test_depend", "doc_depend") or dependency.name in visited_names:
                 continue
-            met.add(dependency.name)
+            visited_names.add(dependency.name)
             yield dependency.name
-            read = _manifest_of(dependency.name, finder)
-            if read is not None:
-                waiting.append(read)
+            dependency_manifest = _find_manifest(dependency.name, finder)
+            if dependency_manifest is not None:
+                pending_manifests.append(dependency_manifest)
 
 
-def _manifest_of(package: str, finder: PackageFinder) -> Manifest | None:
+def _find_manifest(package: str, finder: PackageFinder) -> Manifest | None:
     folder = finder.find(package)
     try:
         return None if folder is None else Manifest(parse_file(folder / MANIFEST))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.descriptions import Description, Packages, examine_world, is_world
 from linkwright.descriptions import examine as examine_description
-from linkwright.descriptions.service import TRUE_OF_PARTS
+from linkwright.descriptions.service import HOLDS_FOR_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.diagnostics.phrase import as_phrase
@@ -18,8 +18,8 @@ from linkwright.lint.missing_packages import with_package_severity
 from linkwright.lint.registry import (
     failed_rule,
     find_rule,
-    has_rules_of_others,
-    is_of_others,
+    has_external_rules,
+    is_external,
     rules_of,
     unusable_rules,
 )
@@ -102,33 +102,33 @@ def examine(
         arguments: see `check`.
         packages: see `check`.
         settings: see `check`.
-        overlay: texts that replace those of files, such as unsaved ones.
+        overlay: texts that replace the contents of files, such as unsaved texts.
         scopes: the scopes of the rules to run.
         xacro: whether to expand the description; None to decide by the file.
         contexts: data that checks share during one run.
     """
     text = str(path_or_text) if is_text(path_or_text) else None
     path = Path(path_or_text) if text is None else Path(TEXT_NAME)
-    trouble: tuple[Diagnostic, ...] = ()
+    settings_findings: tuple[Diagnostic, ...] = ()
     if settings is None:
         from linkwright.lint.configuration import settings_for
 
-        settings, trouble = settings_for(path)
-    trouble = (*unusable_rules(), *trouble)
-    finder = _finder(path, packages)
+        settings, settings_findings = settings_for(path)
+    settings_findings = (*unusable_rules(), *settings_findings)
+    finder = _package_finder(path, packages)
     if text is not None:
         overlay = Overlay({path: text})
     if is_world(str(path)) or (text is not None and _SDF_TEXT.match(text)):
-        return _examine_world(path, arguments, finder, settings, trouble, overlay)
+        return _examine_world(path, arguments, finder, settings, settings_findings, overlay)
     try:
         description = examine_description(
             path, arguments=arguments, packages=finder, overlay=overlay, xacro=xacro, partly=True
         )
     except LinkwrightError as error:
-        return Checked(path, None, (*trouble, *with_configured_severity(error.diagnostics, settings)), None)
+        return Checked(path, None, (*settings_findings, *with_configured_severity(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings, contexts)
-    found = _run(subject, scopes, _library_findings(description) if subject.is_library else description.diagnostics)
-    return Checked(path, subject.robot, (*trouble, *found), subject)
+    findings = _run(subject, scopes, _library_findings(description) if subject.is_library else description.diagnostics)
+    return Checked(path, subject.robot, (*settings_findings, *findings), subject)
 
 
 def _examine_world(
@@ -136,45 +136,45 @@ def _examine_world(
     arguments: Mapping[str, str] | None,
     finder: PackageFinder,
     settings: Settings,
-    trouble: tuple[Diagnostic, ...],
+    settings_findings: tuple[Diagnostic, ...],
     overlay: Overlay | None,
 ) -> Checked:
     try:
-        described = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
+        world = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
     except LinkwrightError as error:
-        return Checked(path, None, (*trouble, *with_configured_severity(error.diagnostics, settings)), None)
-    found = list(described.diagnostics)
-    if described.sdf is not None:
+        return Checked(path, None, (*settings_findings, *with_configured_severity(error.diagnostics, settings)), None)
+    findings = list(world.diagnostics)
+    if world.sdf is not None:
         from linkwright.lint.worlds import adapt_to_classic, check_sdf, merge_missing_resources
         from linkwright.sdf.resources import ResourceFinder
 
-        found = [*adapt_to_classic([*found, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
-        found = merge_missing_resources(found)
-    diagnostics = sorted_by_place(with_configured_severity(found, settings), str(path))
-    return Checked(path, None, (*trouble, *diagnostics), None, described.sdf)
+        findings = [*adapt_to_classic([*findings, *check_sdf(world.sdf, ResourceFinder(finder))], path)]
+        findings = merge_missing_resources(findings)
+    diagnostics = sorted_by_location(with_configured_severity(findings, settings), str(path))
+    return Checked(path, None, (*settings_findings, *diagnostics), None, world.sdf)
 
 
 def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
     """Return all findings in source order, filtered by settings and suppression comments.
 
-    These are the `earlier` findings and those of the rules.
+    The result contains the `earlier` findings and the findings of the rules.
     """
     suppressions = Suppressions(subject, subject.settings)
-    found = _without_replaced([*earlier, *_find(subject, scopes, suppressions)], scopes, subject.settings)
-    kept = _without_consequences(with_configured_severity(suppressions.apply(found), subject.settings))
-    return sorted_by_place(kept, str(subject.path))
+    findings = _without_replaced([*earlier, *_find_with_rules(subject, scopes, suppressions)], scopes, subject.settings)
+    selected_findings = _without_consequences(with_configured_severity(suppressions.apply(findings), subject.settings))
+    return sorted_by_location(selected_findings, str(subject.path))
 
 
-def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
+def _find_with_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
     """Return the findings of the rules, one for each rule and location.
 
     Findings of unselected rules are included if they show whether a suppression comment is used.
     """
-    known = {} if has_rules_of_others() else subject.once(_findings_cache)
+    cache = {} if has_external_rules() else subject.once(_findings_cache)
     key = frozenset(scopes)
-    if key not in known:
-        known[key] = _run_rules(subject, scopes, suppressions)
-    return known[key]
+    if key not in cache:
+        cache[key] = _run_rules(subject, scopes, suppressions)
+    return cache[key]
 
 
 def _findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
@@ -183,15 +183,18 @@ def _findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
 
 
 def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
-    found: list[Diagnostic] = []
+    findings: list[Diagnostic] = []
     for rule in rules_of(scopes):
         if not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
             continue
         if not _may_run(rule, subject):
             continue
-        found += map(_add_trail, _findings_of_rule(rule, subject))
-    unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
-    return [*_without_repetitions(found), *(each.with_changes(severity=Severity.INFO) for each in unread)]
+        findings += map(_add_trail, _findings_of_rule(rule, subject))
+    mesh_findings = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
+    return [
+        *_without_repetitions(findings),
+        *(diagnostic.with_changes(severity=Severity.INFO) for diagnostic in mesh_findings),
+    ]
 
 
 def _findings_of_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
@@ -200,17 +203,17 @@ def _findings_of_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
     If a rule of another package raises an exception, the only finding is about this failure.
     """
     try:
-        found = tuple(_reported(rule, subject))
-        _check_codes(rule, found)
+        findings = tuple(_reported(rule, subject))
+        _check_codes(rule, findings)
     except Exception as error:
-        if is_of_others(rule):
+        if is_external(rule):
             return (failed_rule(rule, error),)
         raise
-    return found
+    return findings
 
 
-def _check_codes(rule: Rule, found: Iterable[Diagnostic]) -> None:
-    for diagnostic in found:
+def _check_codes(rule: Rule, findings: Iterable[Diagnostic]) -> None:
+    for diagnostic in findings:
         if diagnostic.code != rule.code:
             raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
 
@@ -218,10 +221,10 @@ def _check_codes(rule: Rule, found: Iterable[Diagnostic]) -> None:
 def _reported(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
     if not rule.of_sources or subject.expansion is None:
         return rule.check(subject)
-    known = subject.xacro.found
-    if rule.code not in known:
-        known[rule.code] = tuple(rule.check(subject))
-    return known[rule.code]
+    stored_findings = subject.xacro.stored_findings
+    if rule.code not in stored_findings:
+        stored_findings[rule.code] = tuple(rule.check(subject))
+    return stored_findings[rule.code]
 
 
 def _may_run(rule: Rule, subject: Subject) -> bool:
@@ -234,21 +237,25 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
 
 
-def _library_findings(described: Description) -> Iterator[Diagnostic]:
+def _library_findings(description: Description) -> Iterator[Diagnostic]:
     """Yield the findings on a file that only has parts for other files to include.
 
     These are the findings that hold for single parts, and a note that the file is not a robot by itself.
     """
-    yield from (*described.problems, *described.remarks)
-    root = described.document.root
-    whole = root.span()
-    yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
+    yield from (*description.problems, *description.remarks)
+    root = description.document.root
+    root_span = root.span()
+    yield from (
+        diagnostic
+        for diagnostic in description.reading.diagnostics
+        if diagnostic.code in HOLDS_FOR_PARTS and diagnostic.span != root_span
+    )
     hint = phrase("check the file that includes it")
     message = phrase("this file only has parts for other files to include, and is not a robot by itself")
-    yield Diagnostic("LINT302", message, whole, Severity.INFO, hint=hint, source=root.source)
+    yield Diagnostic("LINT302", message, root_span, Severity.INFO, hint=hint, source=root.source)
 
 
-def sorted_by_place(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
+def sorted_by_location(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
     """Return diagnostics sorted by location.
 
     Diagnostics without a location come first, then those of `first_file`. The other files follow in the order of their
@@ -280,17 +287,17 @@ def examine_package(
         folder: the folder of the package.
         settings: the settings for the package.
         finder: the finder of packages.
-        overlay: texts that replace those of files.
+        overlay: texts that replace the contents of files.
         contexts: data that checks share during one run.
     """
     path = folder / MANIFEST
-    empty = Document(Element("robot", {"name": folder.name}))
-    nothing = Description(str(path), empty, Reading(None, ()), overlay=overlay)
-    subject = Subject(nothing, finder or _finder(path, None), settings, contexts)
+    document = Document(Element("robot", {"name": folder.name}))
+    description = Description(str(path), document, Reading(None, ()), overlay=overlay)
+    subject = Subject(description, finder or _package_finder(path, None), settings, contexts)
     return Checked(path, None, tuple(_run(subject, (Scope.PACKAGE,))), subject)
 
 
-def _finder(path: Path, packages: Packages) -> PackageFinder:
+def _package_finder(path: Path, packages: Packages) -> PackageFinder:
     if isinstance(packages, PackageFinder):
         return packages
     return PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
@@ -299,12 +306,12 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
 def with_configured_severity(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
     """Yield the diagnostics that the settings select, with the configured severities."""
     for diagnostic in with_file_severity(with_package_severity(diagnostics)):
-        if _is_wanted(diagnostic, settings):
+        if _is_selected(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
             yield diagnostic if severity is diagnostic.severity else diagnostic.with_changes(severity=severity)
 
 
-def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
+def _is_selected(diagnostic: Diagnostic, settings: Settings) -> bool:
     """Return whether the settings select a diagnostic.
 
     An error of the reader or of xacro is reported unless it is ignored, because it explains why there is no robot.
@@ -320,32 +327,36 @@ def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
 
 
 def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], settings: Settings) -> list[Diagnostic]:
-    """Return the diagnostics without those that a better one at the same location replaces."""
-    better: dict[str, set[str]] = {}
+    """Return the diagnostics that no better diagnostic at the same location replaces."""
+    replacing_codes: dict[str, set[str]] = {}
     for rule in rules_of(scopes):
         if rule.replaces and settings.runs(rule):
             for code in rule.replaces:
-                better.setdefault(code, set()).add(rule.code)
-    places = {(each.code, each.span) for each in diagnostics}
-    return [each for each in diagnostics if not any((code, each.span) in places for code in better.get(each.code, ()))]
+                replacing_codes.setdefault(code, set()).add(rule.code)
+    locations = {(diagnostic.code, diagnostic.span) for diagnostic in diagnostics}
+    return [
+        each
+        for each in diagnostics
+        if not any((code, each.span) in locations for code in replacing_codes.get(each.code, ()))
+    ]
 
 
 def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics without those that follow from another diagnostic.
+    """Return the diagnostics that do not follow from another diagnostic.
 
     If tags lack the xacro prefix, the links that they should create are missing. If an include does not find a package,
     the meshes of this package are missing, too.
     """
-    found = list(diagnostics)
-    is_explained = any(each.code == _PREFIX_MISSING for each in found)
-    missing = {as_phrase(each.message).arguments.get("name") for each in found if each.code == _NO_PACKAGE}
+    findings = list(diagnostics)
+    is_explained = any(diagnostic.code == _PREFIX_MISSING for diagnostic in findings)
+    missing_packages = {as_phrase(each.message).arguments.get("name") for each in findings if each.code == _NO_PACKAGE}
 
     def follows(each: Diagnostic) -> bool:
         if each.code == _NO_PACKAGE_OF_MESHES:
-            return as_phrase(each.message).arguments.get("package") in missing
+            return as_phrase(each.message).arguments.get("package") in missing_packages
         return is_explained and each.code == _NO_LINKS
 
-    return [each for each in found if not follows(each)]
+    return [each for each in findings if not follows(each)]
 
 
 def _add_trail(diagnostic: Diagnostic) -> Diagnostic:
@@ -367,25 +378,25 @@ def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     A macro is written once, but may be called several times. The first finding at a location gets a note with the
     number of the others.
     """
-    first: dict[tuple[str, object, str], int] = {}
-    kept: list[Diagnostic] = []
-    more: dict[int, int] = {}
+    first_indexes: dict[tuple[str, object, str], int] = {}
+    findings: list[Diagnostic] = []
+    repetitions: dict[int, int] = {}
     for diagnostic in diagnostics:
         # Findings without an element have no trail of calls, so different messages are different findings.
         is_expanded = isinstance(diagnostic, Finding) and diagnostic.element is not None
         key = (diagnostic.code, diagnostic.span, "" if is_expanded else diagnostic.message)
-        if diagnostic.span is None or key not in first:
-            first[key] = len(kept)
-            kept.append(diagnostic)
+        if diagnostic.span is None or key not in first_indexes:
+            first_indexes[key] = len(findings)
+            findings.append(diagnostic)
         else:
-            more[first[key]] = more.get(first[key], 0) + 1
-    for index, count in more.items():
+            repetitions[first_indexes[key]] = repetitions.get(first_indexes[key], 0) + 1
+    for index, count in repetitions.items():
         note = Note(
             counted(
-                "the same place has this finding once more, through other macro calls or includes",
-                "the same place has this finding {count} more times, through other macro calls or includes",
+                "this finding occurs here once more, through other macro calls or includes",
+                "this finding occurs here {count} more times, through other macro calls or includes",
                 count,
             )
         )
-        kept[index] = kept[index].with_changes(notes=(*kept[index].notes, note))
-    return kept
+        findings[index] = findings[index].with_changes(notes=(*findings[index].notes, note))
+    return findings

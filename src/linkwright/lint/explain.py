@@ -22,7 +22,7 @@ _SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3
 _HEADINGS: dict[str, str] = {
     heading: heading for heading in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))
 }
-"""The lines of a rule's docstring that are the same in all; the text between them is in English only."""
+"""The headings that all docstrings of rules share, which are translated; the text between them is in English only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Page:
 
     Attributes:
         code: the code of the diagnostic.
-        title: what the diagnostic reports, in one line without a full stop.
+        title: a description of the reported problem, in one line without a full stop.
         text: the rest, in Markdown.
         name: the name of the rule; empty for a diagnostic that does not belong to a rule.
     """
@@ -44,10 +44,10 @@ class Page:
     @property
     def markdown(self) -> Phrase:
         """The page as Markdown."""
-        head: list[str] = [phrase("# {code}: {title}", code=self.code, title=self.title)]
+        header_lines: list[str] = [phrase("# {code}: {title}", code=self.code, title=self.title)]
         if self.name:
-            head = [f"# {self.code}: {self.name}", "", phrase("{title}.", title=self.title)]
-        return _lines(*head, "", self.text)
+            header_lines = [f"# {self.code}: {self.name}", "", phrase("{title}.", title=self.title)]
+        return _lines(*header_lines, "", self.text)
 
 
 def find_page(code_or_name: str) -> Page | None:
@@ -61,7 +61,7 @@ def rule_page(rule: Rule) -> Page:
     from inspect import cleandoc  # Imported here because a check does not print pages.
 
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
-    severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_state(rule))
+    severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_default_state(rule))
     lines = [severity, "", *(_HEADINGS.get(line, line) for line in text.strip().splitlines())]
     if rule.options:
         lines += ["", phrase("## Options"), ""]
@@ -90,13 +90,13 @@ def known_codes() -> tuple[str, ...]:
     return (*(rule.code for rule in all_rules()), *room_pages())
 
 
-def nearest_codes(word: str) -> list[str]:
-    """Return the codes and rule names that are similar to a word, such as for a suggestion."""
-    upper = word.upper()
+def nearest_codes(text: str) -> list[str]:
+    """Return the codes and rule names that are similar to a text, for suggestions."""
+    upper = text.upper()
     names = [rule.name for rule in all_rules()]
     codes = known_codes()
     same_room = [code for code in codes if code[:-1] == upper[:-1]] if upper[-1:].isdigit() else []
-    return list(dict.fromkeys([*nearest(word, names), *nearest(upper, codes), *same_room[:3]]))[:4]
+    return list(dict.fromkeys([*nearest(text, names), *nearest(upper, codes), *same_room[:3]]))[:4]
 
 
 def toml(value: OptionValue) -> str:
@@ -110,7 +110,7 @@ def toml(value: OptionValue) -> str:
     return repr(value)
 
 
-def _state(rule: Rule) -> Phrase:
+def _default_state(rule: Rule) -> Phrase:
     if rule.default:
         return phrase("On by default.")
     return phrase('Off by default; `extend-select = ["{code}"]` switches it on.', code=rule.code)

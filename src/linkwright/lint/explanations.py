@@ -45,17 +45,17 @@ def is_explained(element: Element | None, tag: str) -> bool:
 
 
 def _comments(element: Element | None, *, beside: bool) -> list[str]:
-    """Return the comments directly above an element or, if `beside` is set, those on its lines."""
-    found = element_range(element) if element is not None else None
-    if element is None or element.source is None or found is None:
+    """Return the comments directly above an element or, if `on_same_lines` is set, those on its lines."""
+    element_span = element_range(element) if element is not None else None
+    if element is None or element.source is None or element_span is None:
         return []
-    text, (start, end) = element.source.text, found
-    line = text.rfind("\n", 0, start) + 1
-    last = text.find("\n", end) if beside else start
-    comments = [match[1] for match in _COMMENT.finditer(text, line, len(text) if last < 0 else last)]
-    above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line + len(text[line:start]))
-    if above is not None and not text[line:start].strip():
-        comments.append(above[1])
+    text, (start, end) = element.source.text, element_span
+    line_start = text.rfind("\n", 0, start) + 1
+    search_end = text.find("\n", end) if beside else start
+    comments = [match[1] for match in _COMMENT.finditer(text, line_start, len(text) if search_end < 0 else search_end)]
+    comment_above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line_start + len(text[line_start:start]))
+    if comment_above is not None and not text[line_start:start].strip():
+        comments.append(comment_above[1])
     return comments
 
 

@@ -47,7 +47,7 @@ CHILDREN: Mapping[str, tuple[str, ...]] = {
         "axis2",
     ),
 }  # fmt: skip
-"""Path from ``<robot>`` -> the elements that some program reads there."""
+"""The elements that some program reads in an element, by the element's path from ``<robot>``."""
 
 ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "gazebo": ("reference", "name", "version"),
@@ -63,9 +63,9 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "transmission/joint": ("name",),
     "transmission/actuator": ("name",),
 }
-"""Path from ``<robot>`` -> the attributes that some program reads there."""
+"""The attributes that some program reads in an element, by the element's path from ``<robot>``."""
 
-OF_JOINTS = frozenset(
+JOINT_ELEMENTS = frozenset(
     {
         *("stopCfm", "stopErp", "stopKp", "stopKd", "fudgeFactor", "cfmDamping", "implicitSpringDamper"),
         *("springReference", "springStiffness", "provideFeedback", "preserveFixedJoint", "disableFixedJointLumping"),
@@ -74,7 +74,7 @@ OF_JOINTS = frozenset(
 )
 """Elements of a ``<gazebo reference="...">`` for a joint."""
 
-OF_LINKS = frozenset(
+LINK_ELEMENTS = frozenset(
     {
         *("material", "mu1", "mu2", "kp", "kd", "maxVel", "minDepth", "maxContacts", "fdir1", "selfCollide", "gravity"),
         *("turnGravityOff", "dampingFactor", "laserRetro", "visual", "collision", "inertial", "velocity_decay"),

@@ -6,7 +6,16 @@ from collections.abc import Sequence
 from functools import cached_property
 from math import prod
 
-from linkwright.geometry.shapes import FARTHEST, IDENTITY, Bounds, Placement, bounds_of, placement, union, volume_of
+from linkwright.geometry.shapes import (
+    IDENTITY,
+    MAX_COORDINATE,
+    Bounds,
+    Placement,
+    placement,
+    shape_bounds,
+    shape_volume,
+    union,
+)
 from linkwright.lint.meshes import MeshFacts
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Inertial, Link, Mesh, Visual
@@ -16,16 +25,16 @@ if TYPE_CHECKING:
     from linkwright.geometry.mass import MassProperties
 
 MARKER = 0.01
-"""A body smaller than this, in m, is a marker; nothing is concluded from its shapes."""
+"""The size in m below which a body is a marker, so that nothing is concluded from its shapes."""
 
 _NEGLIGIBLE = 0.01
-"""A mass of less than this part of its body's is a placeholder that changes nothing."""
+"""The fraction of a body's mass below which the mass of one of its links is a negligible placeholder."""
 
 WEIGHTLESS = 1e-5
-"""The mass in kg below which a value is a placeholder: simulators and exporters ask for some mass."""
+"""The mass in kg below which a value is a placeholder, written because simulators and exporters require a mass."""
 
-_MANY = 200
-"""The number of links from which a body is measured only once, not for each link."""
+_MAX_LINK_FRAMES = 200
+"""The maximum number of links of a body that is measured for each link; a larger body is measured only once."""
 
 _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
@@ -37,8 +46,8 @@ class Extents:
         self._links = links
         self._bodies = bodies
         self._meshes = meshes
-        self._measured: dict[int, Bounds | None] = {}
-        self._of_bodies: dict[tuple[Body, str], Bounds | None] = {}
+        self._shape_boxes: dict[int, Bounds | None] = {}
+        self._body_boxes: dict[tuple[Body, str], Bounds | None] = {}
 
     @cached_property
     def links_with_relevant_mass(self) -> list[tuple[Link, Inertial]]:
@@ -58,14 +67,13 @@ class Extents:
 
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
-        """The links whose body can rotate and be measured, with ``<inertial>`` and box of the body.
+        """The links whose body can rotate and be measured, each with its ``<inertial>`` and the box of the body.
 
         The links are among `links_with_relevant_mass`. The box is in the link's frame. Links are left out if their body
-        cannot be measured, or if the body is so small that
-        it is a marker.
+        cannot be measured, or if the body is so small that it is a marker.
         """
-        turning = (item for item in self.links_with_relevant_mass if self._bodies.turns(item[0].name))
-        boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in turning)
+        rotating_links = (item for item in self.links_with_relevant_mass if self._bodies.turns(item[0].name))
+        boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in rotating_links)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 
     def mass_properties(self, body: Body) -> MassProperties:
@@ -75,15 +83,17 @@ class Extents:
         from linkwright.geometry.mass import MassProperties, combine
         from linkwright.inertia.inertial import from_inertial
 
-        parts = []
+        link_properties = []
         for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             inertial = link.inertial
             if inertial is not None and inertial.mass > 0 and inertial.is_computable:
-                own = from_inertial(inertial)
+                properties = from_inertial(inertial)
                 rotation = np.array(frame.rotation)
-                center = rotation @ own.center + np.array(_clamped(frame).position)
-                parts.append(MassProperties(own.mass, center, rotation @ own.inertia @ rotation.T))
-        return combine(parts)
+                center = rotation @ properties.center + np.array(_clamp_position(frame).position)
+                link_properties.append(
+                    MassProperties(properties.mass, center, rotation @ properties.inertia @ rotation.T)
+                )
+        return combine(link_properties)
 
     def shape_bounds(self, shape: Visual | Collision) -> Bounds | None:
         """Return the box around a shape in its link's frame.
@@ -91,27 +101,27 @@ class Extents:
         The result is None if the shape's mesh cannot be read, or if the shape is too large or too far away.
         """
         key = id(shape)
-        if key not in self._measured:
-            self._measured[key] = self._measure(shape)
-        return self._measured[key]
+        if key not in self._shape_boxes:
+            self._shape_boxes[key] = self._measure(shape)
+        return self._shape_boxes[key]
 
     def link_bounds(self, link: Link) -> Bounds | None:
         """Return the box around a link's shapes in the link's frame; None if it cannot be measured."""
-        return self._bounds([*link.visuals, *link.collisions])
+        return self._union_of_bounds([*link.visuals, *link.collisions])
 
-    def kinds_of_bounds(self, link: Link) -> list[Bounds]:
+    def separate_bounds(self, link: Link) -> list[Bounds]:
         """Return the boxes around a link's collision shapes and around its visuals, if they exist.
 
         A stray vertex in a visual's mesh makes only one of the boxes too large.
         """
-        kinds: tuple[Sequence[Visual | Collision], ...] = (link.collisions, link.visuals)
-        boxes = [self._bounds(shapes) for shapes in kinds if shapes]
+        shape_groups: tuple[Sequence[Visual | Collision], ...] = (link.collisions, link.visuals)
+        boxes = [self._union_of_bounds(shapes) for shapes in shape_groups if shapes]
         return [box for box in boxes if box is not None]
 
-    def _bounds(self, shapes: Sequence[Visual | Collision]) -> Bounds | None:
-        found = [self.shape_bounds(shape) for shape in shapes]
-        known = [bounds for bounds in found if bounds is not None]
-        return union(known) if len(known) == len(found) else None
+    def _union_of_bounds(self, shapes: Sequence[Visual | Collision]) -> Bounds | None:
+        boxes = [self.shape_bounds(shape) for shape in shapes]
+        known_boxes = [bounds for bounds in boxes if bounds is not None]
+        return union(known_boxes) if len(known_boxes) == len(boxes) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
         """Return the box around a link's body in the link's frame; None if it cannot be measured.
@@ -122,13 +132,13 @@ class Extents:
         body = self._bodies.of(link.name)
         if body is None or len(body.frames) == 1:
             return None if body is None else self.link_bounds(link)
-        key = (body, link.name if len(body.frames) <= _MANY else body.links[0])
-        if key not in self._of_bodies:
-            self._of_bodies[key] = self._around(body, _clamped(body.frames[key[1]]))
-        around = self._of_bodies[key]
-        if around is None or key[1] == link.name:
-            return around
-        return around.moved(_ORIGIN.seen_from(_clamped(body.frames[link.name])))
+        key = (body, link.name if len(body.frames) <= _MAX_LINK_FRAMES else body.links[0])
+        if key not in self._body_boxes:
+            self._body_boxes[key] = self._around(body, _clamp_position(body.frames[key[1]]))
+        box = self._body_boxes[key]
+        if box is None or key[1] == link.name:
+            return box
+        return box.moved(_ORIGIN.seen_from(_clamp_position(body.frames[link.name])))
 
     def _around(self, body: Body, frame: Placement) -> Bounds | None:
         """Return the box around a body in a frame that is given relative to the body's first link.
@@ -136,13 +146,13 @@ class Extents:
         The result is None if a shape cannot be measured.
         """
         boxes = []
-        for member, own in zip(self._bodies.members(body), body.frames.values(), strict=True):
+        for member, member_frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             if not (member.visuals or member.collisions):
                 continue
             bounds = self.link_bounds(member)
             if bounds is None:
                 return None
-            boxes.append(bounds.moved(_clamped(own).seen_from(frame)))
+            boxes.append(bounds.moved(_clamp_position(member_frame).seen_from(frame)))
         return union(boxes)
 
     def volume(self, link: Link) -> float | None:
@@ -161,13 +171,13 @@ class Extents:
                 if isinstance(shape.geometry, Mesh):
                     total += prod(bounds.size)
                 else:
-                    total += volume_of(shape.geometry)
+                    total += shape_volume(shape.geometry)
             totals.append(total)
         return max(totals)
 
     def _measure(self, shape: Visual | Collision) -> Bounds | None:
         geometry = shape.geometry
-        if max(map(abs, shape.origin.xyz)) > FARTHEST:
+        if max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
             return None
         if isinstance(geometry, Mesh):
             mesh = self._meshes.outline(shape)
@@ -175,13 +185,13 @@ class Extents:
                 return None
             box = mesh.bounds
         else:
-            box = bounds_of(geometry)
-            if max(box.high) > FARTHEST:
+            box = shape_bounds(geometry)
+            if max(box.high) > MAX_COORDINATE:
                 return None
         return box.moved(placement(shape.origin))
 
 
-def _clamped(frame: Placement) -> Placement:
+def _clamp_position(frame: Placement) -> Placement:
     """Return a placement with its position clamped to `FARTHEST`, to avoid overflow."""
-    x, y, z = (min(max(part, -FARTHEST), FARTHEST) for part in frame.position)
+    x, y, z = (min(max(coordinate, -MAX_COORDINATE), MAX_COORDINATE) for coordinate in frame.position)
     return Placement(frame.rotation, (x, y, z))

@@ -9,7 +9,7 @@ from linkwright.lint.fix import Fix
 from linkwright.loading.lean_typing import Any
 from linkwright.xmltree import Element
 
-_MOST_NOTES = 10
+_MAX_NOTES = 10
 
 
 class Finding(Diagnostic):
@@ -47,9 +47,9 @@ def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
     """Return the first of several findings with the same cause, with a note for each other one."""
     if not others:
         return first
-    notes = tuple(Note(other.message, other.span) for other in others[:_MOST_NOTES])
-    if len(others) > _MOST_NOTES:
-        notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
+    notes = tuple(Note(other.message, other.span) for other in others[:_MAX_NOTES])
+    if len(others) > _MAX_NOTES:
+        notes += (Note(phrase("and {count} more", count=len(others) - _MAX_NOTES)),)
     message = phrase("{message} (and {count} more)", message=first.message, count=len(others))
     return first.with_changes(message=message, notes=(*first.notes, *notes))
 

@@ -10,7 +10,7 @@ import re
 
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import element_range, escaped, start_tag_of, whole_lines
+from linkwright.xmltree.patches import element_range, escaped, find_start_tag, whole_lines
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
 
@@ -55,8 +55,8 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
     source = element.source
     if source is None or new in element.attributes:
         return None
-    found = attribute_name_range(source.text, element.offset, old)
-    return None if found is None else Fix((Edit(source.name, *found, new),), safe)
+    name_range = attribute_name_range(source.text, element.offset, old)
+    return None if name_range is None else Fix((Edit(source.name, *name_range, new),), safe)
 
 
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
@@ -65,11 +65,11 @@ def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = 
     Return None if the element is not written in a file, or already has the attribute.
     """
     source = element.source
-    opened = start_tag_of(element)
-    if source is None or opened is None or attribute in element.attributes:
+    start_tag = find_start_tag(element)
+    if source is None or start_tag is None or attribute in element.attributes:
         return None
-    at = opened.room
-    return Fix((Edit(source.name, at, at, f' {attribute}="{escaped(value)}"'),), safe)
+    offset = start_tag.insertion_offset
+    return Fix((Edit(source.name, offset, offset, f' {attribute}="{escaped(value)}"'),), safe)
 
 
 def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | None:
@@ -78,13 +78,13 @@ def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | No
     Return None if the element is not written in a file.
     """
     source = element.source
-    found = element_range(element)
-    if source is None or found is None:
+    character_range = element_range(element)
+    if source is None or character_range is None:
         return None
     edits = [Edit(source.name, element.offset + 1, element.offset + 1 + len(element.tag), tag)]
-    closing = re.compile(rf"</({re.escape(element.tag)})\s*>$").search(source.text[slice(*found)])
-    if closing:
-        edits.append(Edit(source.name, found[0] + closing.start(1), found[0] + closing.end(1), tag))
+    end_tag = re.compile(rf"</({re.escape(element.tag)})\s*>$").search(source.text[slice(*character_range)])
+    if end_tag:
+        edits.append(Edit(source.name, character_range[0] + end_tag.start(1), character_range[0] + end_tag.end(1), tag))
     return Fix(tuple(edits), safe)
 
 
@@ -94,10 +94,10 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
     Return None if the element is not written in a file. A line that would be left empty is removed, too.
     """
     source = element.source
-    found = element_range(element)
-    if source is None or found is None:
+    character_range = element_range(element)
+    if source is None or character_range is None:
         return None
-    start, end = whole_lines(source.text, *found)
+    start, end = whole_lines(source.text, *character_range)
     return Fix((Edit(source.name, start, end, ""),), safe)
 
 
@@ -106,8 +106,8 @@ def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
     source = element.source
     if source is None or not is_literal(element, attribute):
         return None
-    found = attribute_value_range(source.text, element.offset, attribute)
-    return None if found is None else Edit(source.name, *found, escaped(value))
+    value_range = attribute_value_range(source.text, element.offset, attribute)
+    return None if value_range is None else Edit(source.name, *value_range, escaped(value))
 
 
 def is_literal(element: Element, attribute: str) -> bool:
@@ -115,8 +115,8 @@ def is_literal(element: Element, attribute: str) -> bool:
     source = element.source
     if source is None or attribute not in element.attributes:
         return False
-    found = attribute_value_range(source.text, element.offset, attribute)
-    if found is None:
+    value_range = attribute_value_range(source.text, element.offset, attribute)
+    if value_range is None:
         return False
-    written = source.text[slice(*found)]
-    return "$" not in written and "&" not in written and written.split() == element.attributes[attribute].split()
+    raw_value = source.text[slice(*value_range)]
+    return "$" not in raw_value and "&" not in raw_value and raw_value.split() == element.attributes[attribute].split()

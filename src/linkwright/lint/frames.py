@@ -11,8 +11,8 @@ from linkwright.urdf.tree import walk
 
 def placements(robot: Robot) -> Mapping[str, Placement]:
     """Return each link's placement in the root link's frame with all joints at zero, by name."""
-    found = {robot.root: Placement(IDENTITY, (0.0, 0.0, 0.0))}
+    poses = {robot.root: Placement(IDENTITY, (0.0, 0.0, 0.0))}
     for joint, _depth in walk(robot):
-        if joint.child not in found:
-            found[joint.child] = placement(joint.origin).inside(found[joint.parent])
-    return found
+        if joint.child not in poses:
+            poses[joint.child] = placement(joint.origin).inside(poses[joint.parent])
+    return poses

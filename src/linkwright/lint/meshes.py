@@ -57,7 +57,7 @@ class MeshFacts:
         self._finder = finder
         self._folder = folder
         self.unread: LinkwrightError | None = None
-        """Why no mesh could be read although a rule wanted one: the library for it is not installed."""
+        """The error about the missing mesh library if a rule needed a mesh, or None."""
 
     @cached_property
     def uses(self) -> tuple[MeshUse, ...]:
@@ -67,8 +67,8 @@ class MeshFacts:
     @cached_property
     def files(self) -> tuple[tuple[MeshUse, Path], ...]:
         """The uses with a valid URI, each with the path of the mesh file, which need not exist."""
-        found = ((use, self.path(use)) for use in self.uses)
-        return tuple((use, path) for use, path in found if path is not None)
+        paths = ((use, self.path(use)) for use in self.uses)
+        return tuple((use, path) for use, path in paths if path is not None)
 
     def path(self, use: MeshUse) -> Path | None:
         """Return the path of the file that a mesh's URI names, or None if the URI is not valid."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import with_related
-from linkwright.lint.made_files import is_made_later
+from linkwright.lint.made_files import is_created_later
 from linkwright.lint.package import find_package
 
 _MISSING = "XML101"
@@ -21,23 +21,25 @@ def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic
     A file that the build creates later becomes an information. Files that exist relative to the package's folder, which
     another program may use as the base, become one warning for each file that includes them.
     """
-    elsewhere: dict[str, list[Diagnostic]] = {}
+    package_findings: dict[str, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
         if diagnostic.code != _MISSING or diagnostic.span is None or diagnostic.severity is not Severity.ERROR:
             yield diagnostic
         elif (
-            found := None if (built := _built_file_finding(diagnostic)) else _package_file_finding(diagnostic)
+            package_finding := None
+            if (built_finding := _built_file_finding(diagnostic))
+            else _package_file_finding(diagnostic)
         ) is not None:
-            elsewhere.setdefault(diagnostic.span.file, []).append(found)
+            package_findings.setdefault(diagnostic.span.file, []).append(package_finding)
         else:
-            yield built or diagnostic
-    yield from (with_related(first, others) for first, *others in elsewhere.values())
+            yield built_finding or diagnostic
+    yield from (with_related(first, others) for first, *others in package_findings.values())
 
 
 def _built_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
-    path = _path(diagnostic)
+    path = _missing_path(diagnostic)
     package = find_package(path.parent)
-    if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
+    if package is None or not is_created_later(package, path.relative_to(package.folder).as_posix()):
         return None
     hint = phrase("the build or another program creates it; until then, the parts that need it are left out")
     return diagnostic.with_changes(severity=Severity.INFO, hint=hint)
@@ -47,13 +49,13 @@ def _package_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
     assert diagnostic.span is not None
     folder = Path(diagnostic.span.file).absolute().parent
     package = find_package(folder)
-    written = os.path.relpath(_path(diagnostic), folder)
-    if package is None or not (package.folder / written).is_file():
+    relative_path = os.path.relpath(_missing_path(diagnostic), folder)
+    if package is None or not (package.folder / relative_path).is_file():
         return None
-    beside = Path(os.path.relpath(package.folder / written, folder)).as_posix()
-    hint = phrase("xacro resolves the path from the folder of this file: write '{path}'", path=beside)
+    correct_path = Path(os.path.relpath(package.folder / relative_path, folder)).as_posix()
+    hint = phrase("xacro resolves the path from the folder of this file: write '{path}'", path=correct_path)
     return diagnostic.with_changes(severity=Severity.WARNING, hint=hint)
 
 
-def _path(diagnostic: Diagnostic) -> Path:
+def _missing_path(diagnostic: Diagnostic) -> Path:
     return Path(os.path.abspath(str(as_phrase(diagnostic.message).arguments.get("path", ""))))  # noqa: PTH100 - resolve() follows links

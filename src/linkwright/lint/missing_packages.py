@@ -39,6 +39,6 @@ def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnos
 
 def is_declared(package: PackageContext, name: str) -> bool:
     """Return whether a package or a neighbour in its workspace declares a dependency."""
-    beside = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
-    manifests = (package_context.manifest for package_context in (package, *beside))
+    neighbours = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
+    manifests = (package_context.manifest for package_context in (package, *neighbours))
     return any(manifest is not None and manifest.declares(name) for manifest in manifests)

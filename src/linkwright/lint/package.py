@@ -21,26 +21,26 @@ if TYPE_CHECKING:
     from linkwright.packages.readers.setup_py import SetupFile
 
 MANIFEST = "package.xml"
-_MOST_FILES = 20_000
-_DESCRIPTIONS = (".xacro", ".urdf")
+_MAX_FILES = 20_000
+_DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
 
 
 def find_package(
-    path: Path, overlay: Overlay | None = None, known: dict[Path, PackageContext] | None = None
+    path: Path, overlay: Overlay | None = None, cache: dict[Path, PackageContext] | None = None
 ) -> PackageContext | None:
     """Return the package that contains a file or folder, or None if there is no ``package.xml``.
 
     Args:
         path: the file or folder.
         overlay: texts that replace those of files.
-        known: a cache of packages by folder, which is not used with an overlay.
+        cache: the cache of packages by folder, which is not used with an overlay.
     """
     path = path.absolute()
     for folder in (path, *path.parents):
         if (folder / MANIFEST).is_file():
-            if overlay is not None or known is None:
+            if overlay is not None or cache is None:
                 return PackageContext(folder, overlay)
-            return known.get(folder) or known.setdefault(folder, PackageContext(folder))
+            return cache.get(folder) or cache.setdefault(folder, PackageContext(folder))
     return None
 
 
@@ -94,11 +94,11 @@ class PackageContext:
     @cached_property
     def folders(self) -> frozenset[str]:
         """The paths of all folders that contain files, directly or in subfolders, relative to the package."""
-        found: set[str] = set()
+        paths: set[str] = set()
         for file in self.files:
             parts = file.split("/")[:-1]
-            found.update("/".join(parts[:count]) for count in range(1, len(parts) + 1))
-        return frozenset(found)
+            paths.update("/".join(parts[:count]) for count in range(1, len(parts) + 1))
+        return frozenset(paths)
 
     def has(self, path: str) -> bool:
         """Return whether a file or folder exists at a path relative to the package."""
@@ -106,12 +106,12 @@ class PackageContext:
 
     def text(self, path: str) -> SourceText | None:
         """Return the text of a file of the package, or None if it cannot be read."""
-        full = str(self.folder / path)
-        unsaved = None if self._overlay is None else self._overlay.text(full)
+        full_path = str(self.folder / path)
+        unsaved = None if self._overlay is None else self._overlay.text(full_path)
         if unsaved is not None:
-            return SourceText(full, unsaved)
+            return SourceText(full_path, unsaved)
         try:
-            return SourceText(full, decode(read_bytes(full), full))
+            return SourceText(full_path, decode(read_bytes(full_path), full_path))
         except LinkwrightError:
             return None
 
@@ -138,35 +138,35 @@ class PackageContext:
         """The package's Python launch files, by their paths relative to the package."""
         from linkwright.packages.readers.launch_files import is_launch_file, read_launch_file
 
-        found = {}
+        files_by_path = {}
         for file in self.files:
             if is_launch_file(file):
                 source = self.text(file)
                 if source is not None:
-                    found[file] = read_launch_file(source, file)
-        return found
+                    files_by_path[file] = read_launch_file(source, file)
+        return files_by_path
 
     @cached_property
     def descriptions(self) -> Mapping[Path, Document]:
         """The package's unexpanded URDF and xacro files, by path, except files that are not XML."""
         from linkwright.xacro.cache import read_document
 
-        found: dict[Path, Document] = {}
+        documents: dict[Path, Document] = {}
         for file in self.files:
-            if file.endswith(_DESCRIPTIONS):
+            if file.endswith(_DESCRIPTION_SUFFIXES):
                 path = self.folder / file
                 if not path.is_file():  # reading a named pipe would never end
                     continue
                 try:
-                    found[path] = read_document(str(path))
+                    documents[path] = read_document(str(path))
                 except LinkwrightError:
                     continue
-        return found
+        return documents
 
     def _walk(self) -> Iterator[str]:
         count = 0
         for top, folders, files in os.walk(self.folder):
-            inside = Path(top) != self.folder
+            is_subfolder = Path(top) != self.folder
             folders[:] = [
                 name
                 for name in sorted(folders)
@@ -179,6 +179,6 @@ class PackageContext:
                 if name.startswith(".") or name.endswith(".pyc"):
                     continue
                 count += 1
-                if count > _MOST_FILES:
+                if count > _MAX_FILES:
                     return
-                yield f"{relative}/{name}" if inside else name
+                yield f"{relative}/{name}" if is_subfolder else name

@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 from linkwright.lint.fix import Edit, Fix
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.xmltree.patches import element_range, newline_of
+from linkwright.xmltree.patches import element_range, line_ending
 
 if TYPE_CHECKING:
     from linkwright.diagnostics import SourceText
@@ -46,7 +46,7 @@ def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     indent = source.text[line : last.offset]
     if indent.strip():
         return None
-    newline = newline_of(source.text)
+    newline = line_ending(source.text)
     text = "".join(f"{newline}{indent}<exec_depend>{name}</exec_depend>" for name in names)
     return Fix((Edit(source.name, place[1], place[1], text),))
 
@@ -92,25 +92,25 @@ def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | No
         end = last.end + (1 if last.is_quoted else 0)
         line = text.rfind("\n", 0, last.start) + 1
         blanks = text[line : last.start].removesuffix('"')
-        separator = f"{newline_of(text)}{blanks}" if not blanks.strip() else " "
+        separator = f"{line_ending(text)}{blanks}" if not blanks.strip() else " "
         return Fix((Edit(source.name, end, end, f"{separator}{folder}"),), safe)
     last_command = _LAST_COMMAND.search(text)
     if last_command is None:
         return None
     destination = _SHARE if parent == "." else f"{_SHARE}/{parent}"
-    newline = newline_of(text)
+    newline = line_ending(text)
     command = f"install(DIRECTORY {folder} DESTINATION {destination}){newline}{newline}"
     return Fix((Edit(source.name, last_command.start(), last_command.start(), command),), safe)
 
 
 def _last_folders(source: SourceText) -> Iterator[Token]:
     """Yield the last folder of each command that installs whole folders into the share folder, under no condition."""
-    from linkwright.packages.readers.cmake_syntax import ENDS, statements
+    from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, statements
 
     depth = 0
     for statement in statements(source):
-        depth += statement.name in ENDS
-        depth -= statement.name in ENDS.values()
+        depth += statement.name in BLOCK_ENDS
+        depth -= statement.name in BLOCK_ENDS.values()
         if depth == 0 and statement.name == "install":
             folders = _installed_folders(statement)
             if folders:
@@ -157,7 +157,7 @@ def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -
     indent = text[text.rfind("\n", 0, start) + 1 : start]
     if indent.strip():
         return Edit(source.name, end, end, "".join(f", {entry}" for entry in entries))
-    separator = f"{newline_of(text)}{indent}"
+    separator = f"{line_ending(text)}{indent}"
     rest = _REST.match(text, end)
     if rest is not None and rest[1] and rest[2]:  # a comment belongs to the entry before it
         at = end + len(rest[0].rstrip("\r"))
@@ -199,7 +199,7 @@ def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
     first = _FIRST_IMPORT.search(text)
     if first is None or text.startswith("from __future__", first.start()):
         return None, ()
-    return "glob", (Edit(setup.source.name, first.start(), first.start(), f"from glob import glob{newline_of(text)}"),)
+    return "glob", (Edit(setup.source.name, first.start(), first.start(), f"from glob import glob{line_ending(text)}"),)
 
 
 def _share_folder(setup: SetupFile, name: str, folder: str = "") -> str:

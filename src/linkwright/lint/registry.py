@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 GROUP = "linkwright.lint_rules"
-"""Of the entry points."""
+"""The group of the entry points."""
 
-_OURS = "LW"
+_OWN_PREFIX = "LW"
 _PACKAGE_MODULE_PREFIXES = ("launch_", "package_")
-"""How the names begin of our modules with rules about packages, and no others: a check of a file needs none of them."""
+"""The name prefixes of our modules with rules about packages, which the check of a file does not need."""
 _CODE = lazy_pattern("[A-Z]{2,10}[0-9]{3}")
 _NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
 
@@ -48,14 +48,14 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
     return _found(whole=False)[1]
 
 
-def has_rules_of_others() -> bool:
+def has_external_rules() -> bool:
     """Return whether another package adds rules, whose findings may depend on anything."""
-    return any(is_of_others(rule) for rule in _found(whole=False)[0])
+    return any(is_external(rule) for rule in _found(whole=False)[0])
 
 
-def is_of_others(rule: Rule) -> bool:
+def is_external(rule: Rule) -> bool:
     """Return whether a rule belongs to another package."""
-    return not rule.code.startswith(_OURS)
+    return not rule.code.startswith(_OWN_PREFIX)
 
 
 def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
@@ -77,7 +77,7 @@ def find_rule(code_or_name: str) -> Rule | None:
     """Return the rule with a code or name, ignoring case, or None if there is none."""
     key = code_or_name.strip().casefold()
     rule = _index(whole=False).get(key)
-    if rule is None and (key.startswith(_OURS.casefold()) or not _CODE.fullmatch(key.upper())):
+    if rule is None and (key.startswith(_OWN_PREFIX.casefold()) or not _CODE.fullmatch(key.upper())):
         return _index(whole=True).get(key)
     return rule
 
@@ -91,19 +91,19 @@ def _index(*, whole: bool) -> Mapping[str, Rule]:
 def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
     """Return the rules, sorted by code, and the findings about rules that cannot be used.
 
-    Unless `whole`, Linkwright's rules about packages are left out. If another package adds rules, they are always
-    included, because the names of the added rules must differ from all of ours.
+    Linkwright's rules about packages are left out unless `include_packages` is true, or another package adds rules.
+    The names of the added rules must differ from all of ours.
     """
     rules: dict[str, Rule] = {}
     problems: list[Diagnostic] = []
     entries = extensions(GROUP).values()
     whole = whole or not all(map(_is_ours, entries))
     for entry in entries:
-        found = _rules_of(entry, {*rules, *(rule.name for rule in rules.values())}, whole=whole)
-        if isinstance(found, Diagnostic):
-            problems.append(found)
+        entry_rules = _rules_of(entry, {*rules, *(rule.name for rule in rules.values())}, include_packages=whole)
+        if isinstance(entry_rules, Diagnostic):
+            problems.append(entry_rules)
         else:
-            rules.update((rule.code, rule) for rule in found)
+            rules.update((rule.code, rule) for rule in entry_rules)
     return tuple(rules[code] for code in sorted(rules)), tuple(problems)
 
 
@@ -111,48 +111,52 @@ def _is_ours(entry: EntryPoint) -> bool:
     return entry.value.startswith("linkwright.")
 
 
-def _rules_of(entry: EntryPoint, taken: set[str], *, whole: bool) -> list[Rule] | Diagnostic:
+def _rules_of(entry: EntryPoint, used_names: set[str], *, include_packages: bool) -> list[Rule] | Diagnostic:
     """Return the rules of an entry point, or a diagnostic if they cannot be used.
 
     An exception in our own rules is not caught.
     """
     if _is_ours(entry):
-        return _load(entry, taken, is_ours=True, whole=whole)
+        return _load(entry, used_names, is_ours=True, whole=include_packages)
     try:
-        return _load(entry, taken, is_ours=False, whole=True)
+        return _load(entry, used_names, is_ours=False, whole=True)
     except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
-        return _unusable(entry, error)
+        return _unusable_finding(entry, error)
 
 
-def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool, whole: bool) -> list[Rule]:
-    """Return the rules that an entry point provides, and add their codes and names to `taken`.
+def _load(entry: EntryPoint, used_names: set[str], *, is_ours: bool, whole: bool) -> list[Rule]:
+    """Return the rules that an entry point provides, and add their codes and names to `used_names`.
 
     Raises:
         ValueError: If a code or name is taken or malformed.
     """
-    found = [_one(rule) for module in _modules(entry.load(), is_ours, whole) for rule in _classes(module)]
-    for rule in found:
-        if not _CODE.fullmatch(rule.code) or not _NAME.fullmatch(rule.name) or rule.code.startswith(_OURS) != is_ours:
+    rules = [_instance(rule) for module in _modules(entry.load(), is_ours, whole) for rule in _classes(module)]
+    for rule in rules:
+        if (
+            not _CODE.fullmatch(rule.code)
+            or not _NAME.fullmatch(rule.name)
+            or rule.code.startswith(_OWN_PREFIX) != is_ours
+        ):
             raise ValueError(f"malformed code or name: {rule.code}, {rule.name}")
-        if rule.code in taken or rule.name in taken:
+        if rule.code in used_names or rule.name in used_names:
             raise ValueError(f"'{rule.code}' or '{rule.name}' is taken")
-        taken |= {rule.code, rule.name}
-    return found
+        used_names |= {rule.code, rule.name}
+    return rules
 
 
 _INSTANCES: dict[object, Rule] = {}
-"""The one rule of each class."""
+"""The instance of each rule class."""
 
 
-def _one(kind: type[Rule]) -> Rule:
+def _instance(kind: type[Rule]) -> Rule:
     return _INSTANCES.get(kind) or _INSTANCES.setdefault(kind, kind())
 
 
-def _modules(module: ModuleType, is_ours: bool, whole: bool) -> Iterator[ModuleType]:
+def _modules(module: ModuleType, is_ours: bool, include_packages: bool) -> Iterator[ModuleType]:
     yield module
     for folder in getattr(module, "__path__", ()):
         for name in sorted(_module_names(folder, is_ours=is_ours)):
-            if whole or not name.startswith(_PACKAGE_MODULE_PREFIXES):
+            if include_packages or not name.startswith(_PACKAGE_MODULE_PREFIXES):
                 yield import_module(f"{module.__name__}.{name}")
 
 
@@ -172,7 +176,7 @@ def _classes(module: ModuleType) -> Iterator[type[Rule]]:
             yield value
 
 
-def _unusable(entry: EntryPoint, error: Exception) -> Diagnostic:
+def _unusable_finding(entry: EntryPoint, error: Exception) -> Diagnostic:
     message = phrase(
         "the rules of '{module}' cannot be used: {reason}",
         module=entry.value,

@@ -22,9 +22,9 @@ class Scope(Enum):
     DESCRIPTION = "description"
     """One robot description; the rule runs once for each."""
     PACKAGE = "package"
-    """The ROS package around it; the rule runs once for a package, however many descriptions it has."""
+    """The ROS package that contains a description; the rule runs once for each package."""
     COMMENTS = "comments"
-    """The comments that suppress findings; the engine reports for the rule, which is not run."""
+    """The comments that suppress findings; the engine reports the rule's findings without running the rule."""
 
 
 class Rule:
@@ -76,8 +76,8 @@ class Rule:
             name: the name of the option, one of `options`.
             kind: the type of the value; ``float`` also accepts an integer.
         """
-        declared = next(option for option in self.options if option.name == name)
-        value = subject.settings.options.get(self.name, {}).get(name, declared.default)
+        declared_option = next(option for option in self.options if option.name == name)
+        value = subject.settings.options.get(self.name, {}).get(name, declared_option.default)
         if kind is float and isinstance(value, int):
             return kind(value)
         assert isinstance(value, kind), "the settings were checked against the option's default"
@@ -103,7 +103,7 @@ class Rule:
             element: the element that the finding is about. It provides the location, and the macro calls and includes
                 that produced it.
             attribute: the attribute of the element whose value is the location.
-            span: the location, if it is not that of an element or attribute.
+            span: the location, if it differs from the location of the element or attribute.
             source: the text that contains `span`, for the excerpt.
             notes: facts that explain the finding, with their locations.
             hint: how to fix the problem.

@@ -10,32 +10,32 @@ from linkwright.loading.deferred import lazy_pattern
 _CODE = lazy_pattern("[A-Z]+[0-9]{0,3}")
 
 
-def is_selector(word: str) -> bool:
-    """Return whether a word is a valid selector of findings."""
-    if word == ALL or find_rule(word) is not None:
+def is_selector(text: str) -> bool:
+    """Return whether a text is a valid selector of findings."""
+    if text == ALL or find_rule(text) is not None:
         return True
-    if not _CODE.fullmatch(word):
+    if not _CODE.fullmatch(text):
         return False
     from linkwright.lint.explain import room_pages  # imported here because most checks have no selectors
 
-    return any(rule.code.startswith(word) for rule in all_rules()) or any(
-        code.startswith(word) for code in room_pages()
+    return any(rule.code.startswith(text) for rule in all_rules()) or any(
+        code.startswith(text) for code in room_pages()
     )
 
 
-def canonical(word: str) -> str:
-    """Return the canonical form of a selector, which is a code for the name of a rule.
+def canonical(text: str) -> str:
+    """Return the canonical form of a selector: the code instead of the name of a rule.
 
-    Other words are returned unchanged.
+    Other texts are returned unchanged.
     """
-    rule = find_rule(word)
-    return rule.code if rule else word
+    rule = find_rule(text)
+    return rule.code if rule else text
 
 
-def selector_hint(word: str) -> Phrase:
-    """Return a hint on a word that is not a valid selector."""
+def selector_hint(text: str) -> Phrase:
+    """Return a hint on a text that is not a valid selector."""
     candidates = [name for rule in all_rules() for name in (rule.name, rule.code)]
-    near = nearest(word, candidates, limit=1)
-    if near:
-        return phrase("did you mean {names}?", names=quoted_names(near))
+    suggestions = nearest(text, candidates, limit=1)
+    if suggestions:
+        return phrase("did you mean {names}?", names=quoted_names(suggestions))
     return phrase("give a code such as LW201, the beginning of one, or the name of a rule")

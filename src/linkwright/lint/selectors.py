@@ -21,10 +21,10 @@ def specificity(selectors: Iterable[str], code: str) -> int:
 
     The result is 0 for no match, 1 for ``ALL``, and more for a longer selector.
     """
-    return max((_closeness(selector, code) for selector in selectors), default=0)
+    return max((_specificity(selector, code) for selector in selectors), default=0)
 
 
-def _closeness(selector: str, code: str) -> int:
+def _specificity(selector: str, code: str) -> int:
     if selector == ALL:
         return 1
     return len(selector) + 1 if code.startswith(selector) else 0

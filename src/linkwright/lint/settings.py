@@ -15,7 +15,7 @@ from linkwright.xmltree.style import Style
 
 
 class SwitchableRule(Protocol):
-    """The properties of a rule by which settings decide whether it runs."""
+    """The properties of a rule that decide, together with the settings, whether the rule runs."""
 
     @property
     def code(self) -> str:
@@ -71,20 +71,20 @@ class Settings:
         """
         if self.select is None and not self.extend_select and not self.ignore:
             return default  # the usual case, which must be fast because every rule is tested
-        wanted = specificity(self.extend_select, code)
+        selection_specificity = specificity(self.extend_select, code)
         if self.select is not None:
-            wanted = max(wanted, specificity(self.select, code))
-        elif default and not wanted:
-            wanted = 1
-        return wanted > specificity(self.ignore, code)
+            selection_specificity = max(selection_specificity, specificity(self.select, code))
+        elif default and not selection_specificity:
+            selection_specificity = 1
+        return selection_specificity > specificity(self.ignore, code)
 
     def is_ignored(self, code: str) -> bool:
         """Return whether a code is ignored.
 
         The selector that ignores the code must be at least as specific as the one that selects it.
         """
-        wanted = specificity((*(self.select or ()), *self.extend_select), code)
-        return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= wanted
+        selection_specificity = specificity((*(self.select or ()), *self.extend_select), code)
+        return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= selection_specificity
 
     def ignores(self, code: str, file: str) -> bool:
         """Return whether findings with a code are ignored in a file by ``per-file-ignores``."""
@@ -108,13 +108,13 @@ class Settings:
             path = path.relative_to(self.folder)
         return fnmatchcase(path.as_posix(), pattern) or fnmatchcase(path.name, pattern)
 
-    def severity_of(self, code: str, otherwise: Severity) -> Severity:
-        """Return the configured severity of findings with a code, or `otherwise` if there is none."""
-        best, severity = 0, otherwise
-        for selector, wanted in self.severity.items():
-            closeness = specificity([selector], code)
-            if closeness > best:
-                best, severity = closeness, wanted
+    def severity_of(self, code: str, default: Severity) -> Severity:
+        """Return the configured severity of findings with a code, or `default` if there is none."""
+        best_specificity, severity = 0, default
+        for selector, configured_severity in self.severity.items():
+            match_specificity = specificity([selector], code)
+            if match_specificity > best_specificity:
+                best_specificity, severity = match_specificity, configured_severity
         return severity
 
     def with_command_line(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
@@ -122,7 +122,7 @@ class Settings:
 
         `select` replaces the selection and the ignored codes of the settings; `ignore` is added.
         """
-        changed = replace(self, ignore=(*self.ignore, *ignore))
+        settings = replace(self, ignore=(*self.ignore, *ignore))
         if select is not None:
-            changed = replace(changed, select=select, extend_select=(), ignore=ignore)
-        return changed
+            settings = replace(settings, select=select, extend_select=(), ignore=ignore)
+        return settings

@@ -20,7 +20,7 @@ class Place(NamedTuple):
     Attributes:
         element: the element.
         rule: the schema rule: the attributes and children that the element may have.
-        parent: the place of the enclosing element, or None for ``<robot>``.
+        parent: the enclosing element, or None for ``<robot>``.
         owner: the link, joint or material that contains the element or is the element, or None for ``<robot>``.
     """
 
@@ -56,41 +56,45 @@ class Structure:
 
     @cached_property
     def unknown_elements(self) -> list[tuple[Place, Element]]:
-        """The elements that URDF does not define in their parents, except those of other tools.
+        """The elements that URDF does not define in their parents, except elements of other tools.
 
         Elements of other namespaces are left out, too.
         """
-        return [(place, child) for place, child in self._classified_elements[1] if not _is_expected(place, child)]
+        return [
+            (schema_element, child)
+            for schema_element, child in self._classified_elements[1]
+            if not _is_expected(schema_element, child)
+        ]
 
     @cached_property
     def unknown_attributes(self) -> list[tuple[Place, str]]:
-        """The attributes that URDF does not define for their elements, except those of other namespaces."""
+        """The attributes that URDF does not define for their elements, except attributes of other namespaces."""
         return [
-            (place, name)
-            for place in self.places
-            for name in place.element.attributes
-            if name not in place.rule.attribute_rules and ":" not in name and name != "xmlns"
+            (schema_element, name)
+            for schema_element in self.places
+            for name in schema_element.element.attributes
+            if name not in schema_element.rule.attribute_rules and ":" not in name and name != "xmlns"
         ]
 
     @cached_property
     def _classified_elements(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
         """The elements that URDF defines, and the unknown elements in them, both in document order."""
-        known: list[Place] = []
-        unknown: list[tuple[Place, Element]] = []
-        waiting = [Place(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
-        while waiting:
-            place = waiting.pop()
-            known.append(place)
-            element, rules, _, owner = place
-            inner = []
+        known_elements: list[Place] = []
+        unknown_elements: list[tuple[Place, Element]] = []
+        pending = [Place(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
+        while pending:
+            schema_element = pending.pop()
+            known_elements.append(schema_element)
+            element, rules, _, owner = schema_element
+            children = []
             for child in element.elements():
                 rule = rules.child_rules.get(child.tag)
                 if rule is None:
-                    unknown.append((place, child))
+                    unknown_elements.append((schema_element, child))
                 else:
-                    inner.append(Place(child, rule, element, owner or child))
-            waiting.extend(reversed(inner))
-        return known, unknown
+                    children.append(Place(child, rule, element, owner or child))
+            pending.extend(reversed(children))
+        return known_elements, unknown_elements
 
 
 def _is_expected(place: Place, child: Element) -> bool:

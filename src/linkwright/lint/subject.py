@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 
 _DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
-"""Elements that a file for others to include may have without being a robot."""
+"""Elements that only define something; a file without any other element is a library."""
 
 
 class Subject:
@@ -75,11 +75,11 @@ class Subject:
         tags = {element.tag for element in main.root.elements()}
         if tags and tags <= _DEFINITIONS:
             return True
-        made = {element.tag for element in self.elements()}
-        if "ros2_control" in made and made.isdisjoint(("link", "joint")):
+        expanded_tags = {element.tag for element in self.elements()}
+        if "ros2_control" in expanded_tags and expanded_tags.isdisjoint(("link", "joint")):
             return True
-        makes_link = next(self.elements("link"), None) is not None
-        return "xacro:macro" in tags and not ("name" in self.root.attributes and makes_link)
+        has_link = next(self.elements("link"), None) is not None
+        return "xacro:macro" in tags and not ("name" in self.root.attributes and has_link)
 
     @property
     def robot(self) -> Robot | None:
@@ -91,38 +91,38 @@ class Subject:
         """The root element of the expanded document."""
         return self.document.root
 
-    def once(self, work: Callable[[Subject], Value]) -> Value:
+    def once(self, compute: Callable[[Subject], Value]) -> Value:
         """Return the result of a function for this subject, computed only once.
 
         All rules share the result, and so do subjects with the same expansion.
         """
-        if work not in self._done:
-            self._done[work] = work(self)
-        value: Value = self._done[work]
+        if compute not in self._cached_results:
+            self._cached_results[compute] = compute(self)
+        value: Value = self._cached_results[compute]
         return value
 
     @cached_property
-    def _done(self) -> dict[Any, Any]:
+    def _cached_results(self) -> dict[Any, Any]:
         """The cached results for all subjects with the same expansion, by function."""
         if self._shared is None:
             return {}
         return self._shared.results_for(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """Return the direct children of ``<robot>`` in document order, all or those with one tag."""
-        return self.root.elements() if tag is None else iter(self._by_tag.get(tag, ()))
+        """Return the direct children of ``<robot>`` in document order; with `tag`, only children with this tag."""
+        return self.root.elements() if tag is None else iter(self._elements_by_tag.get(tag, ()))
 
     @cached_property
-    def _by_tag(self) -> Mapping[str, list[Element]]:
+    def _elements_by_tag(self) -> Mapping[str, list[Element]]:
         """The direct children of ``<robot>`` by tag, since most rules need elements with one tag."""
-        found: dict[str, list[Element]] = {}
+        elements_by_tag: dict[str, list[Element]] = {}
         for element in self.root.elements():
-            found.setdefault(element.tag, []).append(element)
-        return found
+            elements_by_tag.setdefault(element.tag, []).append(element)
+        return elements_by_tag
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """All joints in source order; in a refused model, the readable ones, with repeated names."""
+        """All joints in source order; for a refused model, the readable joints, including those with repeated names."""
         if self.robot is not None:
             return tuple(self.robot.joints.values())
         from linkwright.urdf.reader import read_joint
@@ -132,15 +132,15 @@ class Subject:
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
-        """All links in source order; in a refused model, the readable ones, with repeated names."""
+        """All links in source order; for a refused model, the readable links, including those with repeated names."""
         if self.robot is not None:
             return tuple(self.robot.links.values())
         from linkwright.urdf.reader import MaterialTable, read_link
         from linkwright.urdf.report import UrdfReport
 
-        findings = UrdfReport()
-        table = MaterialTable(findings)
-        return tuple(read_link(element, table, findings) for element in self.elements("link"))
+        report = UrdfReport()
+        table = MaterialTable(report)
+        return tuple(read_link(element, table, report) for element in self.elements("link"))
 
     @property
     def sources(self) -> Mapping[Path, Document]:
@@ -178,8 +178,8 @@ class Subject:
         """The definitions and uses in the xacro files of the description."""
         from linkwright.lint.xacro_facts import XacroFacts
 
-        given = {} if self.expansion is None else self.expansion.arguments
-        facts = XacroFacts(self.path, self.sources, given, self.package, is_library=not self.links)
+        arguments = {} if self.expansion is None else self.expansion.arguments
+        facts = XacroFacts(self.path, self.sources, arguments, self.package, is_library=not self.links)
         return facts if self._shared is None else self._shared.facts(facts)
 
     @property
@@ -206,10 +206,10 @@ class Subject:
     @cached_property
     def tensor_flaws(self) -> list[tuple[Link, Inertial, Flaw]]:
         """The links with an impossible inertia tensor, each with its first flaw."""
-        from linkwright.lint.tensors import flaw_of
+        from linkwright.lint.tensors import first_flaw
 
         inertials = ((link, link.inertial) for link in self.links if link.inertial is not None)
-        return [(link, each, flaw) for link, each in inertials if (flaw := flaw_of(each)) is not None]
+        return [(link, inertial, flaw) for link, inertial in inertials if (flaw := first_flaw(inertial)) is not None]
 
     @cached_property
     def frames(self) -> Mapping[str, Placement]:
@@ -226,5 +226,5 @@ class Subject:
         """The ROS package that contains the file, or None."""
         from linkwright.lint.package import find_package
 
-        known = None if self._contexts is None else self._contexts.packages
-        return find_package(self.path, self.description.overlay, known)
+        packages = None if self._contexts is None else self._contexts.packages
+        return find_package(self.path, self.description.overlay, packages)

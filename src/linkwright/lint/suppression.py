@@ -32,7 +32,7 @@ UNKNOWN = "LW002"
 _VERB = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])"
 _IN_XML = lazy_pattern(rf"<!--\s*{_VERB}(?P<selectors>[^(]*?)(?:\((?:(?!-->).)*\)\s*)?-->", re.DOTALL)
 _IN_TEXT = lazy_pattern(rf"#[ \t]*{_VERB}(?P<selectors>[^(\n]*?)(?:\(.*)?$", re.MULTILINE)
-_NEXT = lazy_pattern(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
+_NEXT_TAG = lazy_pattern(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
 _SELECTOR = lazy_pattern(r"[^\s,]+")
 
 
@@ -46,7 +46,7 @@ class Directive:
         end: the character offset after the comment.
         selectors: the selectors in the comment, each with its offset; empty if the comment suppresses everything.
         ranges: the ranges of character offsets to which the comment applies, or None for the whole file.
-        used: the selectors that suppressed a finding.
+        used_selectors: the selectors that suppressed a finding.
     """
 
     source: SourceText
@@ -54,7 +54,7 @@ class Directive:
     end: int
     selectors: tuple[tuple[str, int], ...]
     ranges: tuple[tuple[int, int], ...] | None
-    used: set[str] = field(default_factory=set)
+    used_selectors: set[str] = field(default_factory=set)
 
     def suppresses(self, code: str, offset: int) -> bool:
         """Return whether the comment suppresses a finding with a code at an offset.
@@ -64,11 +64,11 @@ class Directive:
         if self.ranges is not None and not any(start <= offset < end for start, end in self.ranges):
             return False
         if not self.selectors:
-            self.used.add("")
+            self.used_selectors.add("")
             return True
-        meant = [selector for selector, _ in self.selectors if matches([canonical(selector)], code)]
-        self.used.update(meant)
-        return bool(meant)
+        matching_selectors = [selector for selector, _ in self.selectors if matches([canonical(selector)], code)]
+        self.used_selectors.update(matching_selectors)
+        return bool(matching_selectors)
 
 
 class Suppressions:
@@ -82,8 +82,8 @@ class Suppressions:
     def __init__(self, subject: Subject, settings: Settings) -> None:
         self._settings = settings
         self._overlay = subject.description.overlay
-        unused = find_rule(UNUSED)
-        self._audits = unused is not None and settings.runs(unused) and subject.is_whole
+        unused_rule = find_rule(UNUSED)
+        self._audits = unused_rule is not None and settings.runs(unused_rule) and subject.is_whole
         self._directives: dict[str, list[Directive]] = {}
         for path, document in subject.sources.items():
             if document.source is not None:
@@ -91,8 +91,8 @@ class Suppressions:
 
     def apply(self, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
         """Return the diagnostics that no comment suppresses, and the findings about the comments."""
-        kept = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
-        return [*kept, *self._unknown(), *self._unused()]
+        reported = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
+        return [*reported, *self._unknown_selector_findings(), *self._unused_comment_findings()]
 
     def audits(self, code: str) -> bool:
         """Return whether the findings with a code are needed, even if not selected.
@@ -102,18 +102,18 @@ class Suppressions:
         if not self._audits:
             return False
         return any(
-            not directive.selectors or matches([canonical(word) for word, _ in directive.selectors], code)
+            not directive.selectors or matches([canonical(selector) for selector, _ in directive.selectors], code)
             for directive in self._all()
         )
 
     def _suppresses(self, diagnostic: Diagnostic) -> bool:
         return any(
             directive.suppresses(diagnostic.code, offset)
-            for file, offset in _places(diagnostic)
-            for directive in self._of(file)
+            for file, offset in _locations(diagnostic)
+            for directive in self._file_directives(file)
         )
 
-    def _of(self, file: str) -> list[Directive]:
+    def _file_directives(self, file: str) -> list[Directive]:
         if file not in self._directives:
             text = None if self._overlay is None else self._overlay.text(file)
             try:
@@ -124,10 +124,10 @@ class Suppressions:
         return self._directives[file]
 
     def _all(self) -> Iterator[Directive]:
-        for found in self._directives.values():
-            yield from found
+        for file_directives in self._directives.values():
+            yield from file_directives
 
-    def _unknown(self) -> Iterator[Diagnostic]:
+    def _unknown_selector_findings(self) -> Iterator[Diagnostic]:
         rule = find_rule(UNKNOWN)
         if rule is None or not self._settings.runs(rule):
             return
@@ -142,24 +142,24 @@ class Suppressions:
                     hint=selector_hint(selector),
                 )
 
-    def _unused(self) -> Iterator[Diagnostic]:
+    def _unused_comment_findings(self) -> Iterator[Diagnostic]:
         rule = find_rule(UNUSED)
         if rule is None or not self._audits:
             return
         for directive in self._all():
-            words = [word for word, _ in directive.selectors if is_selector(word)] or [""]
-            unused = [word for word in words if word not in directive.used]
-            if not unused or (directive.selectors and words == [""]):
+            selectors = [selector for selector, _ in directive.selectors if is_selector(selector)] or [""]
+            unused_selectors = [word for word in selectors if word not in directive.used_selectors]
+            if not unused_selectors or (directive.selectors and selectors == [""]):
                 continue
-            what = ", ".join(f"'{word}'" for word in unused if word) or "anything"
+            targets = ", ".join(f"'{word}'" for word in unused_selectors if word) or "anything"
             fix = None
-            if len(unused) == max(len(directive.selectors), 1):
-                fix = Fix((_removal(directive),))
+            if len(unused_selectors) == max(len(directive.selectors), 1):
+                fix = Fix((_removal_edit(directive),))
             yield rule.report(
-                phrase("this comment ignores {what}, which is not found here", what=what),
+                phrase("this comment suppresses {what}, but no such finding occurs here", what=targets),
                 span=directive.source.span(directive.start, directive.end),
                 source=directive.source,
-                hint=phrase("remove it") if fix else phrase("remove {what} from it", what=what),
+                hint=phrase("remove it") if fix else phrase("remove {what} from it", what=targets),
                 fix=fix,
             )
 
@@ -171,25 +171,28 @@ def directives(source: SourceText) -> Iterator[Directive]:
         return
     is_xml = text.lstrip("\ufeff \t\r\n").startswith("<")
     for match in (_IN_XML if is_xml else _IN_TEXT).finditer(text):
-        words = tuple(
-            (word[0], match.start("selectors") + word.start()) for word in _SELECTOR.finditer(match["selectors"])
+        selectors = tuple(
+            (selector[0], match.start("selectors") + selector.start())
+            for selector in _SELECTOR.finditer(match["selectors"])
         )
-        ranges = None if match["verb"] == "ignore-file" else _ranges(text, match.start(), match.end(), is_xml)
-        yield Directive(source, match.start(), match.end(), words, ranges)
+        ranges = (
+            None if match["verb"] == "ignore-file" else _suppressed_ranges(text, match.start(), match.end(), is_xml)
+        )
+        yield Directive(source, match.start(), match.end(), selectors, ranges)
 
 
-def _ranges(text: str, start: int, end: int, is_xml: bool) -> tuple[tuple[int, int], ...]:
+def _suppressed_ranges(text: str, start: int, end: int, is_xml: bool) -> tuple[tuple[int, int], ...]:
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
     line_end = len(text) if line_end < 0 else line_end + 1
-    before, after = text[line_start:start].strip(), text[end:line_end].strip()
+    text_before, text_after = text[line_start:start].strip(), text[end:line_end].strip()
     line = (line_start, line_end)
-    if before or not is_xml:
-        return (line,) if before else (_following_line(text, line_end),)
-    following = _following_element(text, end)
-    if following is None:
-        return (line,) if after else ()
-    return (line, following) if after else (following,)
+    if text_before or not is_xml:
+        return (line,) if text_before else (_following_line(text, line_end),)
+    following_range = _following_element(text, end)
+    if following_range is None:
+        return (line,) if text_after else ()
+    return (line, following_range) if text_after else (following_range,)
 
 
 def _following_line(text: str, start: int) -> tuple[int, int]:
@@ -198,15 +201,15 @@ def _following_line(text: str, start: int) -> tuple[int, int]:
 
 
 def _following_element(text: str, end: int) -> tuple[int, int] | None:
-    match = _NEXT.search(text, end)
+    match = _NEXT_TAG.search(text, end)
     while match is not None and match["tag"] is None and match[0] != "</":
-        match = _NEXT.search(text, match.end())
+        match = _NEXT_TAG.search(text, match.end())
     if match is None or match["tag"] is None:
         return None
     return element_range(Element(match["tag"], source=SourceText("", text), offset=match.start()))
 
 
-def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
+def _locations(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
     """Yield the file and character offset of a finding and of the calls that produced it.
 
     The calls are the macro calls and includes that contain the finding's element.
@@ -215,7 +218,7 @@ def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
         if diagnostic.source is not None and diagnostic.source.name == diagnostic.span.file:
             source = diagnostic.source
         else:
-            source = _source(diagnostic.span.file)
+            source = _read_source(diagnostic.span.file)
         yield diagnostic.span.file, source.offset(diagnostic.span.line, diagnostic.span.column)
     if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
         return
@@ -227,14 +230,14 @@ def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
             yield frame.site.source.name, frame.site.offset
 
 
-def _source(file: str) -> SourceText:
+def _read_source(file: str) -> SourceText:
     try:
         return SourceText(file, Path(file).read_text(encoding="utf-8", errors="replace"))
     except OSError:
         return SourceText(file, "")
 
 
-def _removal(directive: Directive) -> Edit:
+def _removal_edit(directive: Directive) -> Edit:
     text, start, end = directive.source.text, directive.start, directive.end
     lines = whole_lines(text, start, end)
     if lines != (start, end):

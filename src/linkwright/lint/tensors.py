@@ -12,8 +12,8 @@ from linkwright.urdf import Inertial
 
 DIAGONAL = ("ixx", "iyy", "izz")
 PRODUCTS = ("ixy", "ixz", "iyz")
-_NAMED = 4
-"""So many other links are named."""
+_MAX_NAMED_LINKS = 4
+"""The maximum number of other links that a message names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ def tensor(inertial: Inertial) -> Matrix:
     return (i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)
 
 
-def _rounding(inertial: Inertial) -> float:
+def _max_rounding_error(inertial: Inertial) -> float:
     """Return the largest change of a principal moment that rounding can cause, in kg m2.
 
     Each component may be off by half of its last digit. A principal moment then changes by at most the largest row sum
@@ -49,11 +49,11 @@ def _rounding(inertial: Inertial) -> float:
     from decimal import Decimal, InvalidOperation  # imported here because few tensors have products of inertia
 
     element = inertial.element and inertial.element.first("inertia")
-    written = {} if element is None else element.attributes
+    attributes = {} if element is None else element.attributes
 
     def off(name: str) -> float:
         try:
-            exponent = Decimal(written.get(name, "0").strip()).as_tuple().exponent
+            exponent = Decimal(attributes.get(name, "0").strip()).as_tuple().exponent
         except InvalidOperation:
             return 0.0
         return 0.5 * 10.0**exponent if isinstance(exponent, int) and exponent < 0 else 0.0
@@ -62,7 +62,7 @@ def _rounding(inertial: Inertial) -> float:
     return max(sum(map(off, row)) for row in rows)
 
 
-def flaw_of(inertial: Inertial) -> Flaw | None:
+def first_flaw(inertial: Inertial) -> Flaw | None:
     """Return the first flaw of a tensor, or None if it is valid."""
     moments = [getattr(inertial, name) for name in DIAGONAL]
     products = [getattr(inertial, name) for name in PRODUCTS]
@@ -75,7 +75,7 @@ def flaw_of(inertial: Inertial) -> Flaw | None:
     if any(products):
         for name, limit in validity.excessive_products(matrix):
             return Flaw("product", name, limit)
-        if validity.is_indefinite(matrix, _rounding(inertial)):
+        if validity.is_indefinite(matrix, _max_rounding_error(inertial)):
             return Flaw("indefinite")
     excess = validity.triangle_excess(matrix)
     if excess > validity.TOLERANCE:
@@ -85,5 +85,5 @@ def flaw_of(inertial: Inertial) -> Flaw | None:
 
 def name_others(names: Sequence[str]) -> Phrase:
     """Return a phrase that names a few of the other links with the same tensor."""
-    others = phrase("the others are {names}", names=quoted_names(names[:_NAMED]))
-    return phrase("{list}, ...", list=others) if len(names) > _NAMED else others
+    others_phrase = phrase("the others are {names}", names=quoted_names(names[:_MAX_NAMED_LINKS]))
+    return phrase("{list}, ...", list=others_phrase) if len(names) > _MAX_NAMED_LINKS else others_phrase

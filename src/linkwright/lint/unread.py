@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Span, words_of
-from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.lint.extension_names import CHILDREN
 from linkwright.lint.structure import EXTENSIONS, Place
 from linkwright.lint.subject import Subject
@@ -13,8 +13,8 @@ from linkwright.xmltree import Element
 
 INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_checking", "plugin", "gazebo"})
 """Elements of other tools inside of links and joints."""
-_KINDS = frozenset({"type"})
-"""Attributes of URDF that other tools give to more elements, such as Franka's ``<dynamics>``."""
+_SHARED_ATTRIBUTES = frozenset({"type"})
+"""URDF attributes that other tools also give to other elements, such as Franka's ``<dynamics>``."""
 
 _OTHER_ELEMENTS = {
     "pose": "origin",
@@ -48,45 +48,46 @@ _OTHER_ATTRIBUTES = {
 
 def _parents_by_tag() -> dict[str, tuple[str, ...]]:
     """Return the elements that may contain each element, by tag."""
-    homes: dict[str, dict[str, None]] = {}
-    waiting: list[ElementRule] = [schema.ROBOT]
-    while waiting:
-        rule = waiting.pop()
+    parents: dict[str, dict[str, None]] = {}
+    pending: list[ElementRule] = [schema.ROBOT]
+    while pending:
+        rule = pending.pop()
         for child in rule.children:
-            homes.setdefault(child.tag, {})[rule.tag] = None
-            waiting.append(child)
-    return {tag: tuple(sorted(found)) for tag, found in homes.items()}
+            parents.setdefault(child.tag, {})[rule.tag] = None
+            pending.append(child)
+    return {tag: tuple(sorted(parent_tags)) for tag, parent_tags in parents.items()}
 
 
-HOMES = _parents_by_tag()
+PARENT_TAGS = _parents_by_tag()
 
 
-def _attributes() -> frozenset[str]:
+def _all_attributes() -> frozenset[str]:
     """Return the names of all attributes of URDF elements."""
-    found: set[str] = set()
-    waiting: list[ElementRule] = [schema.ROBOT]
-    while waiting:
-        rule = waiting.pop()
-        found.update(attribute.name for attribute in rule.attributes)
-        waiting.extend(rule.children)
-    return frozenset(found)
+    names: set[str] = set()
+    pending: list[ElementRule] = [schema.ROBOT]
+    while pending:
+        rule = pending.pop()
+        names.update(attribute.name for attribute in rule.attributes)
+        pending.extend(rule.children)
+    return frozenset(names)
 
 
-_WORDS_FOR_MASS = frozenset({"weight", "density"})
-_OF_OTHER_FORMATS = frozenset(tag for tags in CHILDREN.values() for tag in tags)
-_EXPECTED_ELEMENTS = frozenset({*HOMES, *_OTHER_ELEMENTS, *_OF_OTHER_FORMATS, *_WORDS_FOR_MASS})
+_MASS_NAMES = frozenset({"weight", "density"})
+_EXTENSION_ELEMENTS = frozenset(tag for tags in CHILDREN.values() for tag in tags)
+_EXPECTED_ELEMENTS = frozenset({*PARENT_TAGS, *_OTHER_ELEMENTS, *_EXTENSION_ELEMENTS, *_MASS_NAMES})
 _EXPECTED_ATTRIBUTES = (
-    frozenset({*_attributes(), *HOMES, *_OTHER_ELEMENTS, *_OTHER_ATTRIBUTES, *_WORDS_FOR_MASS}) - _KINDS
+    frozenset({*_all_attributes(), *PARENT_TAGS, *_OTHER_ELEMENTS, *_OTHER_ATTRIBUTES, *_MASS_NAMES})
+    - _SHARED_ATTRIBUTES
 )
 
 
 def is_expected_element(tag: str) -> bool:
     """Return whether authors expect an element to have an effect, because its name is known.
 
-    Known names are those of URDF and of related formats. Any other name is a private extension, such as one that a
+    Known names occur in URDF or in a related format. Any other name is a private extension, such as one that a
     vendor's software reads.
     """
-    return tag in _EXPECTED_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
+    return tag in _EXPECTED_ELEMENTS or not PARENT_TAGS.keys().isdisjoint(words_of(tag))
 
 
 def is_expected_attribute(name: str) -> bool:
@@ -94,43 +95,43 @@ def is_expected_attribute(name: str) -> bool:
     return name.casefold() in _EXPECTED_ATTRIBUTES
 
 
-def hints_of_reader(subject: Subject) -> dict[Span | None, str]:
+def reader_hints(subject: Subject) -> dict[Span | None, str]:
     """Return the hints of the URDF reader's diagnostics, by location.
 
     A diagnostic without a hint has an empty text.
     """
-    return {found.span: found.hint or "" for found in subject.reading.diagnostics}
+    return {diagnostic.span: diagnostic.hint or "" for diagnostic in subject.reading.diagnostics}
 
 
 def intended_element(rule: ElementRule, child: Element) -> str | None:
     """Return the allowed element that was probably intended by an unknown one, or None."""
-    if child.tag in HOMES:
+    if child.tag in PARENT_TAGS:
         return None
-    known = [child.tag for child in rule.children]
-    other = _OTHER_ELEMENTS.get(child.tag.casefold())
-    if other in known:
-        return other
+    allowed_tags = [child.tag for child in rule.children]
+    equivalent = _OTHER_ELEMENTS.get(child.tag.casefold())
+    if equivalent in allowed_tags:
+        return equivalent
     if rule is schema.ROBOT:
-        known = [*known, *EXTENSIONS]
-    return misspelling_of(child.tag, known)
+        allowed_tags = [*allowed_tags, *EXTENSIONS]
+    return find_misspelt(child.tag, allowed_tags)
 
 
-def is_misspelt(name: str, meant: str) -> bool:
+def is_misspelt(name: str, intended: str) -> bool:
     """Return whether a name is a misspelling of another, and not its equivalent in another format."""
-    return misspelling_of(name, [meant]) is not None
+    return find_misspelt(name, [intended]) is not None
 
 
 def intended_attribute(place: Place, attribute: str) -> str | None:
     """Return the absent attribute that was probably intended by an unknown one, or None."""
-    known = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
-    other = _OTHER_ATTRIBUTES.get(attribute.casefold())
-    if other in known:
-        return other
-    return misspelling_of(attribute, known)
+    absent_attributes = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
+    equivalent = _OTHER_ATTRIBUTES.get(attribute.casefold())
+    if equivalent in absent_attributes:
+        return equivalent
+    return find_misspelt(attribute, absent_attributes)
 
 
 def location_phrase(place: Place) -> str:
-    """Return the text by which a message names an element as the location of another element."""
+    """Return the name of an element for messages, as the location of another element."""
     return "<robot>" if place.rule is schema.ROBOT else str(place)
 
 
@@ -141,5 +142,5 @@ def attribute_name_span(element: Element, attribute: str) -> Span | None:
     source = element.source
     if source is None:
         return None
-    found = attribute_name_range(source.text, element.offset, attribute)
-    return source.span(*found) if found else element.span()
+    name_range = attribute_name_range(source.text, element.offset, attribute)
+    return source.span(*name_range) if name_range else element.span()

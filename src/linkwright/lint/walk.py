@@ -28,9 +28,9 @@ def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]
     Only the first such child is yielded, because readers use only this one.
     """
     for joint, element in joints(subject):
-        part = element.first(tag)
-        if part is not None:
-            yield joint, element, part
+        child = element.first(tag)
+        if child is not None:
+            yield joint, element, child
 
 
 _SIMULATORS = lazy_pattern(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bullet", re.IGNORECASE)
@@ -51,11 +51,11 @@ def is_for_simulation(subject: Subject) -> bool:
 
 
 SURROUNDINGS = frozenset(("world", "map", "odom"))
-"""Links that are the surroundings: what is fixed to them does not move, and may be anywhere in them."""
+"""Links that represent the surroundings: a link that is fixed to one does not move, and may be anywhere."""
 BOUNDED = ("revolute", "prismatic")
 """The types of joints that have bounds."""
 UNBOUNDED = 1000.0
-"""Bounds further out than this, in rad or m, mean no limits."""
+"""The magnitude, in rad or m, above which bounds mean that there are no limits."""
 
 
 def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
@@ -70,8 +70,10 @@ def bounds(limit: Element) -> tuple[float, float] | None:
 
     A missing bound is 0.
     """
-    ends = [value(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
-    return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
+    lower_and_upper = [value(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
+    return (
+        None if lower_and_upper[0] is None or lower_and_upper[1] is None else (lower_and_upper[0], lower_and_upper[1])
+    )
 
 
 def value(element: Element, attribute: str) -> float | None:
@@ -86,7 +88,7 @@ def value(element: Element, attribute: str) -> float | None:
 
 
 def values(element: Element, attribute: str) -> tuple[float, ...]:
-    """Return the numbers in an attribute; empty if it is absent or contains another word."""
+    """Return the numbers in an attribute; empty if it is absent or contains anything else."""
     text = element.attributes.get(attribute)
     if text is None:
         return ()

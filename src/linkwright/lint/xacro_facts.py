@@ -29,13 +29,13 @@ TAGS = frozenset(
     f"xacro:{name}"
     for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
 )
-_BARE = frozenset({"include", "insert_block", "macro"})
+_BARE_TAGS = frozenset({"include", "insert_block", "macro"})
 _DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
-_LARGEST_FOLDER = 200
+_MAX_FOLDER_FILES = 200
 _CACHE_SIZE = 2_000_000
-"""Characters of documents whose facts are kept."""
-_DEEPEST = 1_000
-"""Levels below which nothing is looked at: an expansion does not go deeper either."""
+"""The maximum number of characters of the documents with cached facts."""
+_MAX_DEPTH = 1_000
+"""The maximum depth of elements that are examined; an expansion does not go deeper, either."""
 
 
 @dataclass(frozen=True)
@@ -82,13 +82,13 @@ class Use:
 _Inside = TypeVar("_Inside", Definition, Use)
 
 
-def _by_macro(items: Iterable[_Inside]) -> Mapping[int, Sequence[_Inside]]:
-    found: dict[int, list[_Inside]] = {}
+def _group_by_macro(items: Iterable[_Inside]) -> Mapping[int, Sequence[_Inside]]:
+    items_by_macro: dict[int, list[_Inside]] = {}
     for item in items:
         for parent in item.parents:
             if parent.tag == "xacro:macro":
-                found.setdefault(id(parent), []).append(item)
-    return found
+                items_by_macro.setdefault(id(parent), []).append(item)
+    return items_by_macro
 
 
 @dataclass
@@ -97,7 +97,7 @@ class FileFacts:
 
     Attributes:
         names: all names that the expressions or substituted values of the file mention.
-        called: the names of the macros that the file calls, without prefix and namespace.
+        called_macros: the names of the macros that the file calls, without prefix and namespace.
         calls_open: whether the file calls a macro whose name is computed.
     """
 
@@ -111,7 +111,7 @@ class FileFacts:
     names: set[str] = field(default_factory=set)
     used_arguments: set[str] = field(default_factory=set)
     pasted: set[str] = field(default_factory=set)
-    called: set[str] = field(default_factory=set)
+    called_macros: set[str] = field(default_factory=set)
     blocks: set[str] = field(default_factory=set)
     is_open: bool = False
     arguments_open: bool = False
@@ -121,34 +121,34 @@ class FileFacts:
     @cached_property
     def has_bare_tags(self) -> bool:
         """Whether there are xacro tags without the prefix, which xacro does not process (LW720)."""
-        return any(element.tag in _BARE for element in self.document.root.walk())
+        return any(element.tag in _BARE_TAGS for element in self.document.root.walk())
 
     @cached_property
     def calls_by_macro(self) -> Mapping[int, Sequence[Definition]]:
         """The macro calls inside each macro, by the `id` of the macro's element."""
-        return _by_macro(self.calls)
+        return _group_by_macro(self.calls)
 
     @cached_property
     def uses_by_macro(self) -> Mapping[int, Sequence[Use]]:
         """The texts inside each macro that mention names, by the `id` of the macro's element."""
-        return _by_macro(self.uses)
+        return _group_by_macro(self.uses)
 
     @cached_property
-    def uses_of_parameters(self) -> Mapping[int, Sequence[Use]]:
+    def parameter_uses(self) -> Mapping[int, Sequence[Use]]:
         """The parameter lists of macros that mention names, by the `id` of the macro's element."""
-        found: dict[int, list[Use]] = {}
+        uses: dict[int, list[Use]] = {}
         for use in self.uses:
             if use.attribute == "params":
-                found.setdefault(id(use.element), []).append(use)
-        return found
+                uses.setdefault(id(use.element), []).append(use)
+        return uses
 
     @cached_property
     def macros_by_name(self) -> Mapping[str, Sequence[Definition]]:
         """The definitions of macros, by name."""
-        found: dict[str, list[Definition]] = {}
+        macros: dict[str, list[Definition]] = {}
         for macro in self.macros:
-            found.setdefault(macro.name, []).append(macro)
-        return found
+            macros.setdefault(macro.name, []).append(macro)
+        return macros
 
     @classmethod
     def of(cls, document: Document) -> FileFacts:
@@ -174,27 +174,27 @@ class FileFacts:
             element, parents = stack.pop()
             order += 1
             self._collect(element, parents, order)
-            if len(parents) > _DEEPEST:
+            if len(parents) > _MAX_DEPTH:
                 continue
-            inner = (*parents, element)
-            below: list[tuple[Element, tuple[Element, ...]]] = []
+            child_parents = (*parents, element)
+            children: list[tuple[Element, tuple[Element, ...]]] = []
             evaluates_comments = False
             for child in element.children:
                 if isinstance(child, Element):
-                    below.append((child, inner))
+                    children.append((child, child_parents))
                 elif isinstance(child, Text):
                     if not child.cdata:
-                        self._mention(child.data, element, None, parents, order)
+                        self._collect_mentions(child.data, element, None, parents, order)
                 elif isinstance(child, Comment):
                     evaluates_comments = evaluates_comments or _DIRECTIVE_IN_COMMENT in child.data
                     if evaluates_comments:
-                        self._mention(child.data, element, None, parents, order)
-            stack.extend(reversed(below))
+                        self._collect_mentions(child.data, element, None, parents, order)
+            stack.extend(reversed(children))
 
     def _collect(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
         for attribute, value in element.attributes.items():
             if attribute != "params":
-                self._mention(value, element, attribute, parents, order)
+                self._collect_mentions(value, element, attribute, parents, order)
         tag = element.tag
         if not tag.startswith("xacro:"):
             if parents and not self.has_content and not any(parent.tag == "xacro:macro" for parent in parents):
@@ -204,7 +204,7 @@ class FileFacts:
         if tag == "xacro:property":
             self.properties.append(definition)
         elif tag == "xacro:macro":
-            self._macro(definition)
+            self._collect_macro(definition)
         elif tag == "xacro:arg":
             self.arguments.append(definition)
         elif tag == "xacro:include":
@@ -215,14 +215,16 @@ class FileFacts:
         else:
             self._call(element, parents, order)
 
-    def _macro(self, definition: Definition) -> None:
+    def _collect_macro(self, definition: Definition) -> None:
         name = definition.name.removeprefix("xacro:")
         self.macros.append(Definition(name, definition.element, definition.parents, definition.order))
         for parameter in self.parameters(definition.element):
             if parameter.forward:
                 self.names.add(parameter.name)
             if parameter.default is not None:
-                self._mention(parameter.default, definition.element, "params", definition.parents, definition.order)
+                self._collect_mentions(
+                    parameter.default, definition.element, "params", definition.parents, definition.order
+                )
 
     def _call(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
         tag, attributes = element.tag, element.attributes
@@ -234,30 +236,30 @@ class FileFacts:
                 return
         if tag in TAGS and tag != "xacro:call":
             return
-        self.called.add(name.rpartition(".")[2])
+        self.called_macros.add(name.rpartition(".")[2])
         self.calls.append(Definition(name, element, parents, order))
 
-    def _mention(
+    def _collect_mentions(
         self, text: str, element: Element, attribute: str | None, parents: tuple[Element, ...], order: int
     ) -> None:
         if "$" not in text:
             return
-        found = mentions(text)
-        self.uses.append(Use(element, attribute, found, parents, order))
-        self.names |= found.names
-        self.used_arguments |= found.arguments
-        self.pasted |= found.pasted
-        self.is_open = self.is_open or found.is_open
-        self.arguments_open = self.arguments_open or found.arguments_open
+        text_mentions = mentions(text)
+        self.uses.append(Use(element, attribute, text_mentions, parents, order))
+        self.names |= text_mentions.names
+        self.used_arguments |= text_mentions.arguments
+        self.pasted |= text_mentions.pasted_arguments
+        self.is_open = self.is_open or text_mentions.is_open
+        self.arguments_open = self.arguments_open or text_mentions.arguments_open
 
 
-def _size_of(_: int, facts: FileFacts) -> int:
+def _character_count(_: int, facts: FileFacts) -> int:
     source = facts.document.source
     return 1 if source is None else len(source.text) + 1
 
 
-_CACHE: BoundedCache[int, FileFacts] = BoundedCache(_CACHE_SIZE, _size_of)
-"""The facts of documents by their identity, which is theirs as long as the facts hold them."""
+_CACHE: BoundedCache[int, FileFacts] = BoundedCache(_CACHE_SIZE, _character_count)
+"""The facts about documents by `id`, which stays unique because the facts keep the documents alive."""
 
 
 class XacroFacts:
@@ -265,28 +267,29 @@ class XacroFacts:
 
     Attributes:
         path: the checked file.
-        given: the final value of every argument that was passed or declared, by name.
+        arguments: the final value of every argument that was passed or declared, by name.
         package: the package of the file, or None.
         is_library: whether the file does not describe a robot, but is intended for inclusion by others.
         files: the facts about each file, by path, starting with the checked file.
-        found: the findings of the rules that depend only on these facts (`Rule.of_sources`) and have run, by code.
+        stored_findings: the findings, by code, of the rules that depend only on these facts (`Rule.of_sources`) and
+            have run.
     """
 
     def __init__(
         self,
         path: Path,
         sources: Mapping[Path, Document],
-        given: Mapping[str, str],
+        arguments: Mapping[str, str],
         package: PackageContext | None,
         *,
         is_library: bool,
     ) -> None:
         self.path = path
-        self.given = given
+        self.arguments = arguments
         self.package = package
         self.is_library = is_library
         self.files: dict[Path, FileFacts] = {path: FileFacts.of(document) for path, document in sources.items()}
-        self.found: dict[str, tuple[Diagnostic, ...]] = {}
+        self.stored_findings: dict[str, tuple[Diagnostic, ...]] = {}
 
     @property
     def main(self) -> FileFacts:
@@ -308,9 +311,11 @@ class XacroFacts:
         Such a file may use definitions of this description.
         """
         package = self.package
-        documents = _descriptions_beside(self.path) if package is None else package.descriptions
-        known = {path.absolute() for path in self.files}
-        return {path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known}
+        documents = _neighbouring_descriptions(self.path) if package is None else package.descriptions
+        known_paths = {path.absolute() for path in self.files}
+        return {
+            path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known_paths
+        }
 
     @cached_property
     def substitutes_arguments(self) -> bool:
@@ -320,13 +325,13 @@ class XacroFacts:
     @cached_property
     def names(self) -> frozenset[str]:
         """All names that a file or a neighbour mentions in an expression or could substitute into one."""
-        found: set[str] = set()
+        mentioned_names: set[str] = set()
         for facts in self._all():
-            found |= facts.names | facts.blocks
+            mentioned_names |= facts.names | facts.blocks
         if self.substitutes_arguments:
-            for value in self.given.values():
-                found |= identifiers(value)
-        return frozenset(found)
+            for value in self.arguments.values():
+                mentioned_names |= identifiers(value)
+        return frozenset(mentioned_names)
 
     @cached_property
     def used_arguments(self) -> frozenset[str]:
@@ -336,7 +341,7 @@ class XacroFacts:
     @cached_property
     def called(self) -> frozenset[str]:
         """The names of all macros that a file or a neighbour calls, without namespaces."""
-        return frozenset(name for facts in self._all() for name in facts.called)
+        return frozenset(name for facts in self._all() for name in facts.called_macros)
 
     @cached_property
     def is_open(self) -> bool:
@@ -356,14 +361,14 @@ class XacroFacts:
     @cached_property
     def _misses_files(self) -> bool:
         """Whether a branch that is not taken includes a file that was not read."""
-        known = {path.name for path in self.files} | {path.name for path in self.neighbours}
+        known_names = {path.name for path in self.files} | {path.name for path in self.neighbours}
         for facts in self.files.values():
             for include in facts.includes:
                 name = include.name.replace("\\", "/").rpartition("/")[2]
                 if "$" in name or "}" in name or ")" in name:
                     if include.is_conditional or include.macro is not None:
                         return True
-                elif not any(_matches(name, each) for each in known):
+                elif not any(_matches(name, known_name) for known_name in known_names):
                     return True
         return False
 
@@ -382,10 +387,10 @@ def parameter_span(macro: Element, parameter: Parameter) -> Span | None:
     source = macro.source
     if source is None:
         return None
-    found = attribute_value_range(source.text, macro.offset, "params")
-    if found is None or source.text[slice(*found)].replace("\n", " ") != macro.attributes.get("params", ""):
+    value_range = attribute_value_range(source.text, macro.offset, "params")
+    if value_range is None or source.text[slice(*value_range)].replace("\n", " ") != macro.attributes.get("params", ""):
         return None
-    start = found[0] + parameter.start
+    start = value_range[0] + parameter.start
     return source.span(start, start + len(parameter.name))
 
 
@@ -408,18 +413,18 @@ def _matches(pattern: str, name: str) -> bool:
     return fnmatchcase(name, pattern)
 
 
-def _descriptions_beside(path: Path) -> dict[Path, Document]:
+def _neighbouring_descriptions(path: Path) -> dict[Path, Document]:
     from linkwright.xacro.cache import read_document
 
-    found: dict[Path, Document] = {}
+    documents: dict[Path, Document] = {}
     try:
-        candidates = sorted(path.absolute().parent.iterdir())[:_LARGEST_FOLDER]
+        candidates = sorted(path.absolute().parent.iterdir())[:_MAX_FOLDER_FILES]
     except OSError:
-        return found
+        return documents
     for candidate in candidates:
         if candidate.suffix in (".xacro", ".urdf") and candidate.is_file():  # reading a named pipe would never end
             try:
-                found[candidate] = read_document(str(candidate))
+                documents[candidate] = read_document(str(candidate))
             except LinkwrightError:
                 continue
-    return found
+    return documents

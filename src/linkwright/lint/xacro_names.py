@@ -18,7 +18,7 @@ from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 
 _IDENTIFIER = lazy_pattern(r"[^\W\d]\w*")
-_PASTED = "pasted_here__"
+_PLACEHOLDER = "pasted_here__"
 DEPRECATED = {
     "load_yaml": "xacro.load_yaml",
     "abs_filename": "xacro.abs_filename",
@@ -26,7 +26,7 @@ DEPRECATED = {
     "sorted": "python.sorted",
     "range": "python.range",
 }
-"""Functions that still have a bare name, and how they are to be written."""
+"""Functions that still have a deprecated bare name, with the names to use instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class Mentions:
     Attributes:
         names: the names in the expressions of the text.
         arguments: the names of the arguments that the text uses.
-        pasted: the subset of `arguments` whose values are substituted into an expression.
+        pasted_arguments: the subset of `arguments` whose values are substituted into an expression.
         packages: the offset of ``$(find package)`` in the text, by package.
         is_open: whether names are composed from values.
         arguments_open: whether names of arguments are composed from values.
@@ -53,7 +53,7 @@ class Mentions:
 
     names: frozenset[str] = frozenset()
     arguments: frozenset[str] = frozenset()
-    pasted: frozenset[str] = frozenset()
+    pasted_arguments: frozenset[str] = frozenset()
     packages: tuple[tuple[str, int], ...] = ()
     is_open: bool = False
     arguments_open: bool = False
@@ -65,15 +65,19 @@ _NONE = Mentions()
 
 def mentions(text: str) -> Mentions:
     """Return the names that a text mentions."""
-    return _mentions(text) if "$" in text else _NONE
+    return _find_mentions(text) if "$" in text else _NONE
 
 
 def is_constant(text: str) -> bool:
     """Return whether a text has the same value in every scope, because it mentions no names."""
-    found = mentions(text)
-    return not (found.names or found.arguments or found.packages or found.is_open or found.arguments_open) and (
-        "$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text
-    )
+    text_mentions = mentions(text)
+    return not (
+        text_mentions.names
+        or text_mentions.arguments
+        or text_mentions.packages
+        or text_mentions.is_open
+        or text_mentions.arguments_open
+    ) and ("$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text)
 
 
 def identifiers(text: str) -> frozenset[str]:
@@ -82,17 +86,17 @@ def identifiers(text: str) -> frozenset[str]:
 
 
 @lru_cache(maxsize=20_000)
-def _mentions(text: str) -> Mentions:
-    gathered = _MentionCollector()
-    gathered.text(text, 0)
+def _find_mentions(text: str) -> Mentions:
+    collector = _MentionCollector()
+    collector.text(text, 0)
     return Mentions(
-        frozenset(gathered.names),
-        frozenset(gathered.arguments),
-        frozenset(gathered.pasted),
-        tuple(gathered.packages),
-        gathered.is_open,
-        gathered.arguments_open,
-        tuple(gathered.bare_calls),
+        frozenset(collector.names),
+        frozenset(collector.arguments),
+        frozenset(collector.pasted),
+        tuple(collector.packages),
+        collector.is_open,
+        collector.arguments_open,
+        tuple(collector.bare_calls),
     )
 
 
@@ -123,20 +127,20 @@ class _MentionCollector:
         if "$" in source:
             self.text(source, shift)
             source = self._with_placeholders(source)
-        tree = _parsed(source)
+        tree = _parse_expression(source)
         if tree is None:
             self.names |= identifiers(source)
-            self.is_open = self.is_open or _PASTED in source
+            self.is_open = self.is_open or _PLACEHOLDER in source
             return
         start = shift + len(token.text) - len(token.text.lstrip())
-        local = set(_bound(tree))
+        local_names = set(_bound_names(tree))
         for node in ast.walk(tree):
             if isinstance(node, ast.Name):
                 self._name(node.id)
             elif isinstance(node, ast.Attribute):
                 self.names.add(node.attr)
             elif isinstance(node, ast.Call):
-                self._call(node, local, start if "\n" not in source and source.isascii() else None, token.text)
+                self._call(node, local_names, start if "\n" not in source and source.isascii() else None, token.text)
 
     def _with_placeholders(self, source: str) -> str:
         try:
@@ -150,31 +154,31 @@ class _MentionCollector:
                 continue
             words = token.text.split()
             if token.kind is TokenKind.SUBSTITUTION and len(words) == 2 and words[0] == "arg":
-                pieces.append(f"{_PASTED}{words[1]}" if words[1].isidentifier() else _PASTED)
+                pieces.append(f"{_PLACEHOLDER}{words[1]}" if words[1].isidentifier() else _PLACEHOLDER)
             else:
-                pieces.append(_PASTED)
+                pieces.append(_PLACEHOLDER)
         return "".join(pieces)
 
     def _name(self, name: str) -> None:
-        if _PASTED not in name:
+        if _PLACEHOLDER not in name:
             self.names.add(name)
-        elif name.startswith(_PASTED) and name[len(_PASTED) :] in self.arguments:
-            self.pasted.add(name[len(_PASTED) :])  # the value of an argument is the whole name
+        elif name.startswith(_PLACEHOLDER) and name[len(_PLACEHOLDER) :] in self.arguments:
+            self.pasted.add(name[len(_PLACEHOLDER) :])  # the value of an argument is the whole name
         else:
             self.is_open = True
 
-    def _call(self, node: ast.Call, local: set[str], start: int | None, written: str) -> None:
+    def _call(self, node: ast.Call, local_names: set[str], start: int | None, text: str) -> None:
         function = node.func
-        called = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
-        if called == "arg":
-            first = node.args[0] if node.args else None
-            if isinstance(first, ast.Constant) and isinstance(first.value, str):
-                self.arguments.add(first.value)
+        function_name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+        if function_name == "arg":
+            argument = node.args[0] if node.args else None
+            if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
+                self.arguments.add(argument.value)
             else:
                 self.arguments_open = True
-        is_bare = isinstance(function, ast.Name) and called in DEPRECATED and called not in local
-        if is_bare and start is not None and "$" not in written:
-            self.bare_calls.append(BareCall(called, start + function.col_offset))
+        is_bare = isinstance(function, ast.Name) and function_name in DEPRECATED and function_name not in local_names
+        if is_bare and start is not None and "$" not in text:
+            self.bare_calls.append(BareCall(function_name, start + function.col_offset))
 
     def substitution(self, token: Token, shift: int) -> None:
         body = token.text
@@ -195,7 +199,7 @@ class _MentionCollector:
             self.arguments |= identifiers(body)
 
 
-def _parsed(source: str) -> ast.expr | None:
+def _parse_expression(source: str) -> ast.expr | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -204,7 +208,7 @@ def _parsed(source: str) -> ast.expr | None:
         return None
 
 
-def _bound(tree: ast.expr) -> Iterator[str]:
+def _bound_names(tree: ast.expr) -> Iterator[str]:
     """Yield the names that an expression binds itself, in lambdas and comprehensions."""
     for node in ast.walk(tree):
         if isinstance(node, ast.arg):

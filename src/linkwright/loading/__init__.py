@@ -1,1 +1,1 @@
-"""Loading of code: extensions, deferred imports, and fast variants of standard modules."""
+"""Loading of code: extensions, deferred imports, and faster variants of standard modules."""

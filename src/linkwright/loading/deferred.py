@@ -12,23 +12,23 @@ if TYPE_CHECKING:
 
 
 def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
-    """Return a ``__getattr__`` for a package's ``__init__`` that imports modules on access.
+    """Return a ``__getattr__`` for the ``__init__`` of a package, which imports modules on first access.
 
     Source: PEP 562.
 
     Args:
         package: the name of the package.
-        names: the names that each module defines, by the module's name in the package.
+        names: maps the names of modules in the package to the names that they define.
 
     Returns:
-        A function that imports and returns the object with a name, and raises AttributeError for other names.
+        A function that returns the object with a given name, and raises AttributeError for an unknown name.
     """
 
     def find(name: str) -> Any:
         from importlib import import_module  # imported here because many modules use only `lazy_pattern`
 
-        for module, has in names.items():
-            if name in has:
+        for module, defined_names in names.items():
+            if name in defined_names:
                 return getattr(import_module(f"{package}.{module}"), name)
         raise AttributeError(f"module '{package}' has no attribute '{name}'")
 
@@ -36,10 +36,10 @@ def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str]
 
 
 class _Pattern:
-    """A pattern that is compiled when one of its attributes is first used.
+    """A pattern that is compiled when one of its attributes is used for the first time.
 
-    Modules define their patterns at the top. A check of one robot imports seventy patterns and uses a quarter of them.
-    Compiling a pattern takes as long as importing a small module.
+    Modules define their patterns at the top. A check of one robot imports seventy patterns, and uses a quarter of
+    them. To compile one pattern takes as long as to import a small module.
     """
 
     def __init__(self, text: Any, flags: int) -> None:
@@ -47,22 +47,22 @@ class _Pattern:
         self._flags = flags
 
     def __getattr__(self, name: str) -> Any:
-        # Python calls this method only for missing attributes, so each attribute is set once.
-        if name.startswith("__"):  # special names, which for example `copy` looks up
+        # Python calls this method only for missing attributes, so it is called once for each attribute.
+        if name.startswith("__"):  # `copy`, for example, looks up such special names
             raise AttributeError(name)
         value = getattr(re.compile(self._text, self._flags), name)
         setattr(self, name, value)
         return value
 
 
-def _late(text: Any, flags: int = 0) -> Any:
+def _lazy_pattern(text: Any, flags: int = 0) -> Any:
     return _Pattern(text, flags)
 
 
 if TYPE_CHECKING:
 
     def lazy_pattern(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-        """Return a pattern like `re.compile`, which raises errors in the pattern only on first use."""
+        """Return a pattern like `re.compile`, but raise errors in the pattern only on first use."""
 
 else:
-    lazy_pattern = _late
+    lazy_pattern = _lazy_pattern

@@ -1,11 +1,11 @@
 """Extensions of Linkwright, which packages declare as entry points.
 
-Linkwright's own extensions are declared in the same way. Each group belongs to one subpackage: ``linkwright.displays``,
-``linkwright.page_features`` and others. The entry points of all installed packages are read once, and an object is
-imported only when it is loaded.
+Linkwright declares its own extensions in the same way. Each group, such as ``linkwright.displays`` or
+``linkwright.page_features``, belongs to one subpackage. The entry points of all installed packages are read once, and
+an object is imported only when it is loaded.
 
 Entry points are read from ``*.dist-info`` in the folders of the search path (PyPA, "Entry points specification").
-`importlib.metadata` also finds them in archives, but importing it takes as long as all other imports of
+`importlib.metadata` would also find them in archives. However, to import it takes as long as all other imports of
 ``linkwright check`` before a file is read.
 """
 
@@ -21,19 +21,19 @@ from operator import attrgetter
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import Any
 
-_OURS = "linkwright."
-_NODES = "linkwright.nodes"
-"""A group that linkwright declares, and linkwright-core does not."""
-_READ = (_OURS, "launch_ros.")
-"""The prefixes of the groups in use: ours, and those of launch_ros, which its users' packages extend too."""
+_OWN_PREFIX = "linkwright."
+_NODES_GROUP = "linkwright.nodes"
+"""A group that the distribution linkwright declares, but not linkwright-core."""
+_READ_PREFIXES = (_OWN_PREFIX, "launch_ros.")
+"""The prefixes of the groups that are read: those of Linkwright, and of launch_ros, which packages also extend."""
 
 
 class EntryPoint(NamedTuple):
-    """An object of an installed package that is declared by a name.
+    """A named object that an installed package declares.
 
     Attributes:
-        name: the name, which is unique in the group.
-        value: ``module`` or ``module:attribute``.
+        name: the name, which is unique in its group.
+        value: the location of the object, as ``module`` or ``module:attribute``.
         distribution: the name of the installed package.
     """
 
@@ -45,75 +45,77 @@ class EntryPoint(NamedTuple):
         """Import the module, and return the object.
 
         Raises:
-            Exception: any error raised by importing the module, or AttributeError.
+            Exception: the module cannot be imported, or AttributeError, it has no such attribute.
         """
         module, _, attribute = self.value.partition(":")
-        found = import_module(module.strip())
+        loaded = import_module(module.strip())
         attribute = attribute.partition("[")[0].strip()  # remove extras, which the specification allows here
-        return attrgetter(attribute)(found) if attribute else found
+        return attrgetter(attribute)(loaded) if attribute else loaded
 
 
 def extensions(group: str) -> Mapping[str, EntryPoint]:
-    """Return the entry points of a group by name, Linkwright's before other packages'.
+    """Return the entry points of a group by name, Linkwright's own before those of other packages.
 
-    The entry points of a package are sorted by name. The order in which a package declares them is not reliable,
-    because some build tools sort entry points in the metadata. If two packages declare the same name, the first one
-    found is used; Linkwright's cannot be replaced.
+    The entry points of a package are sorted by name, because the order in which a package declares them is not
+    reliable: some build tools sort them in the metadata. If two packages declare the same name, the first one that was
+    found is used. Linkwright's own entry points cannot be replaced.
 
-    A group is empty if no installed package declares it, for instance if linkwright-core is installed alone.
+    A group is empty if no installed package declares it, for example if linkwright-core is installed alone.
 
     Raises:
-        RuntimeError: a group of Linkwright is missing, because the installation's metadata is older than its code.
+        RuntimeError: one of Linkwright's groups is missing, because the installed metadata is older than the code.
     """
-    found = _all_groups()
-    if group.startswith(_OURS) and group not in found and _NODES in found:
+    groups = _all_groups()
+    if group.startswith(_OWN_PREFIX) and group not in groups and _NODES_GROUP in groups:
         raise RuntimeError(f"Linkwright's metadata lacks the entry points '{group}': reinstall it")
-    return found.get(group, {})
+    return groups.get(group, {})
 
 
 @cache
 def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
     groups: dict[str, dict[str, EntryPoint]] = {}
-    found = [item for distribution, text in _declarations() for item in _declared(distribution, text)]
-    for group, entry in sorted(found, key=lambda item: (not item[1].value.startswith(_OURS), item[1].name)):
-        groups.setdefault(group, {}).setdefault(entry.name, entry)
+    entries = [item for distribution, text in _read_declarations() for item in _parse_declaration(distribution, text)]
+    for group, entry_point in sorted(
+        entries, key=lambda item: (not item[1].value.startswith(_OWN_PREFIX), item[1].name)
+    ):
+        groups.setdefault(group, {}).setdefault(entry_point.name, entry_point)
     return groups
 
 
-def _declarations() -> Iterator[tuple[str, str]]:
-    """Yield the name and the entry-point file of each distribution that has one.
+def _read_declarations() -> Iterator[tuple[str, str]]:
+    """Yield the name of each distribution that has entry points, and the text of its entry-point file.
 
-    If several distributions have the same name, only the first is used.
+    If several distributions have the same name, only the first one is yielded.
     """
-    seen = set()
+    yielded_names = set()
     for folder in sys.path:
         try:
-            entries = sorted(entry.name for entry in os.scandir(folder or "."))
+            names = sorted(entry.name for entry in os.scandir(folder or "."))
         except OSError:
             continue  # an archive, or a folder that does not exist
-        for entry in entries:
-            if not entry.endswith((".dist-info", ".egg-info")):
+        for name in names:
+            if not name.endswith((".dist-info", ".egg-info")):
                 continue
-            distribution = entry.rpartition(".")[0].partition("-")[0]
+            distribution = name.rpartition(".")[0].partition("-")[0]
             try:
-                with open(os.path.join(folder, entry, "entry_points.txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - pathlib takes long to import
+                with open(os.path.join(folder, name, "entry_points.txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - pathlib takes long to import
                     text = file.read()
             except (OSError, UnicodeDecodeError):
                 continue
-            if distribution not in seen:
-                seen.add(distribution)
+            if distribution not in yielded_names:
+                yielded_names.add(distribution)
                 yield distribution, text
 
 
-def _declared(distribution: str, text: str) -> Iterator[tuple[str, EntryPoint]]:
-    """Yield the group and the entry point for each line of an ``entry_points.txt``.
+def _parse_declaration(distribution: str, text: str) -> Iterator[tuple[str, EntryPoint]]:
+    """Yield the group and the entry point of each line in an ``entry_points.txt``.
 
-    Groups that are not Linkwright's are skipped.
+    Groups that are not in use are skipped.
     """
     group = ""
     for line in map(str.strip, text.splitlines()):
         if line.startswith("["):
             group = line.strip("[]").strip()
-        elif group.startswith(_READ) and line and not line.startswith(("#", ";")):
+        elif group.startswith(_READ_PREFIXES) and line and not line.startswith(("#", ";")):
             name, _, value = line.partition("=")
             yield group, EntryPoint(name.strip(), value.strip(), distribution)

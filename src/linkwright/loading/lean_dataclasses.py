@@ -1,13 +1,13 @@
-"""A fast replacement of `dataclasses`, whose methods are compiled on first use.
+"""A faster replacement of `dataclasses`, whose methods are compiled on first use.
 
-The standard library generates the methods of a class as source and compiles them when the class is defined, and imports
-`inspect` for this purpose. A check of a small robot defines sixty classes and creates objects of half of them, so this
-was a quarter of its time. Here ``__init__`` is compiled when the first object is created, and all classes share the
-other methods.
+The standard library generates the methods of a class as source code, and compiles them when the class is defined. For
+this purpose, it also imports `inspect`. A check of a small robot defines sixty classes and creates objects of half of
+them, so this took a quarter of its time. Here, ``__init__`` is compiled when the first object is created, and all
+classes share the remaining methods.
 
-To type checkers, the functions are `dataclasses.dataclass`, `field` and `replace`, with the arguments that are used
-here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept these
-classes. `NamedTuple` is the class of `typing`, but does not compile each annotation.
+For type checkers, the functions are `dataclasses.dataclass`, `field` and `replace`, with those of their arguments that
+are used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept
+these classes. `NamedTuple` replaces that of `typing`, and does not compile each annotation.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["NamedTuple", "dataclass", "field", "replace"]
 
 _MISSING: Any = type("Missing", (), {"__repr__": lambda _: "MISSING"})()
 _FIELDS, _OPTIONS = "__lean_fields__", "__lean_options__"
-_OF_EVERY_CLASS = ("__dict__", "__weakref__")
+_DEFAULT_MEMBERS = ("__dict__", "__weakref__")
 _set: Callable[[object, str, object], None] = object.__setattr__
 _set_class: Callable[[object, type], None] = vars(object)["__class__"].__set__
 
@@ -54,8 +54,8 @@ class _Field:
         """The expression in ``__init__`` for the value of the field, as source code."""
         if self.factory is _MISSING:
             return self.name if self.init else f"default_{self.name}"
-        made = f"factory_{self.name}()"
-        return f"({made} if {self.name} is MISSING else {self.name})" if self.init else made
+        factory_call = f"factory_{self.name}()"
+        return f"({factory_call} if {self.name} is MISSING else {self.name})" if self.init else factory_call
 
 
 def _field(
@@ -72,29 +72,31 @@ def _field(
 def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False, eq: bool = True) -> Any:
     if cls is None:
         return lambda cls: _dataclass(cls, frozen=frozen, slots=slots, eq=eq)
-    own = dict(_own_fields(cls))
+    own_fields = dict(_own_fields(cls))
     fields: dict[str, _Field] = {}
     for base in reversed(cls.__mro__[1:]):
         fields |= vars(base).get(_FIELDS, {})
-    new = [name for name in own if name not in fields]
-    fields |= own
-    written = {name: value for name, value in vars(cls).items() if name not in own and name not in _OF_EVERY_CLASS}
-    if written.get("__hash__", "") is None:
-        del written["__hash__"]  # Python has set it to None, because the class defines `__eq__`
-    shared = _SHARED | (_comparing(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
-    shared |= _KEPT if frozen and slots else {}
+    new_names = [name for name in own_fields if name not in fields]
+    fields |= own_fields
+    class_members = {
+        name: value for name, value in vars(cls).items() if name not in own_fields and name not in _DEFAULT_MEMBERS
+    }
+    if class_members.get("__hash__", "") is None:
+        del class_members["__hash__"]  # Python sets this to None if the class defines `__eq__`
+    shared_members = _SHARED | (_comparison_methods(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
+    shared_members |= _PICKLE_METHODS if frozen and slots else {}
     members = {
-        **shared,
-        **written,
-        "__init__": _first_init,
+        **shared_members,
+        **class_members,
+        "__init__": _init_first,
         "__match_args__": tuple(name for name, entry in fields.items() if entry.init),
         _FIELDS: fields,
         _OPTIONS: (frozen, slots),
     }
     if slots:
-        members |= {"__slots__": tuple(new), "__qualname__": cls.__qualname__}
+        members |= {"__slots__": tuple(new_names), "__qualname__": cls.__qualname__}
         return type(cls)(cls.__name__, cls.__bases__, members)
-    for name, entry in own.items():
+    for name, entry in own_fields.items():
         if entry.default is not _MISSING:
             members[name] = entry.default
         elif name in vars(cls):
@@ -106,44 +108,44 @@ def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False,
 
 
 def _own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
-    for name, kind in cls.__annotations__.items():
-        if kind.startswith(("ClassVar", "typing.ClassVar")):
+    for name, annotation in cls.__annotations__.items():
+        if annotation.startswith(("ClassVar", "typing.ClassVar")):
             continue
         default = vars(cls).get(name, _MISSING)
-        found = default if isinstance(default, _Field) else _field(default=default)
-        found.name, found.type = name, kind
-        yield name, found
+        class_field = default if isinstance(default, _Field) else _field(default=default)
+        class_field.name, class_field.type = name, annotation
+        yield name, class_field
 
 
 # --- making objects --------------------------------------------------------------------------------------------------
 
 
-def _first_init(self: Any, *args: Any, **kwargs: Any) -> None:
-    """Initialise the first object of a class, and compile ``__init__`` for later objects."""
-    cls: Any = next(base for base in type(self).__mro__ if vars(base).get("__init__") is _first_init)
-    cls.__init__ = _compiled_init(cls)
+def _init_first(self: Any, *args: Any, **kwargs: Any) -> None:
+    """Initialize the first object of a class, and compile the ``__init__`` for later objects."""
+    cls: Any = next(base for base in type(self).__mro__ if vars(base).get("__init__") is _init_first)
+    cls.__init__ = _compile_init(cls)
     cls.__init__(self, *args, **kwargs)
 
 
-def _compiled_init(cls: Any) -> Callable[..., None]:
+def _compile_init(cls: Any) -> Callable[..., None]:
     frozen, slots = vars(cls)[_OPTIONS]
     fields: Iterable[_Field] = getattr(cls, _FIELDS).values()
-    filled = [entry for entry in fields if entry.is_set]
+    set_fields = [entry for entry in fields if entry.is_set]
     scope: dict[str, Any] = {"MISSING": _MISSING, "cls": cls, "set_value": _set, "set_class": _set_class}
-    for entry in filled:
+    for entry in set_fields:
         scope[f"factory_{entry.name}"] = entry.factory
         scope[f"default_{entry.name}"] = entry.default
-    slow = [f"set_value(self, {entry.name!r}, {entry.value})" for entry in filled]
-    fast = [f"self.{entry.name} = {entry.value}" for entry in filled]
+    slow_statements = [f"set_value(self, {entry.name!r}, {entry.value})" for entry in set_fields]
+    fast_statements = [f"self.{entry.name} = {entry.value}" for entry in set_fields]
     if frozen and slots:
-        # Setting an attribute of a frozen class requires a function call. Instead, the object temporarily has a class
-        # with the same slots that allows assignment, which takes half the time.
+        # To set an attribute of a frozen class requires a function call. Instead, the object temporarily has a class
+        # with the same slots that permits assignment, which takes half the time.
         scope["draft"] = type("Draft", cls.__bases__, {"__slots__": cls.__slots__, "__setattr__": _set})
-        fast = ["set_class(self, draft)", *fast, "self.__class__ = cls"]
-        body = ["if self.__class__ is cls:", *(f"    {line}" for line in fast)]
-        body += ["else:", *(f"    {line}" for line in slow)] if slow else []
+        fast_statements = ["set_class(self, draft)", *fast_statements, "self.__class__ = cls"]
+        body = ["if self.__class__ is cls:", *(f"    {line}" for line in fast_statements)]
+        body += ["else:", *(f"    {line}" for line in slow_statements)] if slow_statements else []
     else:
-        body = slow if frozen else fast
+        body = slow_statements if frozen else fast_statements
     if hasattr(cls, "__post_init__"):
         body.append("self.__post_init__()")
     parameters = ", ".join(("self", *(entry.parameter for entry in fields if entry.init)))
@@ -167,11 +169,11 @@ def _replace(instance: Any, /, **changes: Any) -> Any:
 
 
 def _repr(self: Any) -> str:
-    shown = (f"{name}={getattr(self, name)!r}" for name, entry in getattr(self, _FIELDS).items() if entry.repr)
-    return f"{type(self).__qualname__}({', '.join(shown)})"
+    texts = (f"{name}={getattr(self, name)!r}" for name, entry in getattr(self, _FIELDS).items() if entry.repr)
+    return f"{type(self).__qualname__}({', '.join(texts)})"
 
 
-def _comparing(fields: dict[str, _Field], *, frozen: bool) -> dict[str, Any]:
+def _comparison_methods(fields: dict[str, _Field], *, frozen: bool) -> dict[str, Any]:
     names = [name for name, entry in fields.items() if entry.compare]
     values: Callable[[Any], Any] = attrgetter(*names) if names else lambda _: ()
 
@@ -191,11 +193,11 @@ def _refuse_to_delete(self: Any, name: str) -> None:
     object.__delattr__(self, name)
 
 
-def _refuse(self: Any, name: str, what: str) -> None:
+def _refuse(self: Any, name: str, action: str) -> None:
     if _FIELDS in vars(type(self)) or name in getattr(self, _FIELDS):
         from dataclasses import FrozenInstanceError
 
-        raise FrozenInstanceError(f"cannot {what} field {name!r}")
+        raise FrozenInstanceError(f"cannot {action} field {name!r}")
 
 
 def _get_state(self: Any) -> list[Any]:
@@ -208,7 +210,7 @@ def _set_state(self: Any, state: list[Any]) -> None:
 
 
 class _StandardAttribute:
-    """An attribute that `dataclasses` sets on a class, computed on first access."""
+    """An attribute that `dataclasses` sets on a class, which is computed on first access."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -222,9 +224,11 @@ class _StandardAttribute:
             return dataclasses.field(init=entry.init, repr=entry.repr, compare=entry.compare, **defaults)
 
         cls = next(item for item in owner.__mro__ if vars(item).get(self._name) is self)
-        fields = [(name, each.type, standard_field(each)) for name, each in vars(cls)[_FIELDS].items()]
-        twin = dataclasses.make_dataclass(cls.__name__, fields, frozen=vars(cls)[_OPTIONS][0])
-        value = vars(twin)[self._name]
+        fields = [
+            (name, class_field.type, standard_field(class_field)) for name, class_field in vars(cls)[_FIELDS].items()
+        ]
+        standard_class = dataclasses.make_dataclass(cls.__name__, fields, frozen=vars(cls)[_OPTIONS][0])
+        value = vars(standard_class)[self._name]
         setattr(cls, self._name, value)
         return value
 
@@ -234,30 +238,27 @@ _SHARED: dict[str, Any] = {
     **{name: _StandardAttribute(name) for name in ("__dataclass_fields__", "__dataclass_params__")},
 }
 _FROZEN: dict[str, Any] = {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete}
-_KEPT: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
-"""Without these, objects with slots that refuse could be pickled and not read again."""
+_PICKLE_METHODS: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
+"""Methods without which frozen objects with slots could be pickled, but not unpickled."""
 
 # --- named tuples ----------------------------------------------------------------------------------------------------
 
 
 class _NamedTupleMeta(type):
-    def __new__(cls, name: str, _bases: tuple[type, ...], written: dict[str, Any]) -> Any:
-        fields = written.get("__annotations__", {})
-        defaults = [written[attribute] for attribute in fields if attribute in written]
-        named_tuple = namedtuple(name, fields, defaults=defaults, module=written["__module__"])  # type: ignore[misc]  # noqa: PYI024
-        for attribute, value in written.items():
+    def __new__(cls, name: str, _bases: tuple[type, ...], members: dict[str, Any]) -> Any:
+        fields = members.get("__annotations__", {})
+        defaults = [members[attribute] for attribute in fields if attribute in members]
+        named_tuple = namedtuple(name, fields, defaults=defaults, module=members["__module__"])  # type: ignore[misc]  # noqa: PYI024
+        for attribute, value in members.items():
             if attribute not in fields and attribute not in ("__module__", "__slots__", "__classcell__"):
                 setattr(named_tuple, attribute, value)
         return named_tuple
 
 
 def _named_tuple() -> Any:
-    """Return a base class whose direct subclasses are named tuples, like `typing.NamedTuple`.
+    """Return a base class whose direct subclasses are named tuples, as for `typing.NamedTuple`.
 
-    Subclasses of these are ordinary classes.
-
-    Modules define their patterns at the top. A check of one robot imports seventy patterns and uses a quarter of them,
-    and compiling a pattern takes as long as importing a small module.
+    Subclasses of these named tuples are ordinary classes.
     """
     base = type.__new__(_NamedTupleMeta, "NamedTuple", (), {})
     return type("Base", (), {"__mro_entries__": lambda _self, _bases: (base,)})()

@@ -1,9 +1,9 @@
 """The interfaces that come with Linkwright: those of ROS 2 Humble.
 
-Each package has one text file in ``data/`` with its interface files, each after a line such as ``=== msg/JointState``.
-The comments are our own; rarely used types have none. A file is read when the first of its interfaces is requested. A
-heading with ``jazzy`` after the name begins the form of later distributions, which is used if ``ROS_DISTRO`` names one
-of them.
+Each package has one text file in ``data/`` with its interface files, each after a heading such as
+``=== msg/JointState``. The comments are not those of ROS, and rarely used types have none. A file is read when the
+first of its interfaces is requested. If ``jazzy`` follows the name in a heading, the definition is that of later
+distributions, and is used if ``ROS_DISTRO`` names one of them.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _FOLDER = os.path.join(os.path.dirname(__file__), "data")  # noqa: PTH118, PTH120 - pathlib takes long to import
-_HEAD = "=== "
-_LATER = " jazzy"
+_HEADING_PREFIX = "=== "
+_LATER_SUFFIX = " jazzy"
 
 
 @cache
@@ -38,7 +38,7 @@ def file_of(package: str) -> Path:
 def texts(package: str) -> dict[str, str]:
     """Return the texts of a package's interface files by name, such as ``msg/JointState``.
 
-    The dictionary is empty for an unknown package.
+    The dictionary is empty for any package that does not come with Linkwright.
     """
     return _texts(package, not is_before_iron())
 
@@ -49,10 +49,10 @@ def _texts(package: str, later: bool) -> dict[str, str]:
         return {}
     with open(os.path.join(_FOLDER, package + ".txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - as above
         text = file.read()
-    found: dict[str, str] = {}
-    for part in text.removeprefix(_HEAD).split("\n" + _HEAD):
-        head, _, body = part.partition("\n")
-        name = head.removesuffix(_LATER)
-        if later or name == head:
-            found[name] = body if body.endswith("\n") or not body else body + "\n"
-    return found
+    texts_by_name: dict[str, str] = {}
+    for section in text.removeprefix(_HEADING_PREFIX).split("\n" + _HEADING_PREFIX):
+        heading, _, body = section.partition("\n")
+        name = heading.removesuffix(_LATER_SUFFIX)
+        if later or name == heading:
+            texts_by_name[name] = body if body.endswith("\n") or not body else body + "\n"
+    return texts_by_name

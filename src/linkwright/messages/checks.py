@@ -1,12 +1,12 @@
-"""Checks of values assigned to fields, as in rosidl_generator_py's classes (Humble).
+"""Checks the values assigned to fields, as the classes of rosidl_generator_py (Humble) do.
 
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and call these functions for
-all other cases. The functions return the value to store, or raise an AssertionError with the message known from rclpy.
+all other cases. The functions return the value to store, or raise an AssertionError with the same message as in rclpy.
 Unlike in rclpy, numpy arrays and byte buffers may be assigned to sequences of numbers and bools, unless a program
 accepts only what ROS accepts (`keep_to_ros`).
 
-numpy is imported only for fixed arrays of numbers, which are stored as numpy arrays, because importing it takes longer
-than the rest of a command such as ``topic list``. A program that never imported numpy has no values of numpy's types.
+numpy is imported only for fixed arrays of numbers, which are stored as numpy arrays, because the import takes longer
+than the rest of a command such as ``topic list``. A program that has not imported numpy has no values of numpy's types.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Unset:
-    """The default of a constructor's arguments, to recognise an argument that was not given."""
+    """The type of `UNSET`, the default that marks a constructor argument as missing."""
 
     def __repr__(self) -> str:
         return "default"
@@ -43,7 +43,7 @@ def keep_to_ros(*, as_humble: bool) -> None:
     """Make this process accept only values that the classes of ROS 2 accept.
 
     Args:
-        as_humble: whether constructors convert the values given for fixed arrays, as in Humble and earlier, instead of
+        as_humble: whether constructors convert the values for fixed arrays, as in Humble and earlier, instead of
             checking them.
     """
     global _keeps_to_ros, _fixed_as_humble
@@ -51,7 +51,7 @@ def keep_to_ros(*, as_humble: bool) -> None:
 
 
 def refuse_arguments(names: Iterable[str]) -> NoReturn:
-    """Raise an error for constructor arguments that are not fields."""
+    """Raise an AssertionError for constructor arguments that are not fields."""
     raise AssertionError("Invalid arguments passed to constructor: " + ", ".join(sorted(names)))
 
 
@@ -163,7 +163,7 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """Convert numbers given to a constructor to an ``array.array``.
+    """Convert the numbers in a constructor argument to an ``array.array``.
 
     As in rclpy, a constructor accepts integers for floats.
     """
@@ -180,21 +180,21 @@ def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """Convert numbers given to a constructor to a numpy array of fixed length."""
+    """Convert the numbers in a constructor argument to a numpy array of fixed length."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
     if not _fixed_as_humble:
         return check_fixed_array(name, value, kind)
     if value.__class__ is np.ndarray and value.dtype.char == primitive.array_code:  # three times as fast
-        made = value.copy()
+        converted = value.copy()
     else:
-        made = np.array(value, dtype=primitive.dtype)
-    if made.size != kind.size:
+        converted = np.array(value, dtype=primitive.dtype)
+    if converted.size != kind.size:
         raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
-    if _keeps_to_ros and made.shape != (kind.size,):
+    if _keeps_to_ros and converted.shape != (kind.size,):
         raise AssertionError(f"The '{name}' numpy.ndarray() must have the shape ({kind.size},)")
-    return made
+    return converted
 
 
 # --- values of numpy, recognised without importing numpy ------------------------------------------------------------
@@ -248,7 +248,7 @@ def _in_range(values: Any, primitive: Primitive) -> bool:
         return True
     if primitive.is_integer:
         return bool(min(values) >= primitive.low and max(values) <= primitive.high)
-    if primitive.array_code == "d":  # "d" accepts every float of Python
+    if primitive.array_code == "d":  # A Python float always fits into a double.
         return True
     return all(-primitive.high <= value <= primitive.high or not math.isfinite(value) for value in values)
 
@@ -258,40 +258,44 @@ def _from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Prim
 
     code = primitive.array_code
     assert code is not None
-    wanted = np.dtype(primitive.dtype)
+    target_type = np.dtype(primitive.dtype)
     value = value.ravel()
-    whole = wanted.kind in "iu" and value.dtype.kind in "iu"
-    fits = whole or np.can_cast(value.dtype, wanted, "same_kind")
-    if not (fits and _length_fits(value, kind) and (value.dtype == wanted or not whole or _in_range(value, primitive))):
+    are_integers = target_type.kind in "iu" and value.dtype.kind in "iu"
+    can_convert = are_integers or np.can_cast(value.dtype, target_type, "same_kind")
+    if not (
+        can_convert
+        and _length_fits(value, kind)
+        and (value.dtype == target_type or not are_integers or _in_range(value, primitive))
+    ):
         raise AssertionError(f"The '{name}' field must be {_wanted(kind, primitive.python)}")
-    made = array(code)
-    made.frombytes(np.ascontiguousarray(value, dtype=wanted).data.cast("B"))
-    return made
+    converted = array(code)
+    converted.frombytes(np.ascontiguousarray(value, dtype=target_type).data.cast("B"))
+    return converted
 
 
 def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldType) -> array[Any]:
-    made = array("B")
-    made.frombytes(value)
-    if not _length_fits(made, kind):
+    converted = array("B")
+    converted.frombytes(value)
+    if not _length_fits(converted, kind):
         raise AssertionError(f"The '{name}' field must be {_wanted(kind, int)}")
-    return made
+    return converted
 
 
 def _wanted(kind: FieldType, python: type) -> str:
     """Return the description of a valid value for an array or sequence, in rclpy's wording."""
-    words = ["a set or sequence"]
+    phrases = ["a set or sequence"]
     if kind.container is Container.ARRAY:
-        words.append(f"with length {kind.size}")
+        phrases.append(f"with length {kind.size}")
     elif kind.size is not None:
-        words.append(f"with length <= {kind.size}")
+        phrases.append(f"with length <= {kind.size}")
     if kind.string_bound is not None:
-        words.append(f"and each string value not longer than {kind.string_bound}")
-    words.append(f"and each value of type '{python.__name__}'")
+        phrases.append(f"and each string value not longer than {kind.string_bound}")
+    phrases.append(f"and each value of type '{python.__name__}'")
     primitive = kind.primitive
     if primitive is not None and primitive.is_integer:
         integer = "integer" if primitive.low else "unsigned integer"
-        words.append(f"and each {integer} in [{primitive.low}, {primitive.high}]")
+        phrases.append(f"and each {integer} in [{primitive.low}, {primitive.high}]")
     elif primitive is not None and primitive.python is float:
-        what = "double" if primitive.array_code == "d" else "float"
-        words.append(f"and each {what} in [{-primitive.high:f}, {primitive.high:f}]")
-    return " ".join(words)
+        type_word = "double" if primitive.array_code == "d" else "float"
+        phrases.append(f"and each {type_word} in [{-primitive.high:f}, {primitive.high:f}]")
+    return " ".join(phrases)

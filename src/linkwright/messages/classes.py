@@ -1,8 +1,8 @@
 """Creates the classes of messages, services and actions from generated code, on first use.
 
-The code of a message class has a constructor and setters that are as short as its fields allow. They test for the usual
-case inline (``value.__class__ is float``) and leave all other cases to `linkwright.messages.checks`. The property of a
-field reads its slot through a C function, so reading a field costs no more than reading a plain attribute.
+The generated constructor and setters contain only the code that the fields need. They test for the usual case inline
+(``value.__class__ is float``) and leave all other cases to `linkwright.messages.checks`. The property of a field reads
+its slot through a C function, so reading a field is as fast as reading a plain attribute.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
 
     Args:
         structure: the definition of the structure.
-        base: the base class.
+        base: the base class of the new class.
         classes: the class of every structure that the fields use, by type name.
-        module: the name of the module of the class.
+        module: the module name that the class reports.
     """
-    # The names are in upper case, which field names never are.
+    # The names start with an upper-case letter, so that they cannot be the names of fields.
     scope: dict[str, Any] = {
         "U": checks.UNSET,
         "Checks": checks,
@@ -75,11 +75,11 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
             body[field.name.upper() + "__DEFAULT"] = field.default
     for constant in structure.constants:
         body[constant.name] = constant.value
-    made = type(base)(name, (base,), body)
+    message_class = type(base)(name, (base,), body)
     for field in fields:
         function = scope["S_" + field.name]
         function.__qualname__ = f"{name}.{field.name}"
-    return made
+    return message_class
 
 
 class _FieldCode:
@@ -93,7 +93,7 @@ class _FieldCode:
         if self.kind.primitive is None:
             scope["C_" + field.name] = classes[self.kind.base]
         self.default = self._default()
-        if self.default is not None and not self._is_plain():
+        if self.default is not None and not self._is_single():
             scope["D_" + field.name] = self.default
 
     def docstring(self) -> str:
@@ -104,18 +104,18 @@ class _FieldCode:
         return "" if keyword.iskeyword(self.name) else f"{self.name}=U, "
 
     def initial(self) -> str:
-        """Return the constructor's lines of code for this field."""
+        """Return the lines of the constructor that set this field."""
         name = argument = self.name
         lines = ""
         if keyword.iskeyword(name):
             argument = name + "_"
             lines = f"    {argument} = Rest.pop({name!r}, U)\n"
-        lines += f"    if {argument} is U: M._{name} = {self._default_code()}\n"
+        lines += f"    if {argument} is U: M._{name} = {self._default_expression()}\n"
         if self.kind.is_numeric_array:
-            made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
-            return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
-        if self._is_plain():  # as in the setter, but without calling it
-            lines += f"    elif {self._usual(argument)}: M._{name} = {argument}\n"
+            convert = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
+            return lines + f"    else: M._{name} = Checks.{convert}({name!r}, {argument}, K_{name})\n"
+        if self._is_single():  # as in the setter, but without calling it
+            lines += f"    elif {self._usual_test(argument)}: M._{name} = {argument}\n"
         return lines + f"    else: S_{name}(M, {argument})\n"
 
     def setter(self) -> str:
@@ -130,15 +130,17 @@ class _FieldCode:
             return f"    value = Checks.check_fixed_array({name!r}, value, K_{name})\n"
         if kind.is_numeric_array:
             assert primitive is not None
-            usual = f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._length_check()
-            return f"    if not ({usual}): value = Checks.check_sequence({name!r}, value, K_{name})\n"
+            usual_case = (
+                f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._length_check()
+            )
+            return f"    if not ({usual_case}): value = Checks.check_sequence({name!r}, value, K_{name})\n"
         if kind.container is not Container.ONE:
             cls = f"C_{name}" if primitive is None else primitive.python.__name__
             check = f"value = Checks.check_values({name!r}, value, K_{name}, {cls})"
             if kind.string_bound is not None:
                 return f"    {check}\n"
-            usual = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._length_check()
-            return f"    if not ({usual}): {check}\n"
+            usual_case = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._length_check()
+            return f"    if not ({usual_case}): {check}\n"
         if primitive is None:
             check = f"check_message({name!r}, value, C_{name})"
         elif primitive.python is int:
@@ -151,16 +153,16 @@ class _FieldCode:
             check = f"check_byte({name!r}, value)"
         else:
             check = f"check_text({name!r}, value, {kind.string_bound})"
-        return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
+        return f"    if not ({self._usual_test('value')}): value = Checks.{check}\n"
 
     def _length_check(self) -> str:
-        """Return the expression that tests the number of values; empty if the number is not bounded."""
+        """Return an expression that tests the number of values, or an empty string if any number is valid."""
         if self.kind.size is None:
             return ""
         return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
 
-    def _usual(self, value: str) -> str:
-        """Return the expression that tests whether a single value can be stored unchanged."""
+    def _usual_test(self, value: str) -> str:
+        """Return an expression that tests whether a single value can be stored unchanged."""
         kind, primitive = self.kind, self.kind.primitive
         if primitive is None:
             return f"{value}.__class__ is C_{self.name}"
@@ -177,18 +179,18 @@ class _FieldCode:
 
     # --- the default ----------------------------------------------------------------------------------------
 
-    def _is_plain(self) -> bool:
+    def _is_single(self) -> bool:
         return self.kind.container is Container.ONE
 
     def _default(self) -> Any:
-        """Return the definition's default value as the field stores it; None if there is none."""
+        """Return the default value as the field stores it, or None if the definition has no default."""
         value = self.field.default
-        if value is None or self._is_plain():
+        if value is None or self._is_single():
             return value
         assert isinstance(value, tuple)
         return list(value)
 
-    def _default_code(self) -> str:
+    def _default_expression(self) -> str:
         kind, primitive, name = self.kind, self.kind.primitive, self.name
         if kind.is_numeric_array:
             assert primitive is not None
@@ -197,15 +199,15 @@ class _FieldCode:
                 dtype = f"dtype={primitive.dtype!r}"
                 return f"Np.array({values}, {dtype})" if values else f"Np.zeros({kind.size}, {dtype})"
             return f"Array({primitive.array_code!r}" + (f", {values})" if values else ")")
-        if not self._is_plain():
+        if not self._is_single():
             if self.default is not None:
                 return f"List(D_{name})"
             if kind.container is Container.SEQUENCE:
                 return "[]"
-            return f"[{self._one()} for _ in Range({kind.size})]"
-        return self._one() if self.default is None else repr(self.default)
+            return f"[{self._single_default()} for _ in Range({kind.size})]"
+        return self._single_default() if self.default is None else repr(self.default)
 
-    def _one(self) -> str:
+    def _single_default(self) -> str:
         primitive = self.kind.primitive
         if primitive is None:
             return f"C_{self.name}()"
@@ -228,14 +230,14 @@ def _docstring(name: str, structure: Structure) -> str:
 _classes: dict[str, Any] = {}
 _lock = threading.RLock()
 
-_BASES: dict[str, type[Message]] = {
+_BASE_CLASSES: dict[str, type[Message]] = {
     "builtin_interfaces/msg/Time": TimeValue,
     "builtin_interfaces/msg/Duration": DurationValue,
 }
-"""Classes that can do more than hold their fields."""
+"""The base classes of message classes with additional methods, by type name."""
 
-_WRITTEN_BY_HAND = {"tf2_msgs/msg/TFMessage": "linkwright.messages.tf_message"}
-"""The modules of classes that are not made from their definitions; this one imports numpy."""
+_HAND_WRITTEN_MODULES = {"tf2_msgs/msg/TFMessage": "linkwright.messages.tf_message"}
+"""The modules of hand-written classes by type name; they are imported on demand, because this one needs numpy."""
 
 
 def get_message(name: str) -> type[Any]:
@@ -244,13 +246,13 @@ def get_message(name: str) -> type[Any]:
     An example of a part is ``std_srvs/srv/SetBool_Request``.
 
     Args:
-        name: ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
+        name: the type name, such as ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
 
     Raises:
         InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
         DefinitionError: the interface file in the workspace has mistakes.
     """
-    return _named(name, Message, "msg")
+    return _class_by_name(name, Message, "msg")
 
 
 def get_service(name: str) -> type[Any]:
@@ -258,7 +260,7 @@ def get_service(name: str) -> type[Any]:
 
     Names and errors are as in `get_message`.
     """
-    return _named(name, ServiceType, "srv")
+    return _class_by_name(name, ServiceType, "srv")
 
 
 def get_action(name: str) -> type[Any]:
@@ -266,7 +268,7 @@ def get_action(name: str) -> type[Any]:
 
     Names and errors are as in `get_message`.
     """
-    return _named(name, ActionType, "action")
+    return _class_by_name(name, ActionType, "action")
 
 
 def get_interface(name: str) -> type[Any]:
@@ -274,12 +276,12 @@ def get_interface(name: str) -> type[Any]:
 
     For ``package/Name``, a message is preferred to a service, and a service to an action.
     """
-    return cast("type[Any]", _classes.get(name) or _made(LIBRARY.definition(name)))
+    return cast("type[Any]", _classes.get(name) or _class_for(LIBRARY.definition(name)))
 
 
 def class_of(structure: Structure) -> type[Any]:
-    """Return the class of a structure."""
-    return cast("type[Any]", _made(structure))
+    """Return the message class for a structure, which is created on first use."""
+    return cast("type[Any]", _class_for(structure))
 
 
 def add_class(message_class: type[Message]) -> None:
@@ -287,44 +289,44 @@ def add_class(message_class: type[Message]) -> None:
     _classes[message_class.TYPE_NAME] = message_class
 
 
-def _named(name: str, base: type, kind: str) -> type[Any]:
-    found = _classes.get(name)
-    if found is None:
+def _class_by_name(name: str, base: type, kind: str) -> type[Any]:
+    interface_class = _classes.get(name)
+    if interface_class is None:
         # The kind in a full name is not checked, because a message may be 'std_srvs/srv/SetBool_Request'.
-        found = _made(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
-    if not issubclass(found, base):
+        interface_class = _class_for(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
+    if not issubclass(interface_class, base):
         raise InterfaceNotFoundError(wrong_kind_diagnostic(LIBRARY.definition(name), kind))
-    return cast("type[Any]", found)
+    return cast("type[Any]", interface_class)
 
 
-def _made(definition: Definition) -> Any:
-    found = _classes.get(definition.type_name)
-    if found is None:
+def _class_for(definition: Definition) -> Any:
+    interface_class = _classes.get(definition.type_name)
+    if interface_class is None:
         with _lock:
-            found = _classes.get(definition.type_name)
-            if found is None:
-                found = _classes[definition.type_name] = _make(definition)
-    return found
+            interface_class = _classes.get(definition.type_name)
+            if interface_class is None:
+                interface_class = _classes[definition.type_name] = _make(definition)
+    return interface_class
 
 
 def _make(definition: Definition) -> type:
     if isinstance(definition, Structure):
-        return _make_message(definition)
+        return _create_message_class(definition)
     if isinstance(definition, Service):
-        return _make_service(definition)
-    return _make_action(definition)
+        return _create_service_class(definition)
+    return _create_action_class(definition)
 
 
-def _make_message(structure: Structure) -> type:
-    parts = {name: _made(LIBRARY.structure(name)) for name in structure.references}
-    if structure.type_name in _WRITTEN_BY_HAND:
-        import_module(_WRITTEN_BY_HAND[structure.type_name])  # importing the module calls `add_class`
+def _create_message_class(structure: Structure) -> type:
+    classes = {name: _class_for(LIBRARY.structure(name)) for name in structure.references}
+    if structure.type_name in _HAND_WRITTEN_MODULES:
+        import_module(_HAND_WRITTEN_MODULES[structure.type_name])  # The module calls `add_class` when it is imported.
         return cast("type", _classes[structure.type_name])
-    base = _BASES.get(structure.type_name, Message)
-    return build_class(structure, base, parts, python_module(structure.type_name))
+    base = _BASE_CLASSES.get(structure.type_name, Message)
+    return build_class(structure, base, classes, python_module(structure.type_name))
 
 
-def _make_service(service: Service) -> type:
+def _create_service_class(service: Service) -> type:
     name = service.type_name
     return type(
         name.rpartition("/")[2],
@@ -333,22 +335,22 @@ def _make_service(service: Service) -> type:
             "__module__": python_module(name),
             "__doc__": f"Service class '{name.rpartition('/')[2]}'.",
             "TYPE_NAME": name,
-            "Request": _made(service.request),
-            "Response": _made(service.response),
+            "Request": _class_for(service.request),
+            "Response": _class_for(service.response),
             "Event": _LazyClass(event_of(service)),
         },
     )
 
 
-def _make_action(action: Action) -> type:
+def _create_action_class(action: Action) -> type:
     name = action.type_name
     implementation = type(
         "Impl",
         (ActionImplementation,),
         {
-            "SendGoalService": _made(send_goal_of(action)),
-            "GetResultService": _made(get_result_of(action)),
-            "FeedbackMessage": _made(feedback_message_of(action)),
+            "SendGoalService": _class_for(send_goal_of(action)),
+            "GetResultService": _class_for(get_result_of(action)),
+            "FeedbackMessage": _class_for(feedback_message_of(action)),
             "CancelGoalService": get_service("action_msgs/srv/CancelGoal"),
             "GoalStatusMessage": get_message("action_msgs/msg/GoalStatusArray"),
         },
@@ -360,9 +362,9 @@ def _make_action(action: Action) -> type:
             "__module__": python_module(name),
             "__doc__": f"Action class '{name.rpartition('/')[2]}'.",
             "TYPE_NAME": name,
-            "Goal": _made(action.goal),
-            "Result": _made(action.result),
-            "Feedback": _made(action.feedback),
+            "Goal": _class_for(action.goal),
+            "Result": _class_for(action.result),
+            "Feedback": _class_for(action.feedback),
             "Impl": implementation,
         },
     )
@@ -375,7 +377,7 @@ class _LazyClass:
         self._structure = structure
 
     def __get__(self, instance: object, owner: type) -> type:
-        return cast("type", _made(self._structure))
+        return cast("type", _class_for(self._structure))
 
 
 Message._class_named = staticmethod(get_message)

@@ -10,12 +10,12 @@ from linkwright.messages.checks import is_array, is_scalar
 from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, FieldType
 from linkwright.messages.message import Message, definition_of
 
-CUT = "..."
-"""The end of texts and lists that are cut."""
+ELLIPSIS = "..."
+"""The marker at the end of shortened texts and lists."""
 
 
 class Abridgement(NamedTuple):
-    """How values of messages are shortened for display.
+    """Options for shortening the values of messages for display.
 
     Attributes:
         truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
@@ -28,13 +28,13 @@ class Abridgement(NamedTuple):
     no_str: bool = False
 
     def text(self, text: str) -> str:
-        """Return a string in the form in which it is displayed."""
+        """Return a string value as it is displayed: truncated, or replaced by its length."""
         return f"<string length: <{len(text)}>>" if self.no_str else self.cut(text)
 
     def cut(self, text: str) -> str:
-        """Return a string, truncated if it is too long."""
+        """Return a text, cut to `truncate_length` if it is longer."""
         length = self.truncate_length
-        return text[:length] + CUT if length is not None and len(text) > length else text
+        return text[:length] + ELLIPSIS if length is not None and len(text) > length else text
 
 
 def to_dict(
@@ -46,52 +46,52 @@ def to_dict(
     become strings of the characters with the same codes.
 
     Args:
-        message: any message.
+        message: the message to convert.
         truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
         no_arr: whether arrays and sequences are replaced by their type and length.
         no_str: whether strings are replaced by their length.
     """
-    return _dict(message, Abridgement(truncate_length, no_arr, no_str))
+    return _fields_as_dict(message, Abridgement(truncate_length, no_arr, no_str))
 
 
-def _dict(message: Message, shown: Abridgement) -> OrderedDict[str, Any]:
-    plain: OrderedDict[str, Any] = OrderedDict()
+def _fields_as_dict(message: Message, abridgement: Abridgement) -> OrderedDict[str, Any]:
+    plain_values: OrderedDict[str, Any] = OrderedDict()
     for field in definition_of(type(message)).fields:
         kind = field.type
         value = getattr(message, field.name)
         if kind.container is Container.ONE:
-            plain[field.name] = _plain(value, shown)
-        elif shown.no_arr:
-            plain[field.name] = abbreviated(kind, value)
+            plain_values[field.name] = _plain_value(value, abridgement)
+        elif abridgement.no_arr:
+            plain_values[field.name] = abbreviated(kind, value)
         else:
-            plain[field.name] = _plain_list(value, shown)
-    return plain
+            plain_values[field.name] = _plain_list(value, abridgement)
+    return plain_values
 
 
 def to_csv(message: Message, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """Return the values of a message, including those of nested messages, separated by commas.
+    """Return the values of a message and of its nested messages, separated by commas.
 
     Args:
-        message: any message.
+        message: the message to convert.
         truncate_length: as in `to_dict`.
         no_arr: as in `to_dict`.
         no_str: as in `to_dict`.
     """
-    return _line(message, Abridgement(truncate_length, no_arr, no_str))
+    return _csv_line(message, Abridgement(truncate_length, no_arr, no_str))
 
 
-def _line(message: Message, shown: Abridgement) -> str:
-    words: list[str] = []
+def _csv_line(message: Message, abridgement: Abridgement) -> str:
+    items: list[str] = []
     for field in definition_of(type(message)).fields:
         value = getattr(message, field.name)
-        if shown.no_arr and field.type.container is not Container.ONE:
-            words.append(abbreviated(field.type, value))
+        if abridgement.no_arr and field.type.container is not Container.ONE:
+            items.append(abbreviated(field.type, value))
         else:
-            words.append(_csv(value, shown))
-    # A field without values contributes nothing, not even a comma at the beginning of the line.
+            items.append(_csv_text(value, abridgement))
+    # As in rosidl_runtime_py, empty fields at the beginning of the line do not contribute a comma.
     text = ""
-    for word in words:
-        text = f"{text},{word}" if text else word
+    for item in items:
+        text = f"{text},{item}" if text else item
     return text
 
 
@@ -108,37 +108,37 @@ def abbreviated(kind: FieldType, value: Any) -> str:
     return f"<sequence type: {name}{bound}, length: {len(value)}>"
 
 
-def _plain(value: Any, shown: Abridgement) -> Any:
+def _plain_value(value: Any, abridgement: Abridgement) -> Any:
     if isinstance(value, bytes):
-        return shown.cut(value.decode("latin-1"))
+        return abridgement.cut(value.decode("latin-1"))
     if isinstance(value, str):
-        return shown.text(value)
+        return abridgement.text(value)
     if isinstance(value, Message):
-        return _dict(value, shown)
+        return _fields_as_dict(value, abridgement)
     return value.item() if is_scalar(value) else value
 
 
-def _plain_list(values: Any, shown: Abridgement) -> list[Any]:
-    length = shown.truncate_length
-    cut = length is not None and len(values) > length
+def _plain_list(values: Any, abridgement: Abridgement) -> list[Any]:
+    length = abridgement.truncate_length
+    is_cut = length is not None and len(values) > length
     if isinstance(values, array) or is_array(values):
         numbers: list[Any] = (values.ravel() if is_array(values) else values)[:length].tolist()
-        return [*numbers, CUT] if cut else numbers
-    plain = [_plain(value, shown) for value in list(values)[:length]]
-    return [*plain, CUT] if cut else plain
+        return [*numbers, ELLIPSIS] if is_cut else numbers
+    plain_values = [_plain_value(value, abridgement) for value in list(values)[:length]]
+    return [*plain_values, ELLIPSIS] if is_cut else plain_values
 
 
-def _csv(value: Any, shown: Abridgement) -> str:
+def _csv_text(value: Any, abridgement: Abridgement) -> str:
     if isinstance(value, Message):
-        return _line(value, shown)
+        return _csv_line(value, abridgement)
     if isinstance(value, str):
-        return shown.text(value)
+        return abridgement.text(value)
     if isinstance(value, bytes):
         return str(value)
     if isinstance(value, (list, tuple, array)) or is_array(value):
-        length = shown.truncate_length
-        words = [_csv(item, shown) for item in list(value)[:length]]
+        length = abridgement.truncate_length
+        texts = [_csv_text(item, abridgement) for item in list(value)[:length]]
         if length is not None and len(value) > length:
-            words.append(CUT)
-        return ",".join(words)
+            texts.append(ELLIPSIS)
+        return ",".join(texts)
     return str(value)

@@ -1,4 +1,4 @@
-"""The ROS 2 distribution whose behaviour is followed where distributions differ."""
+"""Determines which ROS 2 distribution to follow where distributions differ."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 
 ASSUMED = "LINKWRIGHT_ROS_DISTRO_ASSUMED"
-"""Set where the user named no distribution, and ``ROS_DISTRO`` is set only because launch files ask for it."""
+"""The variable that is set if ``ROS_DISTRO`` does not come from the user, but is only set for launch files."""
 
 BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
 """The distributions up to Humble."""
@@ -32,8 +32,8 @@ def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
 def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
     """Return whether field values are checked as in ROS 2, which accepts fewer values.
 
-    This is the case if the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` is 1. Newer
-    distributions accept any value unless that variable is set.
+    They are if ``ROS_DISTRO`` of the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` is
+    1. Newer distributions accept any value unless the latter variable is set.
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True

@@ -1,4 +1,4 @@
-"""The errors that are raised for interfaces, message data and field values."""
+"""The errors for interfaces, message data and field values."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class DefinitionError(LinkwrightError):
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Raised when bytes are not a message of a given type, or a message cannot be serialized."""
+    """Raised when bytes are not a message of the expected type, or a message cannot be serialized."""
 
 
 class FieldValueError(LinkwrightError, ValueError):
-    """Raised when YAML values do not fit the fields of a message."""
+    """Raised when values, for example from YAML, are invalid for the fields of a message."""
 
 
 class UnknownFieldError(FieldValueError, AttributeError):
@@ -30,5 +30,5 @@ class WrongValueError(FieldValueError, TypeError):
 
 
 def data_error(code: str, message: Phrase) -> MessageDataError:
-    """Create the error for bytes or a message that cannot be deserialized or serialized."""
+    """Create the error for bytes that cannot be deserialized, or a message that cannot be serialized."""
     return MessageDataError(Diagnostic(code, message))

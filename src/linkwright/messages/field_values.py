@@ -18,7 +18,7 @@ _HEADER = "std_msgs/msg/Header"
 _TIME = "builtin_interfaces/msg/Time"
 
 StampSetter = Callable[[Any], None]
-"""Sets a field to a builtin_interfaces/msg/Time."""
+"""A function that sets a field to the builtin_interfaces/msg/Time that is its argument."""
 
 
 def set_fields(
@@ -26,19 +26,17 @@ def set_fields(
 ) -> list[StampSetter]:
     """Set the fields of a message from numbers, bools, strings, lists and nested mappings.
 
-    A nested message is replaced, so that fields that are not given have their defaults. An integer is accepted for a
+    A nested message is replaced, so fields missing in the values have their defaults. An integer is accepted for a
     float, a number for a string, and a string for a number if the string contains a number.
 
     Args:
         message: the message to change.
         values: the values by field name.
-        expand_header_auto: whether to accept ``auto`` for a Header, whose stamp is then set whenever the message is
-            sent.
-        expand_time_now: whether to accept ``now`` for a Time, which is then set to the time at which the message is
-            sent.
+        expand_header_auto: whether to accept ``auto`` for a Header; its stamp is then the time of sending.
+        expand_time_now: whether to accept ``now`` for a Time, which is then the time of sending.
 
     Returns:
-        Functions that set the fields given as ``auto`` or ``now`` to the Time with which they are called.
+        A function for each ``auto`` or ``now``, which sets the field to the Time that is its argument.
 
     Raises:
         UnknownFieldError: MSG301, a field does not exist; also an AttributeError.
@@ -52,8 +50,8 @@ def set_fields(
     return setter.stamps
 
 
-class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
-    """Raised when a value does not fit a field. The argument describes a valid value."""
+class _InvalidValueError(Exception):
+    """Raised when a value is invalid for a field; the argument describes a valid value."""
 
 
 class _Setter:
@@ -67,18 +65,22 @@ class _Setter:
 
     def fields(self, message: Message, values: Any, path: str) -> None:
         if not isinstance(values, Mapping):
-            what = quoted(path) if path else phrase("a {type}", type=message.TYPE_NAME)
+            subject = quoted(path) if path else phrase("a {type}", type=message.TYPE_NAME)
             names = joined(field.name for field in definition_of(type(message)).fields)
-            self._wrong(
-                phrase("{what} is given as {values}, not as fields and values", what=what, values=_shown(values)),
+            self._report_invalid_value(
+                phrase(
+                    ("{what} must be a mapping of fields to values, not {values}"),
+                    what=subject,
+                    values=_value_text(values),
+                ),
                 phrase("its fields: {names}", names=names or phrase("none")),
             )
             return
-        kinds = {field.name: field.type for field in definition_of(type(message)).fields}
+        types_by_name = {field.name: field.type for field in definition_of(type(message)).fields}
         for name, value in values.items():
-            kind = kinds.get(name)
+            kind = types_by_name.get(name)
             if kind is None:
-                self._unknown(message, str(name), path)
+                self._report_unknown_field(message, str(name), path)
             else:
                 self._field(message, name, kind, value, f"{path}.{name}" if path else name)
 
@@ -87,15 +89,15 @@ class _Setter:
             return
         try:
             setattr(message, name, self._value(kind, value, path))
-        except _Unfit as unfit:
-            self._wrong(
-                phrase("'{path}' cannot be {value}", path=path, value=_shown(value)),
+        except _InvalidValueError as unfit:
+            self._report_invalid_value(
+                phrase("'{path}' cannot be {value}", path=path, value=_value_text(value)),
                 phrase("it must be {unfit}", unfit=unfit),
             )
         except AssertionError as error:
             reason = str(error).partition(" must ")[2]
-            self._wrong(
-                phrase("'{path}' cannot be {value}", path=path, value=_shown(value)),
+            self._report_invalid_value(
+                phrase("'{path}' cannot be {value}", path=path, value=_value_text(value)),
                 phrase("it must {reason}", reason=foreign(reason)),
             )
 
@@ -115,16 +117,18 @@ class _Setter:
     def _value(self, kind: FieldType, value: Any, path: str) -> Any:
         primitive = kind.primitive
         if kind.container is Container.ONE:
-            return self._message(kind, value, path) if primitive is None else _converted(primitive, kind, value)
+            return self._message(kind, value, path) if primitive is None else _converted_value(primitive, kind, value)
         if kind.base in {"uint8", "char"} and isinstance(value, (bytes, bytearray)):
             value = list(value)
         if not (isinstance(value, (Sequence, array)) or is_array(value)) or isinstance(value, (str, bytes)):
-            raise _Unfit(_described(kind))
-        one = FieldType(kind.base, kind.string_bound)
-        values = [self._value(one, item, f"{path}[{number}]") for number, item in enumerate(value)]
-        exact = kind.container is Container.ARRAY
-        if kind.size is not None and (len(values) > kind.size or (exact and len(values) < kind.size)):
-            raise _Unfit(phrase("{list}, not of {count} values", list=_described(kind), count=len(values)))
+            raise _InvalidValueError(_type_description(kind))
+        item_type = FieldType(kind.base, kind.string_bound)
+        values = [self._value(item_type, item, f"{path}[{index}]") for index, item in enumerate(value)]
+        has_fixed_length = kind.container is Container.ARRAY
+        if kind.size is not None and (len(values) > kind.size or (has_fixed_length and len(values) < kind.size)):
+            raise _InvalidValueError(
+                phrase("{list}, not of {count} values", list=_type_description(kind), count=len(values))
+            )
         return values
 
     def _message(self, kind: FieldType, value: Any, path: str) -> Any:
@@ -137,24 +141,24 @@ class _Setter:
 
     # --- mistakes -------------------------------------------------------------------------------------------
 
-    def _unknown(self, message: Message, name: str, path: str) -> None:
+    def _report_unknown_field(self, message: Message, name: str, path: str) -> None:
         names = [field.name for field in definition_of(type(message)).fields]
         hint = did_you_mean(name, names) or phrase("its fields: {names}", names=joined(names) or phrase("none"))
-        called = phrase("{type} ('{path}')", type=message.TYPE_NAME, path=path) if path else message.TYPE_NAME
+        subject = phrase("{type} ('{path}')", type=message.TYPE_NAME, path=path) if path else message.TYPE_NAME
         self.found.append(
             Diagnostic(
                 "MSG301",
-                phrase("{called} has no field '{name}'", called=called, name=name),
+                phrase("{called} has no field '{name}'", called=subject, name=name),
                 hint=hint,
             )
         )
 
-    def _wrong(self, message: Phrase, hint: Phrase) -> None:
+    def _report_invalid_value(self, message: Phrase, hint: Phrase) -> None:
         self.found.append(Diagnostic("MSG302", message, hint=hint))
 
 
-def _converted(primitive: Primitive, kind: FieldType, value: Any) -> Any:
-    """Convert a value to the field's Python type. The field itself checks ranges and lengths."""
+def _converted_value(primitive: Primitive, kind: FieldType, value: Any) -> Any:
+    """Return a value converted to the Python type of its field; the setter checks ranges and lengths."""
     if is_scalar(value):
         value = value.item()
     python = primitive.python
@@ -170,11 +174,11 @@ def _converted(primitive: Primitive, kind: FieldType, value: Any) -> Any:
         try:
             number = python(value)
         except (ValueError, OverflowError):
-            raise _Unfit(_described(kind)) from None
+            raise _InvalidValueError(_type_description(kind)) from None
         if python is int and isinstance(value, float) and number != value:
-            raise _Unfit(_described(kind))
+            raise _InvalidValueError(_type_description(kind))
         return number
-    raise _Unfit(_described(kind))
+    raise _InvalidValueError(_type_description(kind))
 
 
 def _as_text(value: str | float) -> str:
@@ -190,11 +194,11 @@ def _as_byte(value: Any) -> bytes:
         return bytes([value])
     if isinstance(value, str) and len(value) == 1 and ord(value) <= 255:
         return value.encode("latin-1")
-    raise _Unfit(phrase("a byte, 0 to 255"))
+    raise _InvalidValueError(phrase("a byte, 0 to 255"))
 
 
-def _described(kind: FieldType) -> Phrase:
-    words = {
+def _type_description(kind: FieldType) -> Phrase:
+    descriptions = {
         int: phrase("an integer"),
         float: phrase("a number"),
         str: phrase("a string"),
@@ -202,16 +206,18 @@ def _described(kind: FieldType) -> Phrase:
         bytes: phrase("a byte, 0 to 255"),
     }
     primitive = kind.primitive
-    one = phrase("{type}", type=kind.base) if primitive is None else words[primitive.python]
+    value_description = phrase("{type}", type=kind.base) if primitive is None else descriptions[primitive.python]
     if primitive is not None and primitive.is_integer:
-        one = phrase("{one}, {low} to {high}", one=one, low=primitive.low, high=primitive.high)
+        value_description = phrase(
+            "{one}, {low} to {high}", one=value_description, low=primitive.low, high=primitive.high
+        )
     if kind.container is Container.ARRAY:
         return phrase("a list of {size} ({spelled})", size=kind.size, spelled=kind.to_msg_text())
     if kind.container is Container.SEQUENCE:
         return phrase("a list ({spelled})", spelled=kind.to_msg_text())
-    return one
+    return value_description
 
 
-def _shown(value: Any) -> str:
+def _value_text(value: Any) -> str:
     text = repr(value) if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

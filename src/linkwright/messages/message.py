@@ -16,12 +16,12 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 def definition_of(message_class: type[Any]) -> Structure:
     """Return the definition of a message class, with its fields and constants."""
-    found: Structure = message_class._definition
-    return found
+    definition: Structure = message_class._definition
+    return definition
 
 
 class _SlotTypes:
-    """The class attribute ``SLOT_TYPES``, whose value is created on first access."""
+    """A class attribute that computes ``SLOT_TYPES`` on first access."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
         from linkwright.messages.definitions.slot_types import slot_types
@@ -34,18 +34,18 @@ class _SlotTypes:
 class Message:
     """A ROS 2 message: an object whose fields are checked on assignment as in rclpy.
 
-    The value of field ``x`` is in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` gives access
-    to it. A published message is passed to every subscriber in the process without a copy. Subscribers may read the
-    message but must not change it.
+    As in the classes of rosidl_generator_py, the slot ``_x`` contains the value of the field ``x``, and the property
+    ``x`` gives access to it. A published message is passed to every subscriber in the process without a copy.
+    Subscribers may read the message but must not change it.
     """
 
     __slots__: tuple[str, ...] = ()
 
     TYPE_NAME: ClassVar[str]
-    """Package, kind and name, such as ``sensor_msgs/msg/JointState``."""
+    """The full type name, such as ``sensor_msgs/msg/JointState``."""
 
     SLOT_TYPES: ClassVar[Any] = _SlotTypes()
-    """The types of the fields in their order, as rosidl_parser's."""
+    """The types of the fields in order, as objects with the interface of rosidl_parser's."""
 
     _definition: ClassVar[Structure]
 
@@ -78,7 +78,7 @@ class Message:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return the fields' names and types, such as ``{'position': 'sequence<double>'}``."""
+        """Return the type of each field by name, such as ``{'position': 'sequence<double>'}``."""
         return {field.name: field.type.to_idl_text() for field in cls._definition.fields}
 
     def __eq__(self, other: object) -> bool:
@@ -86,11 +86,11 @@ class Message:
             return False
         ndarray = ndarray_class()
         for slot in self.__slots__:
-            ours, theirs = getattr(self, slot), getattr(other, slot)
-            if type(ours) is ndarray or type(theirs) is ndarray:
-                if ours.size != theirs.size or not (ours.ravel() == theirs.ravel()).all():
+            own_value, other_value = getattr(self, slot), getattr(other, slot)
+            if type(own_value) is ndarray or type(other_value) is ndarray:
+                if own_value.size != other_value.size or not (own_value.ravel() == other_value.ravel()).all():
                     return False
-            elif ours != theirs:
+            elif own_value != other_value:
                 return False
         return True
 
@@ -114,7 +114,7 @@ class Message:
 def _rebuild(type_name: str, values: tuple[Any, ...]) -> Message:
     """Create a message from the values of its slots, for copies and pickles.
 
-    No module needs to be imported by its name.
+    The type name identifies the class, so that pickle does not need to import the class from a module.
     """
     cls = Message._class_named(type_name)
     message: Message = object.__new__(cls)
@@ -130,7 +130,7 @@ class ServiceType:
     Request: ClassVar[type[Any]]
     Response: ClassVar[type[Any]]
     Event: ClassVar[type[Any]]
-    """The message on the topic of its introspection."""
+    """The class of the messages on the service's introspection topic."""
 
     def __init__(self) -> None:
         """Refuse to create an object of a service.
@@ -146,8 +146,8 @@ class ActionImplementation:
 
     Attributes:
         SendGoalService: the service that accepts goals.
-        GetResultService: the service that responds when a goal has ended.
-        FeedbackMessage: the message with the feedback and the id of its goal.
+        GetResultService: the service that returns the result when a goal has ended.
+        FeedbackMessage: the message with feedback and the id of the goal.
         CancelGoalService: ``action_msgs/srv/CancelGoal``.
         GoalStatusMessage: ``action_msgs/msg/GoalStatusArray``.
     """
@@ -220,9 +220,9 @@ class DurationValue(_Nanoseconds):
 
 MessageT = TypeVar("MessageT")
 
-_LITTLE = b"\x00\x01"
-_BIG = b"\x00\x00"
-_HEADERS = {
+_LITTLE_ENDIAN = b"\x00\x01"
+_BIG_ENDIAN = b"\x00\x00"
+_OTHER_ENCODINGS = {
     b"\x00\x02": "PL_CDR_BE",
     b"\x00\x03": "PL_CDR_LE",
     b"\x00\x06": "CDR2_BE",
@@ -234,13 +234,13 @@ _HEADERS = {
 }
 
 _WRITE_FAULTS = (struct.error, AttributeError, TypeError, ValueError, OverflowError)
-_big_readers: dict[str, Any] = {}
+_big_endian_readers: dict[str, Any] = {}
 
 
 def serialize(message: Message) -> bytes:
-    """Serialize a message to CDR.
+    """Serialize a message to little-endian CDR.
 
-    The header bytes are 00 01 00 00; the fields follow, without padding at the end.
+    The header bytes 00 01 00 00 precede the fields, and there is no padding at the end.
 
     Raises:
         MessageDataError: MSG202, a value has the wrong type or is out of range. This happens only if the checks on
@@ -249,11 +249,11 @@ def serialize(message: Message) -> bytes:
     try:
         return message._write()
     except _WRITE_FAULTS as fault:
-        raise _unwritable(message, fault) from fault
+        raise _write_error(message, fault) from fault
 
 
 def deserialize(data: bytes | bytearray | memoryview, message_class: type[MessageT]) -> MessageT:
-    """Deserialize a message from bytes with their header.
+    """Deserialize a message from CDR bytes, which include the header.
 
     Bytes after the end of the message are ignored.
 
@@ -262,79 +262,82 @@ def deserialize(data: bytes | bytearray | memoryview, message_class: type[Messag
     """
     if type(data) is not bytes:
         data = bytes(data)
-    little = data[:2] == _LITTLE
-    read = message_class._read if little else _reader_for(data, message_class)  # type: ignore[attr-defined]  # of Message
+    is_little_endian = data[:2] == _LITTLE_ENDIAN
+    reader = message_class._read if is_little_endian else _reader_for(data, message_class)  # type: ignore[attr-defined]  # of Message
     try:
-        message: MessageT = read(data)
+        message: MessageT = reader(data)
     except READ_FAULTS as fault:
-        raise _unreadable(message_class, data, fault) from None
+        raise _read_error(message_class, data, fault) from None
     return message
 
 
 def _reader_for(data: bytes, message_class: type[Any]) -> Any:
-    if data[:2] != _BIG or len(data) < 4:
+    if data[:2] != _BIG_ENDIAN or len(data) < 4:
         if len(data) < 4:
-            why = phrase("{count} bytes are too few for the header", count=len(data))
-        elif data[:2] in _HEADERS:
-            why = phrase("its header declares {headers}; ROS 2 sends plain CDR", headers=_HEADERS[data[:2]])
+            reason = phrase("{count} bytes are too few for the header", count=len(data))
+        elif data[:2] in _OTHER_ENCODINGS:
+            reason = phrase(
+                ("its header declares the encoding {headers}, but ROS 2 uses plain CDR"),
+                headers=_OTHER_ENCODINGS[data[:2]],
+            )
         else:
-            why = phrase("it begins with {hex} instead of the header of CDR", hex=data[:4].hex(" "))
+            reason = phrase("it begins with {hex} instead of a CDR header", hex=data[:4].hex(" "))
         raise data_error(
             "MSG201",
-            phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
+            phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=reason),
         )
     name = message_class.TYPE_NAME
-    reader = _big_readers.get(name)
+    reader = _big_endian_readers.get(name)
     if reader is None:
         from linkwright.messages.cdr.reader import compile_reader
 
-        reader = _big_readers[name] = compile_reader(definition_of(message_class), message_class._class_of, ">")
+        reader = _big_endian_readers[name] = compile_reader(definition_of(message_class), message_class._class_of, ">")
     return reader
 
 
-def _unreadable(message_class: type[Any], data: bytes, fault: Exception) -> MessageDataError:
+def _read_error(message_class: type[Any], data: bytes, fault: Exception) -> MessageDataError:
     if isinstance(fault, UnicodeDecodeError):
         why = phrase("a string in it is not UTF-8")
     elif isinstance(fault, DataFaultError):
         why = foreign(fault)
     else:
-        why = phrase("the data, {count} bytes, ends in the middle of the message", count=len(data))
+        why = phrase("the data has only {count} bytes and ends in the middle of the message", count=len(data))
     return data_error(
         "MSG201",
         phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
     )
 
 
-def _unwritable(message: object, fault: Exception) -> MessageDataError:
+def _write_error(message: object, fault: Exception) -> MessageDataError:
     if not isinstance(message, Message):
         return data_error("MSG202", phrase("'{name}' is not a message class", name=type(message).__name__))
     return data_error(
         "MSG202",
         phrase(
-            "this '{type_name}' cannot be written: {bad_field}",
+            "this message of type '{type_name}' cannot be serialized: {bad_field}",
             type_name=message.TYPE_NAME,
-            bad_field=foreign(_bad_field(message, "") or fault),
+            bad_field=foreign(_invalid_field(message, "") or fault),
         ),
     )
 
 
-def _bad_field(message: Message, path: str) -> str | None:
-    """Return a text about the first field with an invalid value; None if all are valid.
+def _invalid_field(message: Message, path: str) -> str | None:
+    """Return a message about the first field with an invalid value, or None if all values are valid.
 
-    The wording is that of the checks on assignment.
+    The message is the one that the checks on assignment raise.
     """
     for field in definition_of(type(message)).fields:
-        here = f"{path}.{field.name}" if path else field.name
+        field_path = f"{path}.{field.name}" if path else field.name
         try:
             value = getattr(message, field.name)
             setattr(type(message)(), field.name, value)
         except AttributeError:
-            return phrase("'{here}' was never set", here=here)
+            return phrase("'{here}' is not set", here=field_path)
         except AssertionError as error:
-            return str(error).replace(f"'{field.name}'", f"'{here}'", 1)
-        within = [value] if isinstance(value, Message) else value if "/" in field.type.base else ()
-        for number, item in enumerate(within):
-            found = _bad_field(item, here if item is value else f"{here}[{number}]")
-            if found:
-                return found
+            return str(error).replace(f"'{field.name}'", f"'{field_path}'", 1)
+        nested_messages = [value] if isinstance(value, Message) else value if "/" in field.type.base else ()
+        for index, item in enumerate(nested_messages):
+            error_text = _invalid_field(item, field_path if item is value else f"{field_path}[{index}]")
+            if error_text:
+                return error_text
     return None

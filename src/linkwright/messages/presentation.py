@@ -13,7 +13,7 @@ from linkwright.messages.yaml_text import to_yaml
 def definition_text(interface: Any) -> str:
     """Return the text of an interface file.
 
-    The comments in files that come with Linkwright are our own.
+    The comments in files that come with Linkwright are not those of ROS.
 
     Args:
         interface: a class, or a type name.
@@ -25,7 +25,7 @@ def definition_text(interface: Any) -> str:
 
 
 def prototype(interface: Any, *, flow_style: bool = False) -> str:
-    """Return the default values of a message, a service request or an action goal, as YAML.
+    """Return a message, a service request or an action goal with default values, as YAML.
 
     Args:
         interface: a class, or a type name.
@@ -43,9 +43,9 @@ def prototype(interface: Any, *, flow_style: bool = False) -> str:
 
 
 def interface_names(kind: str) -> list[str]:
-    """Return the sorted type names of all known interfaces of one kind.
+    """Return the sorted type names of all available interfaces of one kind.
 
-    These are the interfaces that come with Linkwright and those of the packages that the current finder finds.
+    These come with Linkwright, or are in the packages that the active finder finds.
 
     Args:
         kind: ``msg``, ``srv`` or ``action``.

@@ -1,6 +1,6 @@
-"""The definition of a message type, followed by the definitions of the types in it.
+"""Writes the definition of a message type, followed by the definitions of its nested types.
 
-The format is MCAP's ``ros2msg`` schema encoding, which rosbag2's SQLite files and Foxglove use, too.
+The format is MCAP's ``ros2msg`` schema encoding, which rosbag2's SQLite files and Foxglove also use.
 """
 
 from __future__ import annotations
@@ -13,31 +13,31 @@ _SEPARATOR = "=" * 80
 
 
 def schema_of(type_name: str) -> str:
-    """Return the definitions of a type and of all types in it, as MCAP's ``ros2msg`` schema.
+    """Return the definitions of a type and of its nested types, as MCAP's ``ros2msg`` schema.
 
     Args:
         type_name: the type, such as ``sensor_msgs/msg/JointState``, or the type of a service's events.
 
     Raises:
-        LinkwrightError: MSG101, the type is not known.
+        LinkwrightError: MSG101, the type does not exist.
     """
     texts = [_text(type_name)]
-    seen = {type_name}
-    waiting = _types_in(type_name)
-    while waiting:
-        nested = waiting.pop(0)
-        if nested in seen:
+    written_types = {type_name}
+    pending = _nested_types(type_name)
+    while pending:
+        nested_type = pending.pop(0)
+        if nested_type in written_types:
             continue
-        seen.add(nested)
-        texts.append(f"{_SEPARATOR}\nMSG: {nested.replace('/msg/', '/')}\n{_text(nested)}")
-        waiting += _types_in(nested)
+        written_types.add(nested_type)
+        texts.append(f"{_SEPARATOR}\nMSG: {nested_type.replace('/msg/', '/')}\n{_text(nested_type)}")
+        pending += _nested_types(nested_type)
     return "\n".join(text.rstrip("\n") for text in texts) + "\n"
 
 
 def _text(type_name: str) -> str:
     """Return the text of a message definition.
 
-    For a request or response, which no file defines, the text is generated from the fields.
+    A request or response does not have a file, so its text is generated from the fields.
     """
     if "/msg/" in type_name:
         return definition_text(type_name)
@@ -45,12 +45,12 @@ def _text(type_name: str) -> str:
     for field in definition_of(get_message(type_name)).fields:
         base = field.type.base
         package, _, name = base.rpartition("/")
-        spelled = field.type.to_msg_text()
+        type_text = field.type.to_msg_text()
         if "/srv" in package:  # `to_msg_text` omits the kind from the name, but requests and responses need it.
-            spelled = spelled.replace(f"{package.partition('/')[0]}/{name}", base, 1)
-        lines.append(f"{spelled} {field.name}")
+            type_text = type_text.replace(f"{package.partition('/')[0]}/{name}", base, 1)
+        lines.append(f"{type_text} {field.name}")
     return "\n".join(lines)
 
 
-def _types_in(type_name: str) -> list[str]:
+def _nested_types(type_name: str) -> list[str]:
     return list(definition_of(get_message(type_name)).references)

@@ -1,13 +1,13 @@
 """The message tf2_msgs/msg/TFMessage, optimised for many transforms.
 
-Five hundred joints at 30 Hz are 15 000 transforms a second. As message objects they would cost more than everything
-else in the process together. Therefore a `TFMessage` may contain a `TransformBatch`, the same data as names and one
-array, or the bytes that were received. It creates the objects only when they are requested.
+Five hundred joints at 30 Hz are 15 000 transforms per second. Creating message objects for them would take longer than
+all other work of the process. Therefore, a `TFMessage` may contain a `TransformBatch`, which has the same data as names
+and one array, or the received bytes. It creates the objects only when they are requested.
 
-The bytes of messages with transforms between the same frames differ only in stamps and numbers. A `TransformLayout`
-stores the positions of these. So a message is written by filling in a template, and a received message is recognised by
-comparing its other bytes with the template. In both directions a transform takes a few nanoseconds, and no object is
-created for it.
+Messages with transforms between the same frames differ only in the bytes of stamps and numbers. A `TransformLayout`
+stores the positions of these bytes. A message is written by filling in a template, and a received message is recognised
+by comparing its other bytes with the template. In both directions, a transform takes a few nanoseconds and no object is
+created.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from linkwright.messages.wellknown import Header, Quaternion, Time, Transform, T
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _HEADER = b"\x00\x01\x00\x00"
-_MOST_KEPT = 64
-_MOST_OF_ONE_LENGTH = 4
+_MAX_LAYOUTS = 64
+_MAX_LAYOUTS_PER_LENGTH = 4
 
 _layouts: dict[tuple[tuple[str, ...], tuple[str, ...]], TransformLayout] = {}
-_by_length: dict[int, list[TransformLayout]] = {}
+_layouts_by_length: dict[int, list[TransformLayout]] = {}
 
 
 class TransformLayout:
-    """The positions of stamps and poses in a TFMessage with given frames.
+    """The positions of stamps and poses in the bytes of a TFMessage with particular frames.
 
     Args:
         parents: the parent frame of each transform.
@@ -47,29 +47,29 @@ class TransformLayout:
     def __init__(self, parents: tuple[str, ...], children: tuple[str, ...]) -> None:
         self.parents = parents
         self.children = children
-        pieces = [struct.pack("<I", len(children))]
+        template_chunks = [struct.pack("<I", len(children))]
         masks = [b"\xff" * 4]
         stamps: list[int] = []
         poses: list[int] = []
-        at = 4
+        offset = 4
         for parent, child in zip(parents, children, strict=True):
-            texts = TEXT4[parent] + TEXT4[child]
-            stamps.append(at // 4)
-            at += 8 + len(texts)
-            padding = -at % 8
-            poses.append((at + padding) // 8)
-            pieces.append(bytes(8) + texts + bytes(padding + 56))
+            encoded_names = TEXT4[parent] + TEXT4[child]
+            stamps.append(offset // 4)
+            offset += 8 + len(encoded_names)
+            padding = -offset % 8
+            poses.append((offset + padding) // 8)
+            template_chunks.append(bytes(8) + encoded_names + bytes(padding + 56))
             masks.append(bytes(8) + _mask(parent) + _mask(child) + bytes(padding + 56))
-            at += padding + 56
+            offset += padding + 56
         # The number of transforms takes four bytes; each transform ends at a multiple of eight.
-        self.length = len(_HEADER) + at
-        self._words = np.frombuffer(b"".join(pieces) + bytes(-at % 8), np.uint64)
-        self._mask = np.frombuffer(b"".join(masks) + bytes(-at % 8), np.uint64)
+        self.length = len(_HEADER) + offset
+        self._words = np.frombuffer(b"".join(template_chunks) + bytes(-offset % 8), np.uint64)
+        self._mask = np.frombuffer(b"".join(masks) + bytes(-offset % 8), np.uint64)
         self._stamps = np.array(stamps, dtype=np.intp)
         self._poses = np.array(poses, dtype=np.intp)[:, None] + np.arange(7)
 
     def with_one_stamp(self, stamp_ns: int, poses: NDArray[np.float64]) -> bytes:
-        """Return the bytes of a message with the given poses and one stamp for all.
+        """Return the bytes of a message with a pose for each transform and one stamp for all.
 
         Args:
             stamp_ns: the stamp, in nanoseconds since the epoch.
@@ -85,10 +85,10 @@ class TransformLayout:
         halves = words.view(np.uint32)
         halves[self._stamps] = sec & 0xFFFFFFFF
         halves[self._stamps + 1] = nanosec
-        return self._finished(words, poses)
+        return self._with_poses(words, poses)
 
     def with_stamps(self, stamps: Sequence[tuple[int, int]], poses: NDArray[np.float64]) -> bytes:
-        """Return the bytes of a message with the given poses, each with its own stamp.
+        """Return the bytes of a message with a pose and a stamp for each transform.
 
         Args:
             stamps: the seconds and nanoseconds of each stamp.
@@ -97,21 +97,21 @@ class TransformLayout:
         words = self._words.copy()
         words.view(np.uint32)[self._stamps] = np.array([sec for sec, _ in stamps], np.int32).view(np.uint32)
         words.view(np.uint32)[self._stamps + 1] = np.array([nanosec for _, nanosec in stamps], np.uint32)
-        return self._finished(words, poses)
+        return self._with_poses(words, poses)
 
-    def _finished(self, words: NDArray[np.uint64], poses: NDArray[np.float64]) -> bytes:
+    def _with_poses(self, words: NDArray[np.uint64], poses: NDArray[np.float64]) -> bytes:
         words.view(np.float64)[self._poses] = poses
         return _HEADER + words.tobytes()[: self.length - len(_HEADER)]
 
     def register(self) -> None:
-        """Register this layout, with which received messages of the same length are then compared."""
-        same_length = _by_length.setdefault(self.length, [])
+        """Register this layout, so that received messages of the same length are compared with it."""
+        same_length = _layouts_by_length.setdefault(self.length, [])
         if self not in same_length:
-            if len(_by_length) > _MOST_KEPT:
-                _by_length.clear()
+            if len(_layouts_by_length) > _MAX_LAYOUTS:
+                _layouts_by_length.clear()
             same_length.insert(0, self)
-            del same_length[_MOST_OF_ONE_LENGTH:]
-            _by_length[self.length] = same_length
+            del same_length[_MAX_LAYOUTS_PER_LENGTH:]
+            _layouts_by_length[self.length] = same_length
 
     def fits(self, words: NDArray[np.uint64]) -> bool:
         """Return whether a message has the frames of this layout, with any stamps and numbers.
@@ -162,25 +162,23 @@ class ReceivedTransforms(NamedTuple):
 
 
 def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> TransformLayout:
-    """Return the layout of messages with the given frames, which is cached."""
+    """Return the cached layout for messages with these parent and child frames."""
     key = (parents, children)
     layout = _layouts.get(key)
     if layout is None:
-        if len(_layouts) >= _MOST_KEPT:
+        if len(_layouts) >= _MAX_LAYOUTS:
             _layouts.clear()
         layout = _layouts[key] = TransformLayout(parents, children)
     return layout
 
 
 def matching_layout(data: bytes) -> ReceivedTransforms | None:
-    """Return a received message together with the registered layout that it matches.
-
-    Returns None if the message matches no layout.
+    """Return a received message with the registered layout that it matches, or None if no layout matches.
 
     Args:
-        data: a message with a little-endian header.
+        data: the bytes of a message with a little-endian header.
     """
-    candidates = _by_length.get(len(data))
+    candidates = _layouts_by_length.get(len(data))
     if candidates is None:
         return None
     words = np.frombuffer(data[len(_HEADER) :], np.uint64)
@@ -199,24 +197,24 @@ def _mask(text: str) -> bytes:
     return b"\xff" * length + bytes(-length % 4)
 
 
-_FEW = 6
-"""The greatest number of transforms that are written and read faster one by one than by a layout."""
+_MAX_SINGLE_TRANSFORMS = 6
+"""The maximum number of transforms for which single objects are faster than a layout."""
 
-_SHORT = 600
-"""Bytes of a message of few transforms."""
+_SHORT_MESSAGE_SIZE = 600
+"""The size in bytes below which a message contains only a few transforms."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TransformBatch:
-    """Transforms that are valid at one moment.
+    """Transforms with the same stamp, stored as arrays.
 
-    Publishers that repeatedly send the same frames should always pass the same two tuples, because receivers cache
-    results by them.
+    A publisher that repeatedly sends the same frames should always pass the same two tuples, because receivers use them
+    as cache keys.
 
     Attributes:
         parents: the parent frame of each transform.
         children: the child frame of each transform.
-        stamp_ns: the moment, in nanoseconds since the epoch.
+        stamp_ns: the stamp of all transforms, in nanoseconds since the epoch.
         poses: array, shape (n, 7), of the pose of each child in its parent: x y z (metres) and qx qy qz qw.
     """
 
@@ -237,7 +235,7 @@ class TransformBatch:
 
     @classmethod
     def from_messages(cls, transforms: Iterable[TransformStamped]) -> TransformBatch:
-        """Create a batch from message objects, stamped with their newest stamp."""
+        """Create a batch from message objects; its stamp is the newest of their stamps."""
         transforms = list(transforms)
         return cls(
             parents=tuple(transform.header.frame_id for transform in transforms),
@@ -253,20 +251,20 @@ class TransformBatch:
             TransformStamped(
                 Header(Time(stamp.sec, stamp.nanosec), parent),
                 child,
-                Transform(Vector3(*row[:3]), Quaternion(*row[3:])),
+                Transform(Vector3(*pose[:3]), Quaternion(*pose[3:])),
             )
-            for parent, child, row in zip(self.parents, self.children, self.poses.tolist(), strict=True)
+            for parent, child, pose in zip(self.parents, self.children, self.poses.tolist(), strict=True)
         ]
 
 
 class TFMessage(Message):
     """Transforms, stored as message objects, as a batch or as received bytes.
 
-    Other forms are created on demand.
+    The other forms are created on demand.
 
     Args:
-        transforms: message objects; none if omitted.
-        batch: the transforms as arrays, instead of objects.
+        transforms: the transforms as message objects; an empty list by default.
+        batch: the transforms as arrays, instead of `transforms`.
     """
 
     __module__ = "tf2_msgs.msg._tf_message"  # The module that repr shows and rclpy's users expect.
@@ -317,11 +315,11 @@ class TFMessage(Message):
         self._batch = None
         self._received = None
 
-    _transforms = transforms  # the slot's name in rclpy's class
+    _transforms = transforms  # rclpy's class has a slot with this name
 
     @property
     def batch(self) -> TransformBatch:
-        """The transforms as arrays: the given batch, or one that is created from the transforms."""
+        """The transforms as arrays; created on demand if the message was not created from a batch."""
         if self._batch is not None:
             return self._batch
         if self._received is not None:
@@ -338,7 +336,7 @@ class TFMessage(Message):
 
         Stamps are in nanoseconds since the epoch. Poses are an array, shape (n, 7), of x y z qx qy qz qw.
 
-        For a message that stores objects, None is returned, because reading the objects directly is faster.
+        If the message stores objects, return None, because reading the objects directly is faster.
         """
         if self._received is not None:
             layout = self._received.layout
@@ -356,7 +354,7 @@ class TFMessage(Message):
             batch = self._batch
             return layout_for(batch.parents, batch.children).with_one_stamp(batch.stamp_ns, batch.poses)
         values: list[Any] = self._list
-        if len(values) < _FEW:
+        if len(values) < _MAX_SINGLE_TRANSFORMS:
             return _generic_writer()(self)
         parents = tuple([value._header._frame_id for value in values])
         children = tuple([value._child_frame_id for value in values])
@@ -365,7 +363,7 @@ class TFMessage(Message):
 
     @classmethod
     def _read(cls, data: bytes) -> TFMessage:
-        if len(data) < _SHORT:
+        if len(data) < _SHORT_MESSAGE_SIZE:
             return _generic_reader()(data)
         received = matching_layout(data)
         if received is None:
@@ -382,7 +380,7 @@ class TFMessage(Message):
         return message
 
 
-# Programs read this value. It does not affect the real slots, which are fixed by now.
+# Programs read this value. It does not change the slots, which are fixed when the class is created.
 TFMessage.__slots__ = ("_transforms",)  # type: ignore[assignment]  # of another length
 
 add_class(TFMessage)

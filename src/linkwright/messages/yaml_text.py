@@ -1,8 +1,8 @@
-"""Writes messages as YAML, character for character as ``ros2 topic echo`` shows them.
+"""Writes messages as YAML that is identical to the output of ``ros2 topic echo``.
 
-The format is PyYAML's, but PyYAML takes milliseconds for a message of a few hundred numbers, too slow to follow /tf.
-Therefore the lines are written here, from a plan for each class. PyYAML is used only for strings, whose quoting is
-complicated, and its results are cached.
+The format is PyYAML's, but PyYAML takes milliseconds for a message of a few hundred numbers, which is too slow for
+/tf. Therefore this module writes the lines itself, from a plan for each class. It uses PyYAML only for strings, because
+quoting is complicated, and caches the results.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from math import isfinite
 from typing import Any
 
 from linkwright.messages.checks import is_array
-from linkwright.messages.conversion import CUT, Abridgement, abbreviated, to_dict
+from linkwright.messages.conversion import ELLIPSIS, Abridgement, abbreviated, to_dict
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
 
@@ -34,7 +34,7 @@ def to_yaml(
     """Return a message as YAML text.
 
     Args:
-        message: any message.
+        message: the message to write.
         truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
         no_arr: whether arrays and sequences are replaced by their type and length.
         no_str: whether strings are replaced by their length.
@@ -48,42 +48,42 @@ def to_yaml(
 
 
 class _Writer:
-    """Writes one message.
+    """Appends the YAML lines of one message to a list.
 
-    A path names the containers around a value: ``m`` for a mapping, ``s`` for a list.
+    A path describes the containers around a value: ``m`` for a mapping, ``s`` for a list.
     """
 
-    def __init__(self, shown: Abridgement, lines: list[str]) -> None:
-        self._shown = shown
+    def __init__(self, abridgement: Abridgement, lines: list[str]) -> None:
+        self._shown = abridgement
         self._lines = lines
 
-    def message(self, message: Message, indent: str, way: tuple[str, ...]) -> None:
-        """Write the lines of a message's fields, with an indentation.
+    def message(self, message: Message, indent: str, path: tuple[str, ...]) -> None:
+        """Append the lines of a message's fields.
 
         Args:
-            message: the message.
+            message: the message to write.
             indent: the indentation of each line.
-            way: the path of the message.
+            path: the path of the message: its containers, from the outermost.
         """
-        way = (*way, "m")
+        path = (*path, "m")
         lines, append = self._lines, self._lines.append
-        for key, slot, kind, number in _plan(type(message)):
+        for key, slot, kind, format_number in _plan(type(message)):
             value = getattr(message, slot)
-            if number is not None:
-                append(f"{indent}{key}: {number(value)}\n")
+            if format_number is not None:
+                append(f"{indent}{key}: {format_number(value)}\n")
             elif kind.container is not Container.ONE:
                 append(f"{indent}{key}:")
-                self._list(kind, value, indent, way)
+                self._list(kind, value, indent, path)
             elif isinstance(value, Message):
                 append(f"{indent}{key}:\n")
-                before = len(lines)
-                self.message(value, indent + "  ", way)
-                if len(lines) == before:
+                line_count = len(lines)
+                self.message(value, indent + "  ", path)
+                if len(lines) == line_count:
                     lines[-1] = f"{indent}{key}: {{}}\n"
             else:
-                append(f"{indent}{key}: {self._text(value, way)}\n")
+                append(f"{indent}{key}: {self._text(value, path)}\n")
 
-    def _list(self, kind: FieldType, values: Any, indent: str, way: tuple[str, ...]) -> None:
+    def _list(self, kind: FieldType, values: Any, indent: str, path: tuple[str, ...]) -> None:
         lines = self._lines
         if self._shown.no_arr:
             lines.append(f" {_scalar(abbreviated(kind, values))}\n")
@@ -93,46 +93,48 @@ class _Writer:
             return
         lines.append("\n")
         length = self._shown.truncate_length
-        shown = values if length is None else list(values)[:length]
+        shown_values = values if length is None else list(values)[:length]
         bullet = indent + "- "
-        number = _number_text(kind)
-        if number is not None:
-            numbers = shown.tolist() if isinstance(shown, array) or is_array(shown) else shown
-            lines.extend([f"{bullet}{number(item)}\n" for item in numbers])
+        format_number = _number_text(kind)
+        if format_number is not None:
+            numbers = (
+                shown_values.tolist() if isinstance(shown_values, array) or is_array(shown_values) else shown_values
+            )
+            lines.extend([f"{bullet}{format_number(item)}\n" for item in numbers])
         else:
-            way = (*way, "s")
-            for item in shown:
-                self._item(item, indent, bullet, way)
-        if len(shown) < len(values):
-            lines.append(f"{bullet}'{CUT}'\n")
+            path = (*path, "s")
+            for item in shown_values:
+                self._item(item, indent, bullet, path)
+        if len(shown_values) < len(values):
+            lines.append(f"{bullet}'{ELLIPSIS}'\n")
 
-    def _item(self, value: Any, indent: str, bullet: str, way: tuple[str, ...]) -> None:
+    def _item(self, value: Any, indent: str, bullet: str, path: tuple[str, ...]) -> None:
         lines = self._lines
         if not isinstance(value, Message):
-            lines.append(f"{bullet}{self._text(value, way)}\n")
+            lines.append(f"{bullet}{self._text(value, path)}\n")
             return
-        first = len(lines)
-        self.message(value, indent + "  ", way)
-        if len(lines) > first:
-            lines[first] = bullet + lines[first][len(bullet) :]
+        first_line = len(lines)
+        self.message(value, indent + "  ", path)
+        if len(lines) > first_line:
+            lines[first_line] = bullet + lines[first_line][len(bullet) :]
         else:
             lines.append(f"{bullet}{{}}\n")
 
-    def _text(self, value: Any, way: tuple[str, ...]) -> str:
+    def _text(self, value: Any, path: tuple[str, ...]) -> str:
         text = self._shown.cut(value.decode("latin-1")) if isinstance(value, bytes) else self._shown.text(value)
         if len(text) <= _MAX_CACHED_LENGTH and text.isprintable():
             return _scalar(text)
-        return _block_scalar(text, way)
+        return _block_scalar(text, path)
 
 
 _Step = tuple[str, str, FieldType, Callable[[Any], str] | None]
-"""For a field its key, its slot, its type, and the function that writes it if it is a plain number."""
+"""A field's key, slot and type, and the function that formats its value if this is a single number or bool."""
 
 _plans: dict[str, list[_Step]] = {}
 
 
 def _plan(cls: type[Message]) -> list[_Step]:
-    """Return the steps that write the fields of a message class."""
+    """Return the cached steps that write the fields of a message class."""
     plan = _plans.get(cls.TYPE_NAME)
     if plan is None:
         plan = _plans[cls.TYPE_NAME] = [_step(field) for field in definition_of(cls).fields]
@@ -140,15 +142,15 @@ def _plan(cls: type[Message]) -> list[_Step]:
 
 
 def _step(field: Field) -> _Step:
-    number = _number_text(field.type) if field.type.container is Container.ONE else None
-    return _scalar(field.name), "_" + field.name, field.type, number
+    format_number = _number_text(field.type) if field.type.container is Container.ONE else None
+    return _scalar(field.name), "_" + field.name, field.type, format_number
 
 
 def _number_text(kind: FieldType) -> Callable[[Any], str] | None:
-    """Return the function that formats a number of a type; None if values need further tests."""
+    """Return the function that formats numbers or bools of a type, or None for other types."""
     primitive = kind.primitive
-    writers: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
-    return None if primitive is None else writers.get(primitive.python)
+    formatters: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
+    return None if primitive is None else formatters.get(primitive.python)
 
 
 def _bool_text(value: object) -> str:
@@ -169,18 +171,18 @@ def _scalar(text: str) -> str:
     return _dump({"k": text}, flow_style=False)[len("k: ") : -1]
 
 
-def _block_scalar(text: str, way: tuple[str, ...]) -> str:
-    """Format a multi-line string, whose indentation depends on its path.
+def _block_scalar(text: str, path: tuple[str, ...]) -> str:
+    """Format a multi-line string; its indentation depends on its path.
 
-    PyYAML formats the string inside containers of the same kinds.
+    To get this indentation, PyYAML formats the string inside containers of the same kinds.
     """
-    marker = _dump(_wrapped("X", way), flow_style=False)
-    return _dump(_wrapped(text, way), flow_style=False)[marker.index("X") : -1]
+    marker = _dump(_wrapped("X", path), flow_style=False)
+    return _dump(_wrapped(text, path), flow_style=False)[marker.index("X") : -1]
 
 
-def _wrapped(text: str, way: tuple[str, ...]) -> Any:
+def _wrapped(text: str, path: tuple[str, ...]) -> Any:
     value: Any = text
-    for container in reversed(way):
+    for container in reversed(path):
         value = [value] if container == "s" else {"k": value}
     return value
 

@@ -10,13 +10,13 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.model_files.fetching import cannot_write
-from linkwright.model_files.installed import by_hand
+from linkwright.model_files.installed import manual_download_hint
 from linkwright.model_files.table import ModelEntry
 
 _MOST_BYTES = 1 << 29
-"""The maximum size of an unpacked model; those in the table have a tenth of it."""
+"""The maximum size of an unpacked model; the models in the table need a tenth of it."""
 
-_AT_ONCE = 1 << 20
+_BLOCK_BYTES = 1 << 20
 
 
 def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = None) -> None:
@@ -25,44 +25,46 @@ def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = 
     Args:
         entry: the model.
         archive: the file.
-        target: the folder to create and write them to.
-        origin: the source of the download, for messages to users that do not know its path.
+        target: the folder to create for the extracted files.
+        origin: the source of the download, to be named in messages to users that do not know the archive's path.
 
     Raises:
-        LinkwrightError: MODEL105 it is not such an archive, lacks a file or is too large; MODEL106 it cannot be
-            written.
+        LinkwrightError: MODEL105 if it is not such an archive, lacks a file or is too large, or MODEL106 if a file
+            cannot be written.
     """
-    shown = origin or str(archive)
+    shown_path = origin or str(archive)
     try:
-        with zipfile.ZipFile(archive) as opened:
-            left = _MOST_BYTES
+        with zipfile.ZipFile(archive) as zip_file:
+            remaining_bytes = _MOST_BYTES
             for name in entry.files:
-                with closing(_blocks(opened, f"{entry.folder}/{name}")) as blocks:
-                    left -= _write(target / name, blocks, left, entry, shown)
+                with closing(_file_blocks(zip_file, f"{entry.folder}/{name}")) as blocks:
+                    remaining_bytes -= _write_file(target / name, blocks, remaining_bytes, entry, shown_path)
     except KeyError as error:
-        raise _unusable(entry, shown, phrase("it does not contain '{file}'", file=str(error.args[0]))) from None
+        raise _unusable_archive(
+            entry, shown_path, phrase("it does not contain '{file}'", file=str(error.args[0]))
+        ) from None
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError) as error:
-        raise _unusable(entry, shown, foreign(error)) from None
+        raise _unusable_archive(entry, shown_path, foreign(error)) from None
 
 
-def _blocks(opened: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
+def _file_blocks(zip_file: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
     try:
-        found = opened.getinfo(name)
+        info = zip_file.getinfo(name)
     except KeyError:
         raise KeyError(name) from None
-    with opened.open(found) as member:
-        while block := member.read(_AT_ONCE):
+    with zip_file.open(info) as member:
+        while block := member.read(_BLOCK_BYTES):
             yield block
 
 
-def _write(path: Path, blocks: Iterator[bytes], most: int, entry: ModelEntry, shown: str) -> int:
+def _write_file(path: Path, blocks: Iterator[bytes], max_bytes: int, entry: ModelEntry, shown_path: str) -> int:
     """Write a file and return its size."""
     size = 0
     _append(path, b"")
     for block in blocks:
         size += len(block)
-        if size > most:
-            raise _unusable(entry, shown, phrase("its contents are too large"))
+        if size > max_bytes:
+            raise _unusable_archive(entry, shown_path, phrase("its contents are too large"))
         _append(path, block)
     return size
 
@@ -76,8 +78,8 @@ def _append(path: Path, block: bytes) -> None:
         raise cannot_write(path, error) from None
 
 
-def _unusable(entry: ModelEntry, shown: str, problem: Phrase) -> LinkwrightError:
+def _unusable_archive(entry: ModelEntry, shown_path: str, problem: Phrase) -> LinkwrightError:
     message = phrase(
-        "'{path}' is not an archive of the model '{name}': {problem}", path=shown, name=entry.name, problem=problem
+        "'{path}' is not an archive of the model '{name}': {problem}", path=shown_path, name=entry.name, problem=problem
     )
-    return LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry)))
+    return LinkwrightError(Diagnostic("MODEL105", message, hint=manual_download_hint(entry)))

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, fo
 from linkwright.files.user_folders import data_folder
 from linkwright.model_files.table import ModelEntry
 
-_AT_ONCE = 1 << 20
+_BLOCK_BYTES = 1 << 20
 
 
 def models_folder() -> Path:
@@ -35,7 +35,7 @@ def find_model(entry: ModelEntry) -> Path:
     """Return the folder or file of an installed model.
 
     Raises:
-        LinkwrightError: MODEL102 it is not installed.
+        LinkwrightError: MODEL102 if the model is not installed.
     """
     if not is_installed(entry):
         message = phrase("the model '{name}' is not downloaded", name=entry.name)
@@ -50,21 +50,21 @@ def remove(entry: ModelEntry) -> Path:
     """Remove an installed model, and return its path.
 
     Raises:
-        LinkwrightError: MODEL102 it is not installed, MODEL106 it cannot be removed.
+        LinkwrightError: MODEL102 if the model is not installed, or MODEL106 if it cannot be removed.
     """
-    place = find_model(entry)
+    path = find_model(entry)
     try:
-        if place.is_dir() and not place.is_symlink():
-            shutil.rmtree(place)
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
         else:
-            place.unlink()
+            path.unlink()
     except OSError as error:
-        message = phrase("cannot remove '{path}': {reason}", path=place, reason=foreign(error.strerror or error))
+        message = phrase("cannot remove '{path}': {reason}", path=path, reason=foreign(error.strerror or error))
         raise LinkwrightError(Diagnostic("MODEL106", message)) from None
-    return place
+    return path
 
 
-def by_hand(entry: ModelEntry) -> Phrase:
+def manual_download_hint(entry: ModelEntry) -> Phrase:
     """Return a hint on how to get a model without downloading it with Linkwright."""
     return phrase(
         "download {address} with a browser, then run `linkwright models get {name} --from FILE`",
@@ -78,10 +78,10 @@ def checked(entry: ModelEntry, place: Path) -> None:
 
     Args:
         entry: the model.
-        place: its folder or file.
+        place: the folder or file of the model.
 
     Raises:
-        LinkwrightError: MODEL104 a file differs, MODEL105 a file is missing.
+        LinkwrightError: MODEL104 if a file differs, or MODEL105 if a file is missing.
     """
     if not entry.folder:
         check_sum(entry, place, entry.sha256)
@@ -96,19 +96,19 @@ def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str |
     Args:
         entry: the model.
         path: the file.
-        expected: its SHA-256; None if it is not known.
+        expected: the SHA-256 of the file, or None if it is not known; then nothing is verified.
         origin: the source of the download, for messages to users that do not know its path.
 
     Raises:
-        LinkwrightError: MODEL104 it differs, MODEL105 it cannot be read.
+        LinkwrightError: MODEL104 if the checksum differs, or MODEL105 if the file cannot be read.
     """
     if expected is None:
         return
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     try:
         with path.open("rb") as file:
-            while block := file.read(_AT_ONCE):
-                found.update(block)
+            while block := file.read(_BLOCK_BYTES):
+                digest.update(block)
     except OSError as error:
         message = phrase(
             "file '{path}' of the model '{name}' cannot be read: {reason}",
@@ -116,8 +116,12 @@ def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str |
             path=path,
             reason=foreign(error.strerror or error),
         )
-        raise LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry))) from None
-    if found.hexdigest() != expected:
+        raise LinkwrightError(Diagnostic("MODEL105", message, hint=manual_download_hint(entry))) from None
+    if digest.hexdigest() != expected:
         message = phrase("'{path}' is not the right file for the model '{name}'", path=origin or path, name=entry.name)
-        sums = phrase("its SHA-256 is {found}; expected {expected}", found=found.hexdigest(), expected=expected)
-        raise LinkwrightError(Diagnostic("MODEL104", message, notes=(Note(sums),), hint=by_hand(entry)))
+        checksum_note = phrase(
+            ("its SHA-256 is {found}, but {expected} is expected"), found=digest.hexdigest(), expected=expected
+        )
+        raise LinkwrightError(
+            Diagnostic("MODEL104", message, notes=(Note(checksum_note),), hint=manual_download_hint(entry))
+        )

@@ -24,14 +24,14 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
         source: None for the publisher's address; else the address of a mirror's file or folder; the file to download;
             or a folder with this file or with the unpacked model.
         folder: the folder of models; `models_folder` if omitted.
-        progress: receives the progress of the download.
+        progress: the function that receives the progress of the download.
 
     Returns:
-        Its folder, or its file if it is a single file.
+        The folder of the model, or the file of a model that is a single file.
 
     Raises:
-        LinkwrightError: MODEL103 it cannot be downloaded, MODEL104 the file differs, MODEL105 it is not a model file,
-            MODEL106 it cannot be written, MODEL107 the source has no such model.
+        LinkwrightError: MODEL103 if the model cannot be downloaded, MODEL104 if the file differs, MODEL105 if it is not
+            a model file, MODEL106 if it cannot be written, or MODEL107 if the source does not have the model.
     """
     target = folder or models_folder()
     try:
@@ -40,33 +40,33 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
         raise cannot_write(target, error) from None
     if source is not None and not _is_address(source):
         return _install_local(entry, Path(source).expanduser(), target)
-    part = target / f".{entry.file_name}.part"
-    resumed = part.exists()
-    address = _file_of(entry, source or entry.address)
-    fetch(entry, address, part, progress)
+    part_file = target / f".{entry.file_name}.part"
+    is_resumed = part_file.exists()
+    address = _file_address(entry, source or entry.address)
+    fetch(entry, address, part_file, progress)
     try:
-        place = _install_file(entry, part, target, address)
+        path = _install_file(entry, part_file, target, address)
     except LinkwrightError as error:
         if error.diagnostics[0].code != "MODEL106":
-            part.unlink(missing_ok=True)  # Resuming it would not fix it.
-        if not resumed or error.diagnostics[0].code == "MODEL106":
+            part_file.unlink(missing_ok=True)  # Resuming it would not fix it.
+        if not is_resumed or error.diagnostics[0].code == "MODEL106":
             raise
-        fetch(entry, address, part, progress)  # The existing part may be of another file.
+        fetch(entry, address, part_file, progress)  # The existing part may be of another file.
         try:
-            place = _install_file(entry, part, target, address)
+            path = _install_file(entry, part_file, target, address)
         except LinkwrightError:
-            part.unlink(missing_ok=True)
+            part_file.unlink(missing_ok=True)
             raise
-    part.unlink(missing_ok=True)
-    return place
+    part_file.unlink(missing_ok=True)
+    return path
 
 
 def _is_address(source: str) -> bool:
     return urllib.parse.urlsplit(source).scheme in ("http", "https")
 
 
-def _file_of(entry: ModelEntry, address: str) -> str:
-    """Return the address of the file; the address of its folder is accepted, too."""
+def _file_address(entry: ModelEntry, address: str) -> str:
+    """Return the address of the model's file, given this address or the address of its folder."""
     if urllib.parse.urlsplit(address).path.endswith(entry.file_name):
         return address
     return f"{address.rstrip('/')}/{entry.file_name}"
@@ -76,16 +76,16 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
     if source.is_file():
         return _install_file(entry, source, target)
     if source.is_dir():
-        packed = source / entry.file_name
-        if packed.is_file():
-            return _install_file(entry, packed, target)
+        packed_file = source / entry.file_name
+        if packed_file.is_file():
+            return _install_file(entry, packed_file, target)
         if entry.folder:
-            first = next(iter(entry.files))
-            for unpacked in (source / entry.folder, source):
-                if (unpacked / first).is_file():
-                    return _install_folder(entry, unpacked, target)
+            first_file = next(iter(entry.files))
+            for unpacked_folder in (source / entry.folder, source):
+                if (unpacked_folder / first_file).is_file():
+                    return _install_folder(entry, unpacked_folder, target)
     message = phrase("'{path}' does not contain the model '{name}'", path=source, name=entry.name)
-    hint = phrase("give a folder that contains {file}, or that file", file=entry.file_name)
+    hint = phrase("give the file {file}, or a folder that contains it", file=entry.file_name)
     raise LinkwrightError(Diagnostic("MODEL107", message, hint=hint))
 
 
@@ -115,24 +115,24 @@ def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
 @contextmanager
 def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
     """Provide a temporary path for the model, which is renamed on success and deleted on an error."""
-    place = target / entry.place
+    installed_path = target / entry.place
     draft = target / f".{entry.place}.draft-{os.urandom(4).hex()}"
-    former = target / f".{entry.place}.former-{os.urandom(4).hex()}"
+    previous = target / f".{entry.place}.former-{os.urandom(4).hex()}"
     try:
         yield draft
         with suppress(FileNotFoundError):
-            place.replace(former)
+            installed_path.replace(previous)
         try:
-            draft.replace(place)
+            draft.replace(installed_path)
         except OSError:
             with suppress(FileNotFoundError):
-                former.replace(place)
+                previous.replace(installed_path)
             raise
     except OSError as error:
-        raise cannot_write(place, error) from None
+        raise cannot_write(installed_path, error) from None
     finally:
-        for left in (draft, former):
-            _discard(left)
+        for leftover in (draft, previous):
+            _discard(leftover)
 
 
 def _discard(path: Path) -> None:

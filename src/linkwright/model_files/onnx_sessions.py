@@ -14,14 +14,14 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 CPU, CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
 
 _ERRORS_ONLY = 3
-_OF_THE_LIBRARY = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
+_SOURCE_LOCATION = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
 """The location in onnxruntime's code, which precedes the reason in its messages."""
-_SECOND_FILE = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
-"""onnxruntime's messages about a missing weights file; the latter up to 1.23, the last version for Python 3.10."""
+_MISSING_WEIGHTS = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
+"""onnxruntime's messages about a missing weights file; the second is of 1.23 (the last for Python 3.10) or older."""
 
 _TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
-_START = 512
-_TEXT = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
+_HEADER_BYTES = 512
+_TEXT_BYTES = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
 
 
 class UnloadableNetworkError(Exception):
@@ -41,7 +41,7 @@ def load_onnxruntime() -> Any:
     """Import and return the module ``onnxruntime``, which has no types.
 
     Raises:
-        ModuleNotFoundError: it is not installed.
+        ModuleNotFoundError: if onnxruntime is not installed.
     """
     import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
@@ -63,14 +63,14 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
     """
     onnxruntime = load_onnxruntime()
     providers: list[Any] = [CPU] if gpu is None else [(CUDA, {"device_id": gpu}), CPU]
-    how = onnxruntime.SessionOptions()
-    how.intra_op_num_threads = threads
-    how.log_severity_level = _ERRORS_ONLY
-    how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # spinning would slow down other processes
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.log_severity_level = _ERRORS_ONLY
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")  # spinning would slow down other processes
     try:
-        return onnxruntime.InferenceSession(str(file), how, providers=providers)
+        return onnxruntime.InferenceSession(str(file), options, providers=providers)
     except Exception as error:  # noqa: BLE001 - many classes, which onnxruntime does not document
-        raise _unloadable(file, error) from None
+        raise _load_error(file, error) from None
 
 
 def has_cuda() -> bool:
@@ -82,37 +82,37 @@ def has_cuda() -> bool:
     return CUDA in load_onnxruntime().get_available_providers()
 
 
-def reason_of(error: Exception) -> Phrase:
+def error_reason(error: Exception) -> Phrase:
     """Return the reason contained in an error message of onnxruntime."""
     lines = str(error).strip().splitlines() or [type(error).__name__]
-    reason = _OF_THE_LIBRARY.sub("", lines[0].rpartition(" : ")[2]).strip()
+    reason = _SOURCE_LOCATION.sub("", lines[0].rpartition(" : ")[2]).strip()
     return foreign(reason or type(error).__name__)
 
 
-def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
+def _load_error(file: Path, error: Exception) -> UnloadableNetworkError:
     try:
-        with file.open("rb") as opened:
-            start = opened.read(_START)
+        with file.open("rb") as stream:
+            header = stream.read(_HEADER_BYTES)
     except OSError as unread:
         return UnloadableNetworkError(foreign(unread.strerror or unread), None)
-    export = phrase("the file is damaged or incomplete: export or download it again")
-    if not start:
-        return UnloadableNetworkError(phrase("the file is empty"), export)
-    if start.startswith(b"version https://git-lfs"):
-        pull = phrase("run `git lfs pull`")
-        return UnloadableNetworkError(phrase("it is a Git LFS pointer, not the file itself"), pull)
-    if start.lstrip()[:1] == b"<":
-        address = phrase("the download address is not that of the file")
-        return UnloadableNetworkError(phrase("it is a web page"), address)
-    if set(start) <= _TEXT:
-        return UnloadableNetworkError(phrase("it is a text file, not an ONNX file"), export)
-    reason = reason_of(error)
+    export_hint = phrase("the file is damaged or incomplete: export or download it again")
+    if not header:
+        return UnloadableNetworkError(phrase("the file is empty"), export_hint)
+    if header.startswith(b"version https://git-lfs"):
+        pull_hint = phrase("run `git lfs pull`")
+        return UnloadableNetworkError(phrase("it is a Git LFS pointer, not the file itself"), pull_hint)
+    if header.lstrip()[:1] == b"<":
+        address_hint = phrase("the address is not the download address of the file")
+        return UnloadableNetworkError(phrase("it is a web page"), address_hint)
+    if set(header) <= _TEXT_BYTES:
+        return UnloadableNetworkError(phrase("it is a text file, not an ONNX file"), export_hint)
+    reason = error_reason(error)
     if "Protobuf parsing failed" in str(reason):
-        return UnloadableNetworkError(phrase("it is not an ONNX file, or it is incomplete"), export)
+        return UnloadableNetworkError(phrase("it is not an ONNX file, or it is incomplete"), export_hint)
     if _TOO_NEW.search(str(reason)):
-        newer = phrase("it requires a newer onnxruntime: update onnxruntime, or export it with a lower opset")
-        return UnloadableNetworkError(reason, newer)
-    if _SECOND_FILE.search(str(reason)):
-        beside = phrase("its weights are in a second file, which must be in the same folder")
-        return UnloadableNetworkError(reason, beside)
-    return UnloadableNetworkError(reason, export)
+        update_hint = phrase("it requires a newer onnxruntime: update onnxruntime, or export it with a lower opset")
+        return UnloadableNetworkError(reason, update_hint)
+    if _MISSING_WEIGHTS.search(str(reason)):
+        weights_hint = phrase("its weights are in a second file, which must be in the same folder")
+        return UnloadableNetworkError(reason, weights_hint)
+    return UnloadableNetworkError(reason, export_hint)

@@ -29,7 +29,7 @@ class ModelEntry:
         licence: the SPDX identifier.
         purpose: the purpose, in English.
         folder: the folder of the model in an archive; empty for a single file.
-        sha256: the checksum of the download; None if only those of `files` are known.
+        sha256: the checksum of the download; None if only the checksums of `files` are known.
         files: the paths in an archive, relative to `folder`, with their SHA-256.
     """
 
@@ -70,7 +70,7 @@ def model_entry(name: str) -> ModelEntry:
     """Return the model with a name.
 
     Raises:
-        LinkwrightError: MODEL101 there is no such model.
+        LinkwrightError: MODEL101 if there is no such model.
     """
     entry = model_table().get(name)
     if entry is None:

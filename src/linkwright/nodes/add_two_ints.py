@@ -47,14 +47,14 @@ class AddTwoIntsClient(SingleNode):
         if self._client.service_is_ready():
             self._timer.cancel()
             request = self._client.srv_type.Request(a=2, b=3)
-            self._client.call_async(request).add_done_callback(self._answered)
+            self._client.call_async(request).add_done_callback(self._log_result)
             return
         self._ticks += 1
         if self._ticks * 0.05 >= _WAIT_SECONDS:
             self._ticks = 0
             self._node.get_logger().info("service not available, waiting again...")
 
-    def _answered(self, future: Any) -> None:
+    def _log_result(self, future: Any) -> None:
         self._node.get_logger().info(f"Result of add_two_ints: {future.result().sum}")
         if not self.finished.done():
             self.finished.set_result(0)

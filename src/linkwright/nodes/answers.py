@@ -17,11 +17,11 @@ async def wait_for_future(node: Node, future: Any, seconds: float | None) -> boo
         future: a future of the graph, or of asyncio.
         seconds: the timeout in real time, even if the node uses simulated time; None for no limit.
     """
-    over: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
+    outcome: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
 
-    def resolve(came: bool) -> None:
-        if not over.done():
-            over.set_result(came)
+    def resolve(is_done: bool) -> None:
+        if not outcome.done():
+            outcome.set_result(is_done)
 
     clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
     group = ReentrantCallbackGroup()  # The node's default group may be occupied by the callback that waits.
@@ -30,34 +30,34 @@ async def wait_for_future(node: Node, future: Any, seconds: float | None) -> boo
         timer = node.create_timer(seconds, lambda: resolve(False), callback_group=group, clock=clock)
     future.add_done_callback(lambda _: resolve(True))
     try:
-        return await over
+        return await outcome
     finally:
         if timer is not None:
             node.destroy_timer(timer)
 
 
 async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
-    """Wait for a service to appear or disappear, and return whether it did before the timeout.
+    """Wait until a service appears or disappears; return False if the timeout expires first.
 
     Args:
         node: the node that waits.
         client: the client of the service.
-        seconds: the timeout; None for no limit.
+        seconds: the timeout in real time; None for no limit.
         wanted: True to wait until the service appears, False to wait until it disappears.
     """
     loop = asyncio.get_running_loop()
-    come: asyncio.Future[None] = loop.create_future()
+    state_reached: asyncio.Future[None] = loop.create_future()
 
     def look() -> None:
-        if not client.destroyed and not come.done() and client.service_is_ready() is wanted:
-            come.set_result(None)
+        if not client.destroyed and not state_reached.done() and client.service_is_ready() is wanted:
+            state_reached.set_result(None)
 
     def changed() -> None:
         loop.call_soon_threadsafe(look)
 
     node.graph.watch(changed)
     try:
-        return client.service_is_ready() is wanted or await wait_for_future(node, come, seconds)
+        return client.service_is_ready() is wanted or await wait_for_future(node, state_reached, seconds)
     finally:
         node.graph.unwatch(changed)
-        come.cancel()  # callbacks that are already scheduled then have no effect
+        state_reached.cancel()  # callbacks that are already scheduled then have no effect

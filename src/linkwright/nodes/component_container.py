@@ -23,8 +23,8 @@ class ComponentContainer(SingleNode):
     parameters from the parameter files of the container's process.
 
     Attributes:
-        on_loaded: called with each loaded node and the request that loaded it.
-        loading: returns a context that is entered while a node is created, to attribute its log lines.
+        on_loaded: callbacks, which receive each loaded node and its options.
+        loading: a function that returns a context, which is active while a node is created, to attribute its log lines.
     """
 
     DEFAULT_NAME = "ComponentManager"
@@ -33,48 +33,48 @@ class ComponentContainer(SingleNode):
         self._graph = graph
         self._library = options.library
         self._for_others = ParameterRules()
-        self._for_others.add(options.for_others)
+        self._for_others.add(options.parameters_of_others)
         self._for_others.add(parse(options.arguments).parameters)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        self._loaded: dict[int, RunningNode] = {}
+        self._loaded_nodes: dict[int, RunningNode] = {}
         self._last_id = 0
         self.on_loaded: list[Callable[[RunningNode, NodeOptions], None]] = []
         self.loading: Callable[[], AbstractContextManager[object]] = nullcontext
         with starting(self._node):
-            for name, kind, callback in (
+            for name, type_name, callback in (
                 ("load_node", "LoadNode", self._load),
                 ("unload_node", "UnloadNode", self._unload),
                 ("list_nodes", "ListNodes", self._list),
             ):
-                self._node.create_service(f"composition_interfaces/srv/{kind}", f"~/_container/{name}", callback)
+                self._node.create_service(f"composition_interfaces/srv/{type_name}", f"~/_container/{name}", callback)
 
     @property
     def loaded(self) -> dict[int, RunningNode]:
         """The loaded nodes by unique ID."""
-        return dict(self._loaded)
+        return dict(self._loaded_nodes)
 
     def close(self) -> None:
         """Unload all nodes and close the container."""
-        for number in tuple(self._loaded):
-            self._close(number)
+        for node_id in tuple(self._loaded_nodes):
+            self._close(node_id)
         super().close()
 
     def load(self, package: str, plugin: str, options: NodeOptions) -> tuple[int, RunningNode]:
         """Load a component, and return the unique ID and the node.
 
         Raises:
-            LinkwrightError: NODE601, there is no such component; or an error of the node itself.
+            LinkwrightError: NODE601 if there is no such component, or an error of the node itself.
         """
         factory = COMPONENTS.get((package, plugin))
         if factory is None:
-            raise _unknown(package, plugin)
+            raise _missing_component(package, plugin)
         with self.loading():
-            running = factory(self._graph, options)
+            running_node = factory(self._graph, options)
         self._last_id += 1
-        self._loaded[self._last_id] = running
+        self._loaded_nodes[self._last_id] = running_node
         for callback in self.on_loaded:
-            callback(running, options)
-        return self._last_id, running
+            callback(running_node, options)
+        return self._last_id, running_node
 
     def _load(self, request: Any, response: Any) -> Any:
         logger = self._node.get_logger()
@@ -85,12 +85,12 @@ class ComponentContainer(SingleNode):
             parameters={
                 parameter.name: Parameter.from_parameter_msg(parameter).value for parameter in request.parameters
             },
-            remappings=[_pair(rule) for rule in request.remap_rules],
+            remappings=[_parse_remapping(rule) for rule in request.remap_rules],
             library=self._library,
-            for_others=self._for_others,
+            parameters_of_others=self._for_others,
         )
         try:
-            number, running = self.load(request.package_name, request.plugin_name, options)
+            node_id, running_node = self.load(request.package_name, request.plugin_name, options)
         except LinkwrightError as error:
             problem = error.diagnostics[0].message
             logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400 - a user's mistake
@@ -99,12 +99,12 @@ class ComponentContainer(SingleNode):
             return response
         logger.info(f"Instantiate class: rclcpp_components::NodeFactoryTemplate<{request.plugin_name}>")
         response.success = True
-        response.unique_id = number
-        response.full_node_name = running.node.get_fully_qualified_name()
+        response.unique_id = node_id
+        response.full_node_name = running_node.node.get_fully_qualified_name()
         return response
 
     def _unload(self, request: Any, response: Any) -> Any:
-        if request.unique_id not in self._loaded:
+        if request.unique_id not in self._loaded_nodes:
             response.success = False
             response.error_message = f"No node found with unique_id: {request.unique_id}"
             self._node.get_logger().warning(response.error_message)
@@ -114,13 +114,13 @@ class ComponentContainer(SingleNode):
         return response
 
     def _list(self, _: Any, response: Any) -> Any:
-        for number, running in self._loaded.items():
-            response.unique_ids.append(number)
-            response.full_node_names.append(running.node.get_fully_qualified_name())
+        for node_id, running_node in self._loaded_nodes.items():
+            response.unique_ids.append(node_id)
+            response.full_node_names.append(running_node.node.get_fully_qualified_name())
         return response
 
-    def _close(self, number: int) -> None:
-        self._loaded.pop(number).close()
+    def _close(self, node_id: int) -> None:
+        self._loaded_nodes.pop(node_id).close()
 
 
 def load_request() -> Any:
@@ -128,18 +128,18 @@ def load_request() -> Any:
     return get_service("composition_interfaces/srv/LoadNode").Request()
 
 
-def _unknown(package: str, plugin: str) -> LinkwrightError:
+def _missing_component(package: str, plugin: str) -> LinkwrightError:
     message = phrase(
         "Failed to find class with the requested plugin name: package '{package}' has no component '{plugin}'",
         package=package,
         plugin=plugin,
     )
-    here = [name for owner, name in COMPONENTS if owner == package]
-    near = did_you_mean(plugin, here) or did_you_mean(plugin, [name for _, name in COMPONENTS])
-    if near is None and here:
-        near = phrase("the package has {names}", names=joined(here))
-    hint = near or phrase(
-        "without ROS only the nodes that come with Linkwright can be composed; others are compiled libraries"
+    package_plugins = [name for owner, name in COMPONENTS if owner == package]
+    suggestion = did_you_mean(plugin, package_plugins) or did_you_mean(plugin, [name for _, name in COMPONENTS])
+    if suggestion is None and package_plugins:
+        suggestion = phrase("the package has {names}", names=joined(package_plugins))
+    hint = suggestion or phrase(
+        "without ROS, only Linkwright's own nodes can be composed, because other components are compiled libraries"
     )
     return LinkwrightError(Diagnostic("NODE601", message, hint=hint))
 
@@ -148,6 +148,6 @@ def _text(diagnostic: Diagnostic) -> str:
     return diagnostic.message if diagnostic.hint is None else f"{diagnostic.message} ({diagnostic.hint})"
 
 
-def _pair(rule: str) -> tuple[str, str]:
+def _parse_remapping(rule: str) -> tuple[str, str]:
     source, _, target = rule.partition(":=")
     return source, target

@@ -15,10 +15,10 @@ _BAND_HEIGHT = 1 / 3
 
 
 class DemoCamera(SingleNode):
-    """The running cam2image node, with cam2image's parameters.
+    """The running cam2image node, with the same parameters as the ROS node.
 
     Raises:
-        LinkwrightError: NODE421, a parameter is invalid.
+        LinkwrightError: NODE421 if a parameter is invalid.
     """
 
     DEFAULT_NAME = "cam2image"
@@ -48,8 +48,8 @@ class DemoCamera(SingleNode):
                 )
         qos = QoSProfile(
             depth=depth,
-            history=HistoryPolicy[_policy(HistoryPolicy, "history", history)],
-            reliability=ReliabilityPolicy[_policy(ReliabilityPolicy, "reliability", reliability)],
+            history=HistoryPolicy[_policy_name(HistoryPolicy, "history", history)],
+            reliability=ReliabilityPolicy[_policy_name(ReliabilityPolicy, "reliability", reliability)],
         )
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/Image"), "image", qos)
         self._image = _stripes(width, height)
@@ -73,9 +73,9 @@ class DemoCamera(SingleNode):
 
 
 def _stripes(width: int, height: int) -> NDArray[np.uint8]:
-    """Return a test pattern: bars of eight colours above a ramp from black to white.
+    """Return a test image with bars of eight colours above a ramp from black to white.
 
-    The pixels are in BGR, of shape (height, width, 3).
+    The image has the channel order BGR and the shape (height, width, 3).
     """
     columns = np.arange(width)
     bars = 7 - columns * 8 // width
@@ -85,14 +85,14 @@ def _stripes(width: int, height: int) -> NDArray[np.uint8]:
     return image
 
 
-def _policy(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str) -> str:
-    known = [policy.name.lower() for policy in kind if policy.name not in ("UNKNOWN", "BEST_AVAILABLE")]
-    if value not in known:
+def _policy_name(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str) -> str:
+    choices = [policy.name.lower() for policy in kind if policy.name not in ("UNKNOWN", "BEST_AVAILABLE")]
+    if value not in choices:
         raise LinkwrightError(
             Diagnostic(
                 "NODE421",
-                phrase("parameter '{name}' is '{value}'", name=name, value=value),
-                hint=phrase("choose from {known}", known=joined(known)),
+                phrase("parameter '{name}' has the invalid value '{value}'", name=name, value=value),
+                hint=phrase("choose from {known}", known=joined(choices)),
             )
         )
     return value.upper()

@@ -14,34 +14,34 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 
 _PERIOD_SECONDS = 1.0
 _DEPTH = 10
-_ENDLESS = 1 << 31
+_UNLIMITED = 1 << 31
 
 
-class _Counted(SingleNode, ABC):
+class _CountingNode(SingleNode, ABC):
     """The base class of both nodes, which parses the arguments and ends after a number of messages."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
         with starting(self._node):
-            given = _read(self.DEFAULT_NAME, words)
-            self._left = given.number_of_cycles
-            self._begin(QoSProfile.of(_DEPTH) if given.reliable else SENSOR_DATA_QOS)
-        self._node.get_logger().info(f"{'Reliable' if given.reliable else 'Best effort'} {self._what}")
+            settings = _read(self.DEFAULT_NAME, arguments)
+            self._message_limit = settings.number_of_cycles
+            self._begin(QoSProfile.of(_DEPTH) if settings.reliable else SENSOR_DATA_QOS)
+        self._node.get_logger().info(f"{'Reliable' if settings.reliable else 'Best effort'} {self._what}")
 
     _what: str
 
     @abstractmethod
     def _begin(self, qos: QoSProfile) -> None: ...
 
-    def _counted(self) -> None:
+    def _count_message(self) -> None:
         self._count += 1
-        if self._count >= self._left and not self.finished.done():
+        if self._count >= self._message_limit and not self.finished.done():
             self.finished.set_result(0)
 
 
-class TalkerQos(_Counted):
+class TalkerQos(_CountingNode):
     """The running talker_qos node."""
 
     DEFAULT_NAME = "talker_qos"
@@ -55,10 +55,10 @@ class TalkerQos(_Counted):
         text = f"Hello World: {self._count}"
         self._node.get_logger().info(f'Publishing: "{text}"')
         self._publisher.publish(String(data=text))
-        self._counted()
+        self._count_message()
 
 
-class ListenerQos(_Counted):
+class ListenerQos(_CountingNode):
     """The running listener_qos node."""
 
     DEFAULT_NAME = "listener_qos"
@@ -69,16 +69,18 @@ class ListenerQos(_Counted):
 
     def _receive(self, message: String) -> None:
         self._node.get_logger().info(f"I heard: [{message.data}]")
-        self._counted()
+        self._count_message()
 
 
 def _read(name: str, words: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=name, add_help=False, exit_on_error=False)
     parser.add_argument("--reliable", action="store_true")
-    parser.add_argument("-n", "--number_of_cycles", type=int, default=_ENDLESS)
+    parser.add_argument("-n", "--number_of_cycles", type=int, default=_UNLIMITED)
     try:
         return parser.parse_known_args(words)[0]
     except argparse.ArgumentError as error:
         raise LinkwrightError(
-            Diagnostic("NODE602", phrase("arguments of {name}: {error}", name=name, error=foreign(error)))
+            Diagnostic(
+                "NODE602", phrase(("the arguments of '{name}' are invalid: {error}"), name=name, error=foreign(error))
+            )
         ) from error

@@ -9,7 +9,7 @@ from enum import IntEnum
 from linkwright.graph import Node
 from linkwright.messages import get_message
 
-_PERIOD = 1.0
+_PERIOD_SECONDS = 1.0
 _DEPTH = 1
 
 
@@ -43,21 +43,21 @@ class DiagnosticUpdater:
     def __init__(self, node: Node, task: str, ask: Callable[[], Health], hardware_id: str = "none") -> None:
         self._node = node
         self._task = task
-        self._ask = ask
+        self._get_health = ask
         self._hardware_id = hardware_id
         self._array = get_message("diagnostic_msgs/msg/DiagnosticArray")
         self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")
-        self._pair = get_message("diagnostic_msgs/msg/KeyValue")
+        self._key_value = get_message("diagnostic_msgs/msg/KeyValue")
         self._publisher = node.create_publisher(self._array, "/diagnostics", _DEPTH)
-        node.create_timer(_PERIOD, self._publish)
+        node.create_timer(_PERIOD_SECONDS, self._publish)
 
     def _publish(self) -> None:
-        health = self._ask()
+        health = self._get_health()
         status = self._status(
             name=f"{self._node.get_name()}: {self._task}", message=health.message, hardware_id=self._hardware_id
         )
         status.level = bytes([health.level])
-        status.values = [self._pair(key=key, value=value) for key, value in health.values.items()]
+        status.values = [self._key_value(key=key, value=value) for key, value in health.values.items()]
         message = self._array(status=[status])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)

@@ -32,7 +32,7 @@ class ReadWorld(Protocol):
 
     @property
     def read_ns(self) -> int:
-        """A time, in nanoseconds since the epoch, before the first of the world's files was read."""
+        """A time before the first file of the world was read, in nanoseconds since the epoch."""
 
 
 class FileFollower(Protocol):
@@ -54,7 +54,7 @@ class FileFollower(Protocol):
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Watch the files of a world; when one is saved, read the world and load it without new errors.
+        """Watch the files of a world; when one is saved, read the world again and load it if it has no new errors.
 
         Args:
             world: the current world.

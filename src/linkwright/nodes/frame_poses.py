@@ -7,31 +7,31 @@ from linkwright.graph import Node, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 
-_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_WARNING_PERIOD_SECONDS = 5.0
 
 
 class FramePoses:
-    """The transforms that a node has received.
+    """A lookup of frame poses in the transforms that a node receives.
 
     Args:
         node: the node that subscribes to ``/tf`` and ``/tf_static``.
-        complaint: the beginning of the warning about a missing transform.
+        warning_prefix: the beginning of the warning about a missing transform.
 
     Attributes:
         buffer: the transform buffer.
     """
 
-    def __init__(self, node: Node, complaint: str) -> None:
+    def __init__(self, node: Node, warning_prefix: str) -> None:
         self._node = node
-        self._complaint = complaint
+        self._warning_prefix = warning_prefix
         self.buffer = BufferCore(logger=node.get_logger().get_child("tf2"))
         TransformListener(self.buffer, node)
 
     def pose(self, target: str, source: str, time_ns: int) -> Transform | None:
-        """Return the pose of the frame `source` in the frame `target` at a time, or the latest pose.
+        """Return the pose of the frame `source` in the frame `target` at a time, or None if there is no transform.
 
-        The lookup does not wait. If the transform for the time has not arrived yet, the latest transform is used.
-        Without any transform, a throttled warning is logged and the result is None.
+        The lookup does not wait. If there is no transform for the time, the latest transform is used. If there is no
+        transform at all, a throttled warning is logged.
         """
         if target == source:
             return IDENTITY
@@ -43,6 +43,6 @@ class FramePoses:
             return self.buffer.lookup(target, source, 0)[0]
         except TransformException as error:
             self._node.get_logger().warning(
-                f"{self._complaint} {error}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
+                f"{self._warning_prefix} {error}", throttle_duration_sec=_WARNING_PERIOD_SECONDS
             )
             return None

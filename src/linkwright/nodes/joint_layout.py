@@ -111,83 +111,87 @@ class _Reader:
         self.problems: list[Diagnostic] = []
 
     def below(self, prefix: str) -> list[str]:
-        start = f"{prefix}."
-        return [name[len(start) :] for name in self._values if name.startswith(start)]
+        full_prefix = f"{prefix}."
+        return [name[len(full_prefix) :] for name in self._values if name.startswith(full_prefix)]
 
     def flag(self, name: str) -> bool:
         value = self._values[name]
         if not isinstance(value, bool):
-            self._complain(name, phrase("true or false"))
+            self._add_problem(name, phrase("true or false"))
         return bool(value)
 
     def number(self, name: str, *, positive: bool = False) -> float:
         value = self._values[name]
-        valid = isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
-        if not valid or (positive and value <= 0):
-            self._complain(name, phrase("a positive number") if positive else phrase("a number"))
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
+        if not is_number or (positive and value <= 0):
+            self._add_problem(name, phrase("a positive number") if positive else phrase("a number"))
             return 1.0
         return float(value)
 
     def texts(self, name: str) -> tuple[str, ...]:
         value = self._values[name]
         if not isinstance(value, Sequence) or isinstance(value, str) or not all(isinstance(v, str) for v in value):
-            self._complain(name, phrase("a list of topic names"))
+            self._add_problem(name, phrase("a list of topic names"))
             return ()
         return tuple(value)
 
     def dependent_joints(self) -> dict[str, Dependence]:
         dependent: dict[str, dict[str, Any]] = {}
-        for rest in self.below("dependent_joints"):
+        for entry_name in self.below("dependent_joints"):
             # Joint names can contain dots, so split at the last dot.
-            joint, _, entry = rest.rpartition(".")
-            if entry not in _DEPENDENT_FIELDS or not joint:
+            joint, _, field_name = entry_name.rpartition(".")
+            if field_name not in _DEPENDENT_FIELDS or not joint:
                 self.problems.append(
                     Diagnostic(
                         "NODE201",
                         phrase(
-                            "invalid dependent_joint name '{rest}': allowed are JOINT.parent, JOINT.factor and"
-                            " JOINT.offset",
-                            rest=rest,
+                            "invalid dependent_joint name '{rest}': write JOINT.parent, JOINT.factor or JOINT.offset",
+                            rest=entry_name,
                         ),
-                        hint=did_you_mean(entry, _DEPENDENT_FIELDS),
+                        hint=did_you_mean(field_name, _DEPENDENT_FIELDS),
                     )
                 )
             else:
-                dependent.setdefault(joint, {})[entry] = f"dependent_joints.{rest}"
+                dependent.setdefault(joint, {})[field_name] = f"dependent_joints.{entry_name}"
         return {joint: self._dependence(joint, names) for joint, names in dependent.items()}
 
     def _dependence(self, joint: str, names: Mapping[str, str]) -> Dependence:
         parent = self._values.get(names.get("parent", ""))
         if not isinstance(parent, str):
-            self._complain(f"dependent_joints.{joint}.parent", phrase("the name of a joint"))
+            self._add_problem(f"dependent_joints.{joint}.parent", phrase("the name of a joint"))
             parent = ""
         factor = self.number(names["factor"]) if "factor" in names else 1.0
         offset = self.number(names["offset"]) if "offset" in names else 0.0
         return Dependence(parent, factor, offset)
 
-    def _complain(self, name: str, expected: Phrase) -> None:
+    def _add_problem(self, name: str, expected: Phrase) -> None:
         value = self._values.get(name)
-        given = phrase("it is {value}", value=repr(value)) if value is not None else phrase("it is not given")
+        current_state = phrase("it is {value}", value=repr(value)) if value is not None else phrase("it is not given")
         self.problems.append(
             Diagnostic(
                 "NODE201",
-                phrase("parameter '{name}' must be {expected}, but {given}", name=name, expected=expected, given=given),
+                phrase(
+                    "parameter '{name}' must be {expected}, but {given}",
+                    name=name,
+                    expected=expected,
+                    given=current_state,
+                ),
             )
         )
 
 
 Array = NDArray[np.float64]
 
-_UNLIMITED_SPAN = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.0}
-"""The range of a slider whose joint has infinite limits: a turn, or two metres."""
+_UNLIMITED_RANGE = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.0}
+"""The range of the slider of a joint with infinite limits, by type: a full turn in rad, or two metres."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointRange:
     """A published joint with finite position limits (rad or m).
 
-    `zero` is the initial position: the joint's entry in ``zeros``, or else 0, or the middle of the range if 0 is
-    outside.
+    `zero` is the initial position: the joint's entry in ``zeros``. Without an entry, it is 0, or the middle of the
+    range if 0 is outside the range.
     """
 
     name: str
@@ -214,7 +218,7 @@ class JointLayout:
             chain; -1 if that joint does not move.
         factor: array of shape (n,): published position = factor * position of the master + offset.
         offset: array of shape (n,), see `factor`.
-        problems: the problems of the description; the joints concerned are omitted or do not move.
+        problems: the problems of the description; the affected joints are omitted or do not move.
     """
 
     ranges: Mapping[str, JointRange]
@@ -231,7 +235,7 @@ def empty_layout() -> JointLayout:
     return JointLayout({}, (), {}, np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0), ())
 
 
-def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
+def make_layout(robot: Robot, settings: JointSettings) -> JointLayout:
     """Compute the layout for a robot.
 
     Raises:
@@ -248,38 +252,37 @@ def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
             continue
         zero = settings.zeros.get(joint.name, _default_zero(*limits))
         ranges[joint.name] = JointRange(joint.name, joint.type, *limits, zero)
-        # The parameter takes precedence over <mimic>, and is still used after the description changes. The ROS node
-        # overwrites
-        # it.
+        # The parameter takes precedence over <mimic>, also after the description changes. The ROS node overwrites it
+        # then.
         if joint.name in settings.dependent_joints:
             dependent[joint.name] = settings.dependent_joints[joint.name]
         elif settings.use_mimic_tags and joint.mimic is not None:
             dependent[joint.name] = Dependence(joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset)
     free = tuple(ranges[name] for name in ranges if name not in dependent)
-    index = {joint.name: number for number, joint in enumerate(free)}
-    resolved = [_resolve(name, dependent) for name in ranges]
-    for name, (master, _, _) in zip(ranges, resolved, strict=True):
-        if master not in index:
+    free_indices = {joint.name: row for row, joint in enumerate(free)}
+    mimic_chains = [_resolve_chain(name, dependent) for name in ranges]
+    for name, (master, _, _) in zip(ranges, mimic_chains, strict=True):
+        if master not in free_indices:
             problems.append(f"joint '{name}' follows joint '{master}', which does not move")
     return JointLayout(
         ranges,
         free,
         dependent,
-        np.array([index.get(master, -1) for master, _, _ in resolved], dtype=np.intp),
-        np.array([factor for _, factor, _ in resolved], dtype=np.float64),
-        np.array([offset for *_, offset in resolved], dtype=np.float64),
+        np.array([free_indices.get(master, -1) for master, _, _ in mimic_chains], dtype=np.intp),
+        np.array([factor for _, factor, _ in mimic_chains], dtype=np.float64),
+        np.array([offset for *_, offset in mimic_chains], dtype=np.float64),
         tuple(problems),
     )
 
 
-def _resolve(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
+def _resolve_chain(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
     """Return the free joint at the end of a mimic chain, and the factor and offset of the whole chain."""
     chain = [name]
     factor, offset = 1.0, 0.0
-    while (link := dependent.get(name)) is not None:
-        offset += factor * link.offset
-        factor *= link.factor
-        name = link.parent
+    while (dependence := dependent.get(name)) is not None:
+        offset += factor * dependence.offset
+        factor *= dependence.factor
+        name = dependence.parent
         if name in chain:
             message = phrase("Found an infinite recursive mimic chain: {value}", value=[*chain, name])
             raise LinkwrightError(Diagnostic("NODE202", message))
@@ -295,21 +298,21 @@ def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple
     if joint.type == "continuous":
         lower, upper = -pi, pi
     else:
-        missing = _missing_limit(joint)
-        if missing is not None or joint.limit is None:
+        missing_limit = _missing_limit(joint)
+        if missing_limit is not None or joint.limit is None:
             problems.append(
                 f'Limits must be specified for joint "{joint.name}" of type "{joint.type}"'
-                if missing is None
-                else f'"{missing}" limit must be specified for joint "{joint.name}" of type "{joint.type}"'
+                if missing_limit is None
+                else f'"{missing_limit}" limit must be specified for joint "{joint.name}" of type "{joint.type}"'
             )
             return None
         lower, upper = joint.limit.lower, joint.limit.upper
     if settings.use_smallest_joint_limits and joint.safety is not None:
-        if _is_given(joint, "safety_controller", "soft_lower_limit"):
+        if _is_set(joint, "safety_controller", "soft_lower_limit"):
             lower = max(lower, joint.safety.soft_lower_limit)
-        if _is_given(joint, "safety_controller", "soft_upper_limit"):
+        if _is_set(joint, "safety_controller", "soft_upper_limit"):
             upper = min(upper, joint.safety.soft_upper_limit)
-    return _finite(min(lower, upper), max(lower, upper), _UNLIMITED_SPAN[joint.type])
+    return _finite_limits(min(lower, upper), max(lower, upper), _UNLIMITED_RANGE[joint.type])
 
 
 def _missing_limit(joint: Joint) -> str | None:
@@ -320,12 +323,12 @@ def _missing_limit(joint: Joint) -> str | None:
     if joint.limit is None:
         return None
     for name, value in (("lower", joint.limit.lower), ("upper", joint.limit.upper)):
-        if isfinite(value) and not _is_given(joint, "limit", name):
+        if isfinite(value) and not _is_set(joint, "limit", name):
             return name
     return None
 
 
-def _is_given(joint: Joint, tag: str, attribute: str) -> bool:
+def _is_set(joint: Joint, tag: str, attribute: str) -> bool:
     """Return whether the file sets an attribute of a joint's child element.
 
     The result is always True for a joint that was not read from a file.
@@ -336,11 +339,11 @@ def _is_given(joint: Joint, tag: str, attribute: str) -> bool:
     return element is not None and attribute in element.attributes
 
 
-def _finite(lower: float, upper: float, span: float) -> tuple[float, float]:
+def _finite_limits(lower: float, upper: float, default_range: float) -> tuple[float, float]:
     if isfinite(lower) and isfinite(upper):
         return lower, upper
     if isfinite(lower):
-        return lower, lower + span
+        return lower, lower + default_range
     if isfinite(upper):
-        return upper - span, upper
-    return -span / 2.0, span / 2.0
+        return upper - default_range, upper
+    return -default_range / 2.0, default_range / 2.0

@@ -6,7 +6,7 @@ The node follows the ROS 2 node of that name (2.4), with these deliberate differ
 - After a new description, existing joints keep their positions, and the first message is published immediately.
 - A parameter that is changed while the node runs takes effect.
 - Descriptions are URDF. SDF and COLLADA, which the ROS node also reads, are reported and ignored.
-- Infinite limits become a range that a slider can show, and an invalid description leaves the previous one in use.
+- Infinite limits become a range that a slider can show, and an invalid description does not replace the previous one.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from linkwright.nodes.joint_layout import (
     JointSettings,
     declare_settings,
     empty_layout,
-    layout_of,
+    make_layout,
     settings_from,
 )
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -50,8 +50,8 @@ class _Quantity:
     """The positions, velocities or efforts of the free joints; NaN for a joint without a value."""
 
     def __init__(self, values: Array) -> None:
-        self._with_zero = np.append(values, 0.0)
-        self.values = self._with_zero[:-1]
+        self._values_and_zero = np.append(values, 0.0)
+        self.values = self._values_and_zero[:-1]
 
     def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
         """Return a value for each published joint, for a message.
@@ -61,22 +61,22 @@ class _Quantity:
 
         Args:
             layout: the joints.
-            scaled: whether the factors of mimic joints apply.
-            shifted: whether the offsets of mimic joints apply.
+            scaled: whether to multiply by the factors of mimic joints.
+            shifted: whether to add the offsets of mimic joints.
         """
         if np.isnan(self.values).all():
             return None
-        spread: Array = self._with_zero[layout.masters]  # masters is -1 for joints that do not move
+        expand: Array = self._values_and_zero[layout.masters]  # masters is -1 for joints that do not move
         if scaled:
-            spread *= layout.factor
+            expand *= layout.factor
         if shifted:
-            spread += layout.offset
-        spread[np.isnan(spread)] = 0.0
-        return spread
+            expand += layout.offset
+        expand[np.isnan(expand)] = 0.0
+        return expand
 
 
 class JointPositions:
-    """Positions (rad or m), velocities and efforts of the free joints, on which the other joints depend.
+    """Positions (rad or m), velocities and efforts of the free joints; mimic joints depend on them.
 
     Args:
         settings: the settings, which determine the quantities that joints have from the start.
@@ -93,41 +93,40 @@ class JointPositions:
         """Change to another layout.
 
         Joints that are free in both layouts and have left their initial position keep their state, clamped to the new
-        limits.
-        All other joints start at their zero position.
+        limits. All other joints start at their zero position.
         """
-        before, rows_before = self._free_states(), self._rows
-        zeros_before = {joint.name: joint.zero for joint in self.layout.free}
+        old_states, old_rows = self._free_states(), self._rows
+        old_zeros = {joint.name: joint.zero for joint in self.layout.free}
         self.layout = layout
         self._rows = {joint.name: row for row, joint in enumerate(layout.free)}
-        start = [joint.zero if settings.publish_default_positions else np.nan for joint in layout.free]
+        initial_positions = [joint.zero if settings.publish_default_positions else np.nan for joint in layout.free]
         count = len(layout.free)
-        self._position = _Quantity(np.array(start, dtype=np.float64))
+        self._position = _Quantity(np.array(initial_positions, dtype=np.float64))
         self._velocity = _Quantity(np.full(count, 0.0 if settings.publish_default_velocities else np.nan))
         self._effort = _Quantity(np.full(count, 0.0 if settings.publish_default_efforts else np.nan))
         self._direction = np.ones(count)
         self._lower = np.array([joint.lower for joint in layout.free])
         self._upper = np.array([joint.upper for joint in layout.free])
-        self._ahead = self._upper
-        self._wraps = np.array([joint.kind == "continuous" for joint in layout.free], dtype=np.bool_)
+        self._reversal_limit = self._upper
+        self._is_continuous = np.array([joint.kind == "continuous" for joint in layout.free], dtype=np.bool_)
         for joint in layout.free:
-            row = rows_before.get(joint.name)
+            row = old_rows.get(joint.name)
             if row is not None:
-                self._store(joint, before[:, row], zeros_before[joint.name])
+                self._store(joint, old_states[:, row], old_zeros[joint.name])
 
     def apply_message(self, message: JointState) -> None:
         """Apply the values of a message to the free joints, without clamping positions to the limits."""
-        for number, name in enumerate(message.name):
+        for index, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
                 continue
-            for quantity, given in (
+            for quantity, values in (
                 (self._position, message.position),
                 (self._velocity, message.velocity),
                 (self._effort, message.effort),
             ):
-                if number < len(given):
-                    quantity.values[row] = given[number]
+                if index < len(values):
+                    quantity.values[row] = values[index]
 
     def sweep(self, delta: float) -> None:
         """Move every free joint by `delta` (rad or m); joints reverse at their limits.
@@ -136,11 +135,13 @@ class JointPositions:
         """
         position, direction = self._position.values, self._direction
         position += direction * delta
-        beyond = (position - self._ahead) * direction > 0.0
-        if beyond.any():
-            position[beyond] = np.where(self._wraps, self._lower, self._ahead)[beyond]
-            self._direction = np.where(beyond & ~self._wraps, -direction, direction)
-            self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
+        has_passed_limit = (position - self._reversal_limit) * direction > 0.0
+        if has_passed_limit.any():
+            position[has_passed_limit] = np.where(self._is_continuous, self._lower, self._reversal_limit)[
+                has_passed_limit
+            ]
+            self._direction = np.where(has_passed_limit & ~self._is_continuous, -direction, direction)
+            self._reversal_limit = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
         """Set the position of a free joint, clamped to its limits.
@@ -281,7 +282,7 @@ class JointStatePublisher(SingleNode):
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE205",
-                        phrase("'{path}' is {other}, but this node reads only URDF", path=path, other=other),
+                        phrase("'{path}' contains {other}, but this node reads only URDF", path=path, other=other),
                         hint=phrase("the ROS node reads SDF and COLLADA too; convert the file to URDF"),
                     )
                 )
@@ -305,7 +306,7 @@ class JointStatePublisher(SingleNode):
             self._node.get_logger().error(str(error))
 
     def _configure(self, robot: Robot) -> None:
-        layout = layout_of(robot, self._settings)
+        layout = make_layout(robot, self._settings)
         self._joints.take_over(layout, self._settings)
         self._robot = robot
         for problem in layout.problems:
@@ -323,7 +324,7 @@ class JointStatePublisher(SingleNode):
         try:
             settings = self._read_settings(parameters)
             if self._robot is not None:
-                layout_of(self._robot, settings)
+                make_layout(self._robot, settings)
         except LinkwrightError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)

@@ -50,7 +50,7 @@ class JointPanel:
     Args:
         node: the node whose executor runs the callbacks of subscribers.
         joints: the positions that the sliders set.
-        publish_soon: called when the panel changed a position.
+        publish_soon: called after the panel has changed a position.
         random: the random generator for `randomize`.
     """
 
@@ -75,8 +75,8 @@ class JointPanel:
 
     def positions(self) -> dict[str, float]:
         """Return the position of each joint with a slider by name, in rad or m."""
-        published = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
-        return {slider.name: published[slider.name] for slider in self._sliders}
+        published_positions = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
+        return {slider.name: published_positions[slider.name] for slider in self._sliders}
 
     def set_position(self, name: str, value: float) -> bool:
         """Set the position of a joint, clamped to its limits.
@@ -89,26 +89,28 @@ class JointPanel:
             Whether the joint was moved. The result is False for a joint that has no slider or mimics another joint, and
             for a value that is not a finite number.
         """
-        slider = next((row for row in self._sliders if row.name == name and row.mimic is None), None)
+        slider = next(
+            (candidate for candidate in self._sliders if candidate.name == name and candidate.mimic is None), None
+        )
         if slider is None or not isfinite(value):
             return False
         self._joints.set(name, value)
-        self._moved()
+        self._publish_move()
         return True
 
     def randomize(self) -> None:
         """Set every free joint to a random position within its limits."""
         self._logger.info("Randomizing")
-        for slider in self._free():
+        for slider in self._free_sliders():
             self._joints.set(slider.name, self._random.uniform(slider.lower, slider.upper))
-        self._moved()
+        self._publish_move()
 
     def center(self) -> None:
         """Set every free joint to its zero position, which need not be the middle of its range."""
         self._logger.info("Centering")
-        for slider in self._free():
+        for slider in self._free_sliders():
             self._joints.set(slider.name, slider.zero)
-        self._moved()
+        self._publish_move()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
         """Register a callback for changes.
@@ -130,12 +132,12 @@ class JointPanel:
     def rebuild(self) -> None:
         """Rebuild the sliders for the current layout of the joints."""
         layout = self._joints.layout
-        movable = {joint.name for joint in layout.free if joint.lower != joint.upper}
-        free = layout.free
-        masters = [free[master].name if master >= 0 else "" for master in layout.masters.tolist()]
-        zeros = [free[master].zero if master >= 0 else 0.0 for master in layout.masters.tolist()]
-        follows_nothing = Dependence("")
-        follows = [layout.dependent.get(name, follows_nothing) for name in layout.ranges]
+        movable_names = {joint.name for joint in layout.free if joint.lower != joint.upper}
+        free_joints = layout.free
+        master_names = [free_joints[master].name if master >= 0 else "" for master in layout.masters.tolist()]
+        zeros = [free_joints[master].zero if master >= 0 else 0.0 for master in layout.masters.tolist()]
+        no_dependence = Dependence("")
+        dependences = [layout.dependent.get(name, no_dependence) for name in layout.ranges]
         self._sliders = [
             JointSlider(
                 joint.name,
@@ -143,32 +145,32 @@ class JointPanel:
                 joint.lower,
                 joint.upper,
                 factor * zero + offset,
-                direct.parent or None,
-                direct.factor,
-                direct.offset,
+                dependence.parent or None,
+                dependence.factor,
+                dependence.offset,
             )
-            for joint, direct, master, zero, factor, offset in zip(
+            for joint, dependence, master, zero, factor, offset in zip(
                 layout.ranges.values(),
-                follows,
-                masters,
+                dependences,
+                master_names,
                 zeros,
                 layout.factor.tolist(),
                 layout.offset.tolist(),
                 strict=True,
             )
-            if master in movable
+            if master in movable_names
         ]
         self._sliders_changed.trigger()
         self.notice_positions()
 
     def notice_positions(self) -> None:
-        """Notify subscribers that joints were moved by something other than the panel."""
+        """Notify the subscribers that joints have moved."""
         self._positions_changed.trigger()
 
-    def _free(self) -> list[JointSlider]:
+    def _free_sliders(self) -> list[JointSlider]:
         return [slider for slider in self._sliders if slider.mimic is None]
 
-    def _moved(self) -> None:
+    def _publish_move(self) -> None:
         self._publish_soon()
         self.notice_positions()
 
@@ -183,8 +185,8 @@ class JointPanel:
 class JointStatePublisherGui(JointStatePublisher):
     """The running joint_state_publisher_gui node, named ``joint_state_publisher`` by default as in ROS.
 
-    The move of a slider is published immediately; several moves in one iteration of the event loop share one message.
-    Messages on the topics of ``source_list`` move the sliders.
+    When sliders move, one message is published in the next iteration of the event loop. Messages on the topics of
+    ``source_list`` move the sliders, too.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

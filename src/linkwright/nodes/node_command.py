@@ -30,4 +30,4 @@ class NodeCommand:
 
 
 CommandParser = Callable[[Sequence[str]], NodeCommand | None]
-"""Returns the node for the words of a command line, program first; None if it does not replace that command."""
+"""Returns the node for the arguments of a command line, starting with the program; None if it does not replace it."""

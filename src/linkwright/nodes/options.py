@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 N = TypeVar("N", bound=Node)
 
 
-def _library() -> DescriptionLibrary:
+def _new_library() -> DescriptionLibrary:
     from linkwright.descriptions import DescriptionLibrary
 
     return DescriptionLibrary()
 
 
-def _print(line: str) -> None:
+def _print_line(line: str) -> None:
     print(line, flush=True)
 
 
@@ -53,9 +53,9 @@ class NodeOptions:
         remappings: the rules ``(from, to)``.
         arguments: the command line without the program's name, including ``--ros-args`` sections.
         library: the parsed robot descriptions that the process shares.
-        for_others: the parameters of further nodes that the node creates, by node name, from the parameter files of its
-            process.
-        environment: the environment variables with which the node looks for files; by default the environment of the
+        parameters_of_others: the parameters of other nodes that the node creates, by node name, from the parameter
+            files of its process.
+        environment: the environment variables that the node uses to find files; by default the environment of the
             process.
         output: receives the lines that the node prints as its result; by default standard output.
         terminal: the file descriptor of a terminal that only this node uses; None if the node shares its process.
@@ -66,17 +66,17 @@ class NodeOptions:
     parameters: dict[str, Any] = field(default_factory=dict)
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
-    library: DescriptionLibrary = field(default_factory=_library)
-    for_others: ParameterRules = field(default_factory=ParameterRules)
+    library: DescriptionLibrary = field(default_factory=_new_library)
+    parameters_of_others: ParameterRules = field(default_factory=ParameterRules)
     environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
-    output: Callable[[str], None] = _print
+    output: Callable[[str], None] = _print_line
     terminal: int | None = None
 
 
 class RunningNode(Protocol):
     """A running node.
 
-    Some nodes also implement one of the protocols below, for which their host checks.
+    Some nodes also implement one of the protocols below; the host checks which ones a node implements.
     """
 
     @property
@@ -100,9 +100,9 @@ class LoadingNode(RunningNode, Protocol):
     """A node that loads further nodes into its process."""
 
     on_loaded: list[Callable[[RunningNode, NodeOptions], None]]
-    """Called with each loaded node and the options that it was loaded with."""
+    """The functions to call with each loaded node and its options."""
     loading: Callable[[], AbstractContextManager[object]]
-    """Returns a context that is active while a node is created; the host replaces it."""
+    """The function that returns a context for the creation of a node; the host replaces this function."""
 
 
 @runtime_checkable
@@ -126,9 +126,7 @@ class NodeWithFiles(RunningNode, Protocol):
 
 
 class SingleNode:
-    """The base class of most nodes of this package, which have one node in the graph, `_node`.
-
-    `close` destroys this node.
+    """The base class of nodes with a single node in the graph, `_node`, which `close` destroys.
 
     Attributes:
         DEFAULT_NAME: the name of a node whose options do not set a name; not defined if each node has a different name.
@@ -161,7 +159,7 @@ def create_node(
         graph: the graph to which the node is added.
         options: the options of the node.
         default_name: the name of the node if the options do not set one.
-        any_parameters: whether to declare all given parameters, and to accept undeclared ones.
+        any_parameters: whether to declare all parameters in the options, and to accept undeclared parameters.
 
     Returns:
         The node, and the command-line arguments that are not ROS arguments.
@@ -169,10 +167,10 @@ def create_node(
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
     """
-    return create_node_of(Node, graph, options, default_name, any_parameters=any_parameters)
+    return create_node_with_class(Node, graph, options, default_name, any_parameters=any_parameters)
 
 
-def create_node_of(
+def create_node_with_class(
     node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[N, list[str]]:
     """Create a node as `create_node` does, with a subclass of `Node` or a function that creates one.
@@ -180,27 +178,30 @@ def create_node_of(
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
     """
-    ros = parse(options.arguments)
+    ros_arguments = parse(options.arguments)
     name = options.name or default_name
-    remappings = [*ros.remappings_for(name), *options.remappings]
+    remappings = [*ros_arguments.remappings_for(name), *options.remappings]
     node = node_class(
         graph,
         name,
         namespace=options.namespace,
-        parameters={**options.parameters, **ros.parameters_for(_full_name(name, options.namespace, remappings))},
+        parameters={
+            **options.parameters,
+            **ros_arguments.parameters_for(_full_name(name, options.namespace, remappings)),
+        },
         remappings=remappings,
-        enclave=ros.enclave or "/",
-        enable_rosout=ros.rosout_logs is not False,
+        enclave=ros_arguments.enclave or "/",
+        enable_rosout=ros_arguments.rosout_logs is not False,
         allow_undeclared_parameters=any_parameters,
         automatically_declare_parameters_from_overrides=any_parameters,
     )
-    _set_levels(graph, node, ros)
-    return node, ros.others
+    _set_log_levels(graph, node, ros_arguments)
+    return node, ros_arguments.others
 
 
 @contextmanager
 def starting(node: Node) -> Iterator[None]:
-    """On an error in the context, log it as FATAL, destroy the node and raise the error again."""
+    """Return a context that, on an error, logs it as FATAL, destroys the node and raises the error again."""
     try:
         yield
     except LinkwrightError as error:
@@ -214,14 +215,14 @@ def _full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> 
     return join(absolute_namespace(rules.namespace(namespace, name)), rules.node_name(name))
 
 
-def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
+def _set_log_levels(graph: Graph, node: Node, ros_arguments: RosArguments) -> None:
     """Apply the options ``--log-level``.
 
     An option without the name of a logger applies only to this node, which may share its process with other nodes.
     """
-    if ros.log_level is not None:
-        node.get_logger().set_level(ros.log_level)
-    for logger, level in ros.log_levels.items():
+    if ros_arguments.log_level is not None:
+        node.get_logger().set_level(ros_arguments.log_level)
+    for logger, level in ros_arguments.log_levels.items():
         graph.get_logger(logger).set_level(level)
 
 
@@ -238,11 +239,11 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
     @cached_property
     def entry_points(self) -> dict[tuple[str, str], EntryPoint]:
         """The entry points by package and executable or plugin."""
-        found: dict[tuple[str, str], EntryPoint] = {}
-        for name, entry in extensions(self._group).items():
+        entry_points: dict[tuple[str, str], EntryPoint] = {}
+        for name, entry_point in extensions(self._group).items():
             package, _, node = name.partition("/")
-            found[package, node] = entry
-        return found
+            entry_points[package, node] = entry_point
+        return entry_points
 
     def __getitem__(self, key: tuple[str, str]) -> Factory:
         """Return the function or class that starts a node.
@@ -251,13 +252,15 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
             KeyError: there is no such node.
             LinkwrightError: NODE002, the package that provides the node cannot be imported.
         """
-        entry = self.entry_points[key]
+        entry_point = self.entry_points[key]
         try:
-            factory: Factory = entry.load()
+            factory: Factory = entry_point.load()
         except Exception as error:
             package, name = key
             message = phrase("the node '{package}/{name}' cannot be imported", package=package, name=name)
-            hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
+            hint = phrase(
+                ("it is part of '{place}': {problem}"), place=entry_point.distribution, problem=foreign(error)
+            )
             raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
         return factory
 

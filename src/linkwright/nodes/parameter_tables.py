@@ -51,13 +51,13 @@ _TYPES: dict[Any, ParameterType] = {
     bool | None: ParameterType.BOOL,
 }
 HUMBLE, JAZZY = "humble", "jazzy"
-"""Distributions to which a parameter may be limited."""
+"""The distributions to which a parameter may be limited."""
 
-_SAME = object()
+_UNCHANGED = object()
 _ATTRIBUTE = lazy_pattern(r"(?m)^    (\w+): (.*(?:\n     .*)*)")
 """An entry below ``Attributes:`` of a docstring."""
-_NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"
-_OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
+_NAMES, _TABLE, _PREFIX, _PROPERTIES = "names", "table", "below", "about"
+_COMMON_PARAMETERS = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
 
 
 @dataclass(frozen=True)
@@ -66,12 +66,12 @@ class NoParameters:
 
 
 @dataclass(frozen=True, slots=True)
-class _About:
+class _Properties:
     description: str = ""
     read_only: bool = False
     check: Check | None = None
     only: str = ""
-    later: Any = _SAME
+    later: Any = _UNCHANGED
 
 
 def parameter(
@@ -81,7 +81,7 @@ def parameter(
     read_only: bool = False,
     check: Check | None = None,
     only: str = "",
-    later: Any = _SAME,
+    later: Any = _UNCHANGED,
 ) -> Any:
     """Declare a parameter with a constraint, a description or a default that varies.
 
@@ -90,23 +90,23 @@ def parameter(
         description: the purpose of the parameter, with its unit.
         read_only: whether the value cannot change after the declaration.
         check: the constraint on the value.
-        only: the only distribution that has the parameter, `HUMBLE` or `JAZZY`, each including its neighbours; empty if
-            both have it.
-        later: the default from Iron on, if it differs.
+        only: the only distribution that has the parameter, `HUMBLE` or `JAZZY`; empty if both have the parameter.
+            Each of them also covers the distributions near it.
+        later: the default in Iron and later, if it differs.
     """
-    return field(default=default, metadata={_ABOUT: _About(description, read_only, check, only, later)})
+    return field(default=default, metadata={_PROPERTIES: _Properties(description, read_only, check, only, later)})
 
 
-def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
+def for_each(names: str, table: type[Any], *, prefix: str = "") -> Any:
     """Declare a group of parameters for each name in another parameter, such as ``gains.JOINT.p``.
 
     Args:
         names: the parameter that contains the names, which precedes this field in the same table; several parameters
             are separated by spaces.
         table: the dataclass with the parameters for one name.
-        below: the prefix of the parameters, if it differs from the name of the field.
+        prefix: the prefix of the parameters, if it differs from the name of the field.
     """
-    return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _BELOW: below})
+    return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _PREFIX: prefix})
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,15 +144,15 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
     """
     kinds, described = _kinds(table), _attributes(table)
     for entry in fields(table):
-        name = f"{prefix}{entry.metadata.get(_BELOW) or entry.name}"
+        name = f"{prefix}{entry.metadata.get(_PREFIX) or entry.name}"
         if _NAMES in entry.metadata:
             yield from entries(entry.metadata[_TABLE], f"{name}.*.", entry.metadata[_NAMES])
         elif is_dataclass(kinds[entry.name]):
             yield from entries(kinds[entry.name], f"{name}.", keys)
         else:
-            about: _About = entry.metadata.get(_ABOUT, _About())
+            about: _Properties = entry.metadata.get(_PROPERTIES, _Properties())
             default = None if entry.default is MISSING else entry.default
-            if about.later is not _SAME and not is_before_iron():
+            if about.later is not _UNCHANGED and not is_before_iron():
                 default = about.later
             choices = about.check.words if isinstance(about.check, _OneOf) else ()
             description = about.description or described.get(entry.name, "")
@@ -170,7 +170,7 @@ class _Declaration:
     name: str
     kind: ParameterType
     default: Any
-    about: _About
+    about: _Properties
 
 
 def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
@@ -218,7 +218,7 @@ class ParameterTable(Generic[P]):
     def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
         """Yield each given parameter that does not exist, with a suggestion of the intended name or None."""
         for name in self._node.undeclared_overrides():
-            if not name.startswith(_OF_EVERY_NODE):
+            if not name.startswith(_COMMON_PARAMETERS):
                 yield name, did_you_mean(name, self._reader.declared)
 
     def _read(self) -> P:
@@ -255,16 +255,16 @@ class _Reader:
             if _NAMES in entry.metadata:
                 keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _listed(values[names]))
                 inside = entry.metadata[_TABLE]
-                name = f"{prefix}{entry.metadata[_BELOW] or entry.name}"
+                name = f"{prefix}{entry.metadata[_PREFIX] or entry.name}"
                 values[entry.name] = {key: self.read(inside, f"{name}.{key}.") for key in keys}
             elif is_dataclass(kind):
                 values[entry.name] = self.read(kind, f"{name}.")
             else:
                 default = entry.default if entry.default is not MISSING else None
-                about = entry.metadata.get(_ABOUT, _About())
+                about = entry.metadata.get(_PROPERTIES, _Properties())
                 if usual is not None:
                     default = getattr(usual, entry.name)
-                elif about.later is not _SAME and not is_before_iron():
+                elif about.later is not _UNCHANGED and not is_before_iron():
                     default = about.later
                 values[entry.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
         return table(**values)

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from linkwright.graph.command_line.log_setup import Logging
     from linkwright.nodes.options import Factory
 
-_APART = {("rmw_zenoh_cpp", "rmw_zenohd")}
-"""Programs that carry messages of others, and take no part in their graph."""
+_GRAPHLESS_PROGRAMS = {("rmw_zenoh_cpp", "rmw_zenohd")}
+"""Programs that forward messages of other nodes, and do not join the graph."""
 
-_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""The signals that end a node: of Ctrl-C, of another program, of a closed terminal."""
+_END_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+"""The signals that end a node: from Ctrl-C, from another program, and from a closed terminal."""
 
 
 def main(package: str, executable: str, arguments: Sequence[str]) -> int:
@@ -48,16 +48,16 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
 
     accept_any_text()
     try:
-        factory = _factory(package, executable)
-        ros = parse(arguments)
-        print_diagnostics([finding for _, finding in ros.parameters.left_out], sys.stderr)
-        logging = set_up(ros, executable)
+        factory = _find_factory(package, executable)
+        ros_arguments = parse(arguments)
+        print_diagnostics([finding for _, finding in ros_arguments.parameters.left_out], sys.stderr)
+        logging = set_up(ros_arguments, executable)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1
-    joins = (package, executable) not in _APART
+    joins_graph = (package, executable) not in _GRAPHLESS_PROGRAMS
     try:
-        return run_coroutine(lambda: _run(factory, list(arguments), logging, joins=joins), raise_interrupts)
+        return run_coroutine(lambda: _run(factory, list(arguments), logging, joins=joins_graph), raise_interrupts)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1
@@ -72,29 +72,29 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging, *, join
     from linkwright.nodes.options import FinishingNode, NodeOptions
 
     loop = asyncio.get_running_loop()
-    ended = asyncio.Event()
-    for number in _SIGNALS:
-        if number == getattr(signal, "SIGHUP", None) and signal.getsignal(number) is signal.SIG_IGN:
+    end_event = asyncio.Event()
+    for signal_number in _END_SIGNALS:
+        if signal_number == getattr(signal, "SIGHUP", None) and signal.getsignal(signal_number) is signal.SIG_IGN:
             continue  # keep ignoring the signal, as nohup requests
         # The event loops of some platforms do not support signal handlers; KeyboardInterrupt then ends the process.
         with contextlib.suppress(NotImplementedError):
-            loop.add_signal_handler(number, ended.set)
+            loop.add_signal_handler(signal_number, end_event.set)
     graph = Graph(on_log=logging.sink, levels=logging.levels)
     try:
         if joins:
             _join_network(graph)
-        running = factory(graph, NodeOptions(arguments=arguments, terminal=_terminal()))
-        if isinstance(running, FinishingNode):
-            running.finished.add_done_callback(lambda _: ended.set())
-        await ended.wait()
-        status = running.finished.result() if isinstance(running, FinishingNode) and running.finished.done() else 0
-        running.close()
+        node = factory(graph, NodeOptions(arguments=arguments, terminal=_terminal_descriptor()))
+        if isinstance(node, FinishingNode):
+            node.finished.add_done_callback(lambda _: end_event.set())
+        await end_event.wait()
+        status = node.finished.result() if isinstance(node, FinishingNode) and node.finished.done() else 0
+        node.close()
         return status
     finally:
         await graph.close()
 
 
-def _terminal() -> int | None:
+def _terminal_descriptor() -> int | None:
     """Return the file descriptor of standard input if it is a terminal, otherwise None."""
     try:
         descriptor = sys.stdin.fileno()
@@ -109,7 +109,7 @@ def _join_network(graph: Graph) -> None:
     join(graph)
 
 
-def _factory(package: str, executable: str) -> Factory:
+def _find_factory(package: str, executable: str) -> Factory:
     from linkwright.nodes.options import EXECUTABLES
 
     factory = EXECUTABLES.get((package, executable))
@@ -121,7 +121,7 @@ def _factory(package: str, executable: str) -> Factory:
         raise LinkwrightError(
             Diagnostic(
                 "NODE001",
-                phrase("package '{package}' has no node that comes with Linkwright", package=package),
+                phrase("Linkwright provides no nodes of the package '{package}'", package=package),
                 hint=hint,
             )
         )

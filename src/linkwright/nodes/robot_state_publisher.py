@@ -56,7 +56,7 @@ class JointMotion:
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
-        self._fixed, self._cosine, self._sine, self._linear = np.zeros((4, len(joints), 7))
+        self._fixed_joints, self._cosine, self._sine, self._linear = np.zeros((4, len(joints), 7))
         for row, joint in enumerate(joints):
             self._add(row, joint)
 
@@ -65,17 +65,17 @@ class JointMotion:
 
         The result has shape (n, 7): x y z in metres, and the quaternion qx qy qz qw.
         """
-        half = (0.5 * positions)[:, np.newaxis]
-        turned: Array = self._cosine * np.cos(half)
-        turned += self._sine * np.sin(half)
-        turned += self._linear * positions[:, np.newaxis]
-        turned += self._fixed
-        return turned
+        half_angles = (0.5 * positions)[:, np.newaxis]
+        poses: Array = self._cosine * np.cos(half_angles)
+        poses += self._sine * np.sin(half_angles)
+        poses += self._linear * positions[:, np.newaxis]
+        poses += self._fixed_joints
+        return poses
 
     def select(self, rows: Sequence[int]) -> JointMotion:
         """Return the motion of the joints with the given indices, in the given order."""
         selected = JointMotion(())
-        selected._fixed, selected._cosine = self._fixed[rows], self._cosine[rows]
+        selected._fixed_joints, selected._cosine = self._fixed_joints[rows], self._cosine[rows]
         selected._sine, selected._linear = self._sine[rows], self._linear[rows]
         return selected
 
@@ -83,25 +83,28 @@ class JointMotion:
         rotation = row_from_pose(joint.origin)[3:]
         length = sqrt(sum(component * component for component in joint.axis))
         axis = np.array(joint.axis) / length if length else np.zeros(3)
-        self._fixed[row, :3] = joint.origin.xyz
+        self._fixed_joints[row, :3] = joint.origin.xyz
         if joint.type in ("revolute", "continuous") and length:
             self._cosine[row, 3:] = rotation
             self._sine[row, 3:] = quaternion_multiply(rotation, [*axis, 0.0])
         else:
-            self._fixed[row, 3:] = rotation
+            self._fixed_joints[row, 3:] = rotation
             if joint.type == "prismatic":
                 self._linear[row, :3] = rotate(rotation, axis)
 
 
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 FIXED_TYPES = frozenset({"fixed", "planar"})
-"""kdl_parser turns planar joints into fixed ones. Floating ones it does too, but robot_state_publisher skips them:
-where such a link is must come from elsewhere."""
+"""The joint types that are published as fixed transforms.
+
+kdl_parser converts planar and floating joints to fixed joints, but robot_state_publisher skips floating joints: another
+node must publish their transforms.
+"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Recipe:
-    """The conversion to transforms of messages that have a certain list of joint names.
+class Conversion:
+    """The conversion of joint-state messages with a certain list of joint names to transforms.
 
     Transform i is the pose of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
     """
@@ -129,49 +132,49 @@ class RobotTransforms:
 
     def __init__(self, robot: Robot, frame_prefix: str) -> None:
         self._prefix = frame_prefix
-        self._moving: Mapping[str, Joint] = {
+        self._moving_joints: Mapping[str, Joint] = {
             name: joint for name, joint in robot.joints.items() if joint.type in MOVING_TYPES
         }
-        self._rows = {name: row for row, name in enumerate(self._moving)}
-        self._motion = JointMotion(tuple(self._moving.values()))
-        self._fixed = tuple(joint for joint in robot.joints.values() if joint.type in FIXED_TYPES)
-        self._recipes: dict[tuple[str, ...], Recipe] = {}
+        self._rows = {name: row for row, name in enumerate(self._moving_joints)}
+        self._motion = JointMotion(tuple(self._moving_joints.values()))
+        self._fixed_joints = tuple(joint for joint in robot.joints.values() if joint.type in FIXED_TYPES)
+        self._conversions: dict[tuple[str, ...], Conversion] = {}
 
     def fixed(self, stamp_ns: int) -> TransformBatch:
         """Return the transforms of the joints that do not move."""
-        poses = JointMotion(self._fixed).poses(np.zeros(len(self._fixed)))
-        return TransformBatch(*self._frames(self._fixed), stamp_ns, poses)
+        poses = JointMotion(self._fixed_joints).poses(np.zeros(len(self._fixed_joints)))
+        return TransformBatch(*self._frames(self._fixed_joints), stamp_ns, poses)
 
-    def recipe(self, names: Sequence[str]) -> Recipe:
+    def recipe(self, names: Sequence[str]) -> Conversion:
         """Return the conversion to transforms for messages with these joint names.
 
-        Names of joints that do not move or do not exist are ignored. A joint that mimics a joint in the message follows
-        that joint, unless the message contains a position for the mimic joint itself. Chains are not resolved:
-        a joint that mimics a mimic joint does not follow.
+        Names of joints that do not move or do not exist are ignored. A mimic joint follows the joint that it mimics,
+        unless the message contains a position for the mimic joint itself. A joint that mimics another mimic joint does
+        not move.
         """
         key = tuple(names)
-        recipe = self._recipes.get(key)
-        if recipe is None:
-            recipe = self._recipes[key] = self._make_recipe(key)
-        return recipe
+        conversion = self._conversions.get(key)
+        if conversion is None:
+            conversion = self._conversions[key] = self._make_conversion(key)
+        return conversion
 
-    def _make_recipe(self, names: tuple[str, ...]) -> Recipe:
-        position_of: dict[str, int] = {}
-        for number, name in enumerate(names):
-            position_of.setdefault(name, number)
-        chosen: list[tuple[Joint, int, float, float]] = []
-        for name, joint in self._moving.items():
+    def _make_conversion(self, names: tuple[str, ...]) -> Conversion:
+        indices: dict[str, int] = {}
+        for index, name in enumerate(names):
+            indices.setdefault(name, index)
+        sources: list[tuple[Joint, int, float, float]] = []
+        for name, joint in self._moving_joints.items():
             mimic = joint.mimic
-            if name in position_of:
-                chosen.append((joint, position_of[name], 1.0, 0.0))
-            elif mimic is not None and mimic.joint in position_of:
-                chosen.append((joint, position_of[mimic.joint], mimic.multiplier, mimic.offset))
-        joints = tuple(joint for joint, *_ in chosen)
-        return Recipe(
+            if name in indices:
+                sources.append((joint, indices[name], 1.0, 0.0))
+            elif mimic is not None and mimic.joint in indices:
+                sources.append((joint, indices[mimic.joint], mimic.multiplier, mimic.offset))
+        joints = tuple(joint for joint, *_ in sources)
+        return Conversion(
             *self._frames(joints),
-            np.array([source for _, source, _, _ in chosen], dtype=np.intp),
-            np.array([factor for _, _, factor, _ in chosen], dtype=np.float64),
-            np.array([offset for *_, offset in chosen], dtype=np.float64),
+            np.array([source for _, source, _, _ in sources], dtype=np.intp),
+            np.array([factor for _, _, factor, _ in sources], dtype=np.float64),
+            np.array([offset for *_, offset in sources], dtype=np.float64),
             self._motion.select([self._rows[joint.name] for joint in joints]),
         )
 
@@ -207,7 +210,7 @@ class Throttle:
 
     def __init__(self, interval_ns: int) -> None:
         self.interval_ns = interval_ns
-        self._places: dict[str, int] = {}
+        self._joint_rows: dict[str, int] = {}
         self._groups: dict[tuple[str, ...], JointGroup] = {}
         self._sent_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self._moved_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
@@ -218,11 +221,11 @@ class Throttle:
         key = tuple(names)
         group = self._groups.get(key)
         if group is None:
-            rows = [self._places.setdefault(name, len(self._places)) for name in key]
-            new = np.zeros(len(self._places) - len(self._sent_ns), dtype=np.int64)
-            self._sent_ns = np.append(self._sent_ns, new)
-            self._moved_ns = np.append(self._moved_ns, new)
-            self._stamp_ns = np.append(self._stamp_ns, new)
+            rows = [self._joint_rows.setdefault(name, len(self._joint_rows)) for name in key]
+            new_times = np.zeros(len(self._joint_rows) - len(self._sent_ns), dtype=np.int64)
+            self._sent_ns = np.append(self._sent_ns, new_times)
+            self._moved_ns = np.append(self._moved_ns, new_times)
+            self._stamp_ns = np.append(self._stamp_ns, new_times)
             group = self._groups[key] = JointGroup(np.array(rows, dtype=np.intp))
         return group
 
@@ -230,27 +233,27 @@ class Throttle:
         """Return whether positions differ from the last published positions of the group."""
         return group.positions is None or not np.array_equal(group.positions, positions)
 
-    def earliest_stamp_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
+    def earliest_stamp_ns(self, group: JointGroup, now_ns: int, *, is_move: bool) -> int:
         """Return the earliest stamp at which a message may be published.
 
         Args:
             group: the joints of the message.
             now_ns: the current time.
-            move: whether the message has new positions.
+            is_move: whether the message has new positions.
         """
-        before = self._moved_ns if move else self._sent_ns
-        return min(int(before[group.rows].min()), now_ns) + self.interval_ns
+        publication_times = self._moved_ns if is_move else self._sent_ns
+        return min(int(publication_times[group.rows].min()), now_ns) + self.interval_ns
 
     def is_in_order(self, group: JointGroup, stamp_ns: int) -> bool:
-        """Return whether every joint was published before, and none with a later stamp than this one."""
+        """Return whether every joint of the group was published before, and none with a later stamp."""
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
-    def published(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, at_ns: int) -> None:
-        """Record that a message with the stamp `stamp_ns` was published at the time `at_ns`."""
+    def published(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, time_ns: int) -> None:
+        """Record that a message with the stamp `stamp_ns` was published at `time_ns`."""
         if self.is_move(group, positions):
-            self._moved_ns[group.rows] = at_ns
-        self._sent_ns[group.rows] = at_ns
+            self._moved_ns[group.rows] = time_ns
+        self._sent_ns[group.rows] = time_ns
         self._stamp_ns[group.rows] = stamp_ns
         group.positions = np.array(positions, dtype=np.float64)
 
@@ -265,7 +268,7 @@ EMPTY_UPDATE = "Empty URDF is not allowed"
 BAD_DESCRIPTION = phrase("Unable to initialize urdf::model from robot description")
 _OVERRIDES = QoSOverridingOptions([QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY])
 _TF_OVERRIDES = QoSOverridingOptions([*_OVERRIDES.policy_kinds, QoSPolicyKind.DURABILITY])
-"""The policies that parameters ``qos_overrides.*`` may set, as with the ROS node."""
+"""The policies that parameters ``qos_overrides.*`` may set, as in the ROS node."""
 
 BAD_FREQUENCY = phrase("publish_frequency must be between 0 and 1000")
 
@@ -273,7 +276,7 @@ _NANOSECONDS_PER_MILLISECOND = 1_000_000
 
 
 @dataclass(slots=True, eq=False)
-class _Held:
+class _DelayedMessage:
     """A message that is delayed until the throttle permits its publication."""
 
     message: JointState
@@ -298,15 +301,15 @@ class RobotStatePublisher(SingleNode):
         self._kdl_logger = graph.get_logger("kdl_parser")
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._clock = self._node.get_clock()
-        self._held: dict[JointGroup, _Held] = {}
+        self._delayed: dict[JointGroup, _DelayedMessage] = {}
         self._last_callback_ns = 0
-        self._warned_of_zero_stamp = False
+        self._has_warned_of_zero_stamp = False
         with starting(self._node):
             self._start(arguments)
 
     def close(self) -> None:
         """Close the node."""
-        self._held.clear()
+        self._delayed.clear()
         super().close()
 
     def _start(self, arguments: list[str]) -> None:
@@ -344,7 +347,7 @@ class RobotStatePublisher(SingleNode):
         )
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
-        self._set_up(text, robot)
+        self._use_description(text, robot)
 
     def _description_from_file(self, path: str) -> str:
         self._node.get_logger().warning(
@@ -377,13 +380,13 @@ class RobotStatePublisher(SingleNode):
             raise LinkwrightError(Diagnostic("NODE102", BAD_DESCRIPTION, hint=hint), *reading.diagnostics)
         return reading.robot
 
-    def _set_up(self, text: str, robot: Robot) -> None:
-        self._warn_as_kdl_parser(robot)
+    def _use_description(self, text: str, robot: Robot) -> None:
+        self._log_kdl_warnings(robot)
         for link in robot.links:
             self._node.get_logger().debug(f"Got segment {link}")
         self._robot = robot
         self._transforms = self._make_transforms()
-        self._forget_published()
+        self._clear_publications()
         self._description_publisher.publish(String(text))
         self._node.get_logger().info("Robot initialized")
         self._publish_fixed()
@@ -391,7 +394,7 @@ class RobotStatePublisher(SingleNode):
     def _make_transforms(self) -> RobotTransforms:
         return RobotTransforms(self._robot, self._node.get_parameter("frame_prefix").value)
 
-    def _warn_as_kdl_parser(self, robot: Robot) -> None:
+    def _log_kdl_warnings(self, robot: Robot) -> None:
         if robot.links[robot.root].inertial is not None:
             self._kdl_logger.warning(
                 f"The root link {robot.root} has an inertia specified in the URDF, but KDL does not support a root "
@@ -410,25 +413,25 @@ class RobotStatePublisher(SingleNode):
         now_ns = self._clock.now_ns()
         if now_ns < self._last_callback_ns:
             self._node.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
-            self._forget_published()
+            self._clear_publications()
         self._last_callback_ns = now_ns
         group = self._throttle.group(message.name)
         stamp_ns = message.header.stamp.nanoseconds
-        move = self._throttle.is_move(group, message.position)
-        opens_ns = self._throttle.earliest_stamp_ns(group, now_ns, move=move)
-        if self._ignore_timestamp or stamp_ns >= opens_ns:
-            self._drop_held(group)
+        is_move = self._throttle.is_move(group, message.position)
+        earliest_ns = self._throttle.earliest_stamp_ns(group, now_ns, is_move=is_move)
+        if self._ignore_timestamp or stamp_ns >= earliest_ns:
+            self._drop_delayed(group)
             self._publish_moving(message, stamp_ns)
             self._throttle.published(group, message.position, stamp_ns, stamp_ns)
         elif self._throttle.is_in_order(group, stamp_ns):
-            if move or group in self._held:
-                self._hold(message, group, opens_ns)
+            if is_move or group in self._delayed:
+                self._delay(message, group, earliest_ns)
         elif stamp_ns == 0:
             self._warn_of_zero_stamp()
 
     def _warn_of_zero_stamp(self) -> None:
-        if not self._warned_of_zero_stamp:
-            self._warned_of_zero_stamp = True
+        if not self._has_warned_of_zero_stamp:
+            self._has_warned_of_zero_stamp = True
             self._node.get_logger().warning(
                 "Ignoring JointState messages without a time stamp: set header.stamp, or the parameter ignore_timestamp"
             )
@@ -450,49 +453,48 @@ class RobotStatePublisher(SingleNode):
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))
 
-    def _hold(self, message: JointState, group: JointGroup, release_ns: int) -> None:
-        held = self._held.get(group)
-        if held is not None:
-            held.message = message
+    def _delay(self, message: JointState, group: JointGroup, release_ns: int) -> None:
+        delayed = self._delayed.get(group)
+        if delayed is not None:
+            delayed.message = message
             return
         wait_ns = release_ns - message.header.stamp.nanoseconds
         timer = self._node.create_timer(wait_ns / 1e9, lambda: self._release(group))
-        self._held[group] = _Held(message, release_ns, timer)
+        self._delayed[group] = _DelayedMessage(message, release_ns, timer)
 
     def _release(self, group: JointGroup) -> None:
-        held = self._held[group]
-        self._drop_held(group)
-        message = held.message
+        delayed = self._delayed[group]
+        self._drop_delayed(group)
+        message = delayed.message
         stamp_ns = message.header.stamp.nanoseconds
         if self._throttle.is_in_order(group, stamp_ns):
             self._publish_moving(message, stamp_ns)
-            # Count the message as published now, not at its stamp. Otherwise a source that is slightly too fast would
-            # exceed the
-            # limit, because each message would be delayed only for a moment.
-            self._throttle.published(group, message.position, stamp_ns, held.release_ns)
+            # Count the message as published now, not at its stamp. With its stamp, a source that is slightly too fast
+            # would exceed the limit, because each message would be delayed only briefly.
+            self._throttle.published(group, message.position, stamp_ns, delayed.release_ns)
 
-    def _drop_held(self, group: JointGroup) -> None:
-        held = self._held.pop(group, None)
-        if held is not None:
-            self._node.destroy_timer(held.timer)
+    def _drop_delayed(self, group: JointGroup) -> None:
+        delayed = self._delayed.pop(group, None)
+        if delayed is not None:
+            self._node.destroy_timer(delayed.timer)
 
-    def _forget_published(self) -> None:
-        for group in tuple(self._held):
-            self._drop_held(group)
+    def _clear_publications(self) -> None:
+        for group in tuple(self._delayed):
+            self._drop_delayed(group)
         self._throttle.clear()
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         for parameter in parameters:
             reason = None
             if parameter.name == "robot_description":
-                reason = self._objection_to_description(parameter.value)
+                reason = self._description_error(parameter.value)
             elif parameter.name == "publish_frequency" and not _is_valid_frequency(parameter.value):
                 reason = BAD_FREQUENCY
             if reason is not None:
                 return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
-    def _objection_to_description(self, text: str) -> str | None:
+    def _description_error(self, text: str) -> str | None:
         if not text:
             return EMPTY_UPDATE
         if self._library.read(text).robot is None:
@@ -503,7 +505,7 @@ class RobotStatePublisher(SingleNode):
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
         for parameter in parameters:
             if parameter.name == "robot_description":
-                self._set_up(parameter.value, self._read(parameter.value))
+                self._use_description(parameter.value, self._read(parameter.value))
             elif parameter.name == "publish_frequency":
                 self._throttle.interval_ns = _interval_ns(parameter.value)
             elif parameter.name == "ignore_timestamp":

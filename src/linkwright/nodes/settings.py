@@ -11,8 +11,8 @@ from linkwright.graph import Node, Parameter, ParameterType
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.nodes.options import NodeOptions
 
-_EVERYWHERE = ("qos_overrides.", "start_type_description_service", "strict_callback_groups", "diagnostic_updater.")
-"""Prefixes of parameters that any node may be given, whether it reads them or not."""
+_COMMON_PREFIXES = ("qos_overrides.", "start_type_description_service", "strict_callback_groups", "diagnostic_updater.")
+"""The prefixes of parameters that may be set for any node, even if the node does not read them."""
 
 
 def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> Any:
@@ -30,7 +30,7 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
     node.declare_parameter(name, kind)
     value = node.get_parameter_or(name, Parameter(name)).value
     if value is None:
-        message = phrase("parameter '{name}' of '{node}' is not given", name=name, node=node.get_name())
+        message = phrase("parameter '{name}' of '{node}' is not set", name=name, node=node.get_name())
         raise LinkwrightError(Diagnostic("NODE431", message, hint=phrase("usage: {usage}", usage=usage)))
     return value
 
@@ -53,15 +53,17 @@ def options_from_words(
     if len(words) > len(names):
         message = phrase("unexpected argument '{word}'", word=words[len(names)])
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint))
-    given = {name: _converted(word, name, names[name], hint) for word, name in zip(words, names, strict=False)}
-    return replace(options, parameters={**options.parameters, **given})
+    argument_values = {
+        name: _convert_argument(word, name, names[name], hint) for word, name in zip(words, names, strict=False)
+    }
+    return replace(options, parameters={**options.parameters, **argument_values})
 
 
-def _converted(word: str, name: str, convert: Callable[[str], Any], hint: Phrase) -> Any:
+def _convert_argument(argument: str, name: str, convert: Callable[[str], Any], hint: Phrase) -> Any:
     try:
-        return convert(word)
+        return convert(argument)
     except ValueError:
-        message = phrase("'{word}' is not a value of '{name}'", word=word, name=name)
+        message = phrase("'{word}' is not a value of '{name}'", word=argument, name=name)
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
 
 
@@ -91,20 +93,20 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
 
 
 def log_unknown(node: Node) -> None:
-    """Log the given parameters that the node does not have; call this after all are declared.
+    """Log the parameters that are set but not declared; call this after all declarations.
 
     A name that looks misspelt causes a warning. Other names are logged only as information, because parameters for all
     nodes of a launch (``/**``) also reach nodes that do not have them.
     """
-    known = node.parameter_names()
-    strange = [name for name in node.undeclared_overrides() if not name.startswith(_EVERYWHERE)]
+    declared_names = node.parameter_names()
+    undeclared_names = [name for name in node.undeclared_overrides() if not name.startswith(_COMMON_PREFIXES)]
     logger = node.get_logger()
-    others = []
-    for name in strange:
-        hint = did_you_mean(name, known)
+    unread_names = []
+    for name in undeclared_names:
+        hint = did_you_mean(name, declared_names)
         if hint is None:
-            others.append(name)
+            unread_names.append(name)
         else:
             logger.warning(f"'{name}' is not a parameter of this node; {hint}")
-    if others:
-        logger.info(f"parameters that this node does not have are not read: {', '.join(others)}")
+    if unread_names:
+        logger.info(f"parameters that this node does not have are not read: {', '.join(unread_names)}")

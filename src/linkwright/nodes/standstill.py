@@ -1,4 +1,4 @@
-"""Stops a robot when the publisher of forwarded velocities disappears (see `Commander`)."""
+"""Stops a robot when the publisher of its forwarded velocities disappears; see `Commander`."""
 
 from __future__ import annotations
 
@@ -14,18 +14,22 @@ VELOCITIES = (TWIST, TWIST_STAMPED)
 """The types of messages that `send_stop` can publish."""
 
 
-def send_stop(node: Node, publisher: Publisher[Any], lost: EndpointInfo) -> None:
+def send_stop(node: Node, publisher: Publisher[Any], lost_publisher: EndpointInfo) -> None:
     """Publish a velocity of zero, and log the reason.
 
     Args:
         node: the node that forwards velocities.
         publisher: the node's publisher of velocities.
-        lost: the publisher that sent the last forwarded velocity and has disappeared.
+        lost_publisher: the publisher that sent the last forwarded velocity and has disappeared.
     """
     message = publisher.msg_type()
     if publisher.type_name == TWIST_STAMPED:
         message.header.stamp = node.get_clock().now().to_msg()
     publisher.publish(message)
     node.get_logger().warning(
-        phrase("{who}: a stop is sent to '{topic}'", who=describe_lost_publisher(lost), topic=publisher.name)
+        phrase(
+            "{who}: a stop command is sent to '{topic}'",
+            who=describe_lost_publisher(lost_publisher),
+            topic=publisher.name,
+        )
     )

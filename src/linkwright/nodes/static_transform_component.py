@@ -8,23 +8,23 @@ from linkwright.graph import Graph
 from linkwright.nodes.options import NodeOptions, RunningNode
 from linkwright.nodes.static_transform_publisher import StaticTransformPublisher
 
-_PLACE = {"translation": ("x", "y", "z"), "rotation": ("x", "y", "z", "w")}
+_TRANSFORM_PARAMETERS = {"translation": ("x", "y", "z"), "rotation": ("x", "y", "z", "w")}
 
 
 def start(graph: Graph, options: NodeOptions) -> RunningNode:
     """Start a static transform publisher that is configured by parameters instead of arguments."""
-    given: dict[str, Any] = options.parameters
-    words: list[str] = []
-    for group, axes in _PLACE.items():
+    parameters: dict[str, Any] = options.parameters
+    arguments: list[str] = []
+    for group, axes in _TRANSFORM_PARAMETERS.items():
         for axis in axes:
             name = f"{group}.{axis}"
-            if name in given:
-                words += [f"--{'q' if group == 'rotation' else ''}{axis}", str(given.pop(name))]
-    words += [
+            if name in parameters:
+                arguments += [f"--{'q' if group == 'rotation' else ''}{axis}", str(parameters.pop(name))]
+    arguments += [
         "--frame-id",
-        str(given.pop("frame_id", "/frame")),
+        str(parameters.pop("frame_id", "/frame")),
         "--child-frame-id",
-        str(given.pop("child_frame_id", "/child")),
+        str(parameters.pop("child_frame_id", "/child")),
     ]
-    options.arguments = [*words, *options.arguments]
+    options.arguments = [*arguments, *options.arguments]
     return StaticTransformPublisher(graph, options)

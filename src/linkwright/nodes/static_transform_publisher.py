@@ -32,16 +32,16 @@ _TRANSLATION = ("--x", "--y", "--z")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _FRAMES = ("--frame-id", "--child-frame-id")
-_OLD_WITH_ANGLES = (*_TRANSLATION, "--yaw", "--pitch", "--roll", *_FRAMES)
-_OLD_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
+_POSITIONS_WITH_ANGLES = (*_TRANSLATION, "--yaw", "--pitch", "--roll", *_FRAMES)
+_POSITIONS_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 
 
 @dataclass(frozen=True, slots=True)
 class StaticTransform:
     """The pose of the child frame in the parent frame, from the command line.
 
-    The position is in metres, the orientation a unit quaternion x y z w. `old_style` is true if the values were
-    positional arguments, which tf2_ros calls deprecated.
+    The translation is in metres, and the rotation is a unit quaternion x y z w. `old_style` is true if the values were
+    positional arguments, which are deprecated in tf2_ros.
     """
 
     translation: tuple[float, float, float]
@@ -59,23 +59,23 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
     Raises:
         LinkwrightError: the command line is invalid; the message is tf2_ros's.
     """
-    given, positional = _split(arguments)
+    options, positional = _split(arguments)
     old_style = bool(positional)
     if old_style:
-        names = {8: _OLD_WITH_ANGLES, 9: _OLD_WITH_QUATERNION}.get(len(positional))
+        names = {8: _POSITIONS_WITH_ANGLES, 9: _POSITIONS_WITH_QUATERNION}.get(len(positional))
         if names is None:
             raise _usage_error(phrase("Extra unparsed arguments on command-line"))
-        if given:
+        if options:
             raise _usage_error(phrase("Cannot specify both new-style (flags) and old-style (arguments)"))
-        given = dict(zip(names, positional, strict=True))
-    if any(name in given for name in _ANGLES) and any(name in given for name in _QUATERNION):
+        options = dict(zip(names, positional, strict=True))
+    if any(name in options for name in _ANGLES) and any(name in options for name in _QUATERNION):
         raise _usage_error(phrase("Cannot specify both quaternion and Euler rotations"))
-    for name, what in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
-        if not given.get(name):
-            raise _usage_error(phrase("{what} must not be empty", what=what))
-    x, y, z = (_number(given, name, 0.0) for name in _TRANSLATION)
+    for name, label in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
+        if not options.get(name):
+            raise _usage_error(phrase("{what} must not be empty", what=label))
+    x, y, z = (_number(options, name, 0.0) for name in _TRANSLATION)
     return StaticTransform(
-        (x, y, z), _rotation(given), given["--frame-id"], given["--child-frame-id"], old_style=old_style
+        (x, y, z), _rotation(options), options["--frame-id"], options["--child-frame-id"], old_style=old_style
     )
 
 

@@ -21,22 +21,22 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 _BUFFER_SECONDS = 120.0
 _CHECK_SECONDS = 0.01
-_OTHER_ERROR = 6
-_NUMBERS: dict[type[TransformException], int] = {
+_OTHER_ERROR_CODE = 6
+_ERROR_CODES: dict[type[TransformException], int] = {
     LookupException: 1,
     ConnectivityException: 2,
     ExtrapolationException: 3,
     InvalidArgumentException: 4,
     TimeoutException: 5,
 }
-"""The numbers of tf2_msgs/msg/TF2Error."""
+"""The codes of tf2_msgs/msg/TF2Error, by exception."""
 
 
 class Tf2BufferServer(SingleNode):
     """The running buffer_server node, with the action ``tf2_buffer_server`` (tf2_msgs LookupTransform).
 
-    If the transform of a goal is not available yet, the lookup is repeated until the goal's timeout. As in tf2_ros,
-    errors are part of the result, so every goal that is not canceled succeeds.
+    If the transform for a goal is not available yet, the lookup is repeated until the goal's timeout. As in tf2_ros, an
+    error is returned in the result, so every goal that is not canceled succeeds.
     """
 
     DEFAULT_NAME = "tf_buffer"
@@ -47,45 +47,45 @@ class Tf2BufferServer(SingleNode):
         self._buffer = BufferCore(Duration(seconds=seconds), logger=self._node.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self._node)
         self._waiting: dict[ServerGoalHandle, int] = {}
-        self._looking = self._node.create_timer(_CHECK_SECONDS, self._look, autostart=False)
-        self._lookup = get_action("tf2_msgs/action/LookupTransform")
-        self._error = get_message("tf2_msgs/msg/TF2Error")
+        self._check_timer = self._node.create_timer(_CHECK_SECONDS, self._look, autostart=False)
+        self._action_type = get_action("tf2_msgs/action/LookupTransform")
+        self._error_type = get_message("tf2_msgs/msg/TF2Error")
         ActionServer(
             self._node,
-            self._lookup,
+            self._action_type,
             "tf2_buffer_server",
-            self._answer,
-            handle_accepted_callback=self._accepted,
+            self._execute,
+            handle_accepted_callback=self._handle_accepted,
             cancel_callback=lambda _handle: CancelResponse.ACCEPT,
         )
 
-    def _accepted(self, handle: ServerGoalHandle) -> None:
-        until_ns = self._now_ns() + Duration.from_msg(handle.request.timeout).nanoseconds
-        if until_ns <= self._now_ns() or self._can_answer(handle.request):
+    def _handle_accepted(self, handle: ServerGoalHandle) -> None:
+        deadline_ns = self._now_ns() + Duration.from_msg(handle.request.timeout).nanoseconds
+        if deadline_ns <= self._now_ns() or self._is_available(handle.request):
             handle.execute()
             return
-        self._waiting[handle] = until_ns
-        self._looking.reset()
+        self._waiting[handle] = deadline_ns
+        self._check_timer.reset()
 
     def _look(self) -> None:
         now_ns = self._now_ns()
-        for handle, until_ns in tuple(self._waiting.items()):
-            if handle.is_cancel_requested or now_ns >= until_ns or self._can_answer(handle.request):
+        for handle, deadline_ns in tuple(self._waiting.items()):
+            if handle.is_cancel_requested or now_ns >= deadline_ns or self._is_available(handle.request):
                 del self._waiting[handle]
                 handle.execute()
         if not self._waiting:
-            self._looking.cancel()
+            self._check_timer.cancel()
 
-    def _answer(self, handle: ServerGoalHandle) -> Any:
-        result = self._lookup.Result()
+    def _execute(self, handle: ServerGoalHandle) -> Any:
+        result = self._action_type.Result()
         if handle.is_cancel_requested:
             handle.canceled()
             return result
         try:
             result.transform = self._transform(handle.request)
         except TransformException as error:
-            number = _NUMBERS.get(type(error), _OTHER_ERROR)
-            result.error = self._error(error=number, error_string=error.diagnostics[0].message)
+            error_code = _ERROR_CODES.get(type(error), _OTHER_ERROR_CODE)
+            result.error = self._error_type(error=error_code, error_string=error.diagnostics[0].message)
         handle.succeed()
         return result
 
@@ -98,7 +98,7 @@ class Tf2BufferServer(SingleNode):
             goal.target_frame, target_time, goal.source_frame, source_time, goal.fixed_frame
         )
 
-    def _can_answer(self, goal: Any) -> bool:
+    def _is_available(self, goal: Any) -> bool:
         try:
             self._transform(goal)
         except TransformException:

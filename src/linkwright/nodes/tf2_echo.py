@@ -31,7 +31,7 @@ class Tf2Echo(SingleNode):
     """The running tf2_echo node.
 
     Raises:
-        LinkwrightError: NODE401, the rate is not a number.
+        LinkwrightError: NODE401 if the rate is not a number.
     """
 
     DEFAULT_NAME = "tf2_echo"
@@ -45,7 +45,7 @@ class Tf2Echo(SingleNode):
             self.finished.set_result(1)
             return
         with starting(self._node):
-            rate = _rate(arguments[2]) if len(arguments) == 3 else 1.0
+            rate = _parse_rate(arguments[2]) if len(arguments) == 3 else 1.0
         self._source, self._target = arguments[:2]
         self._waiting = True
         self._buffer = BufferCore(logger=self._node.get_logger().get_child("tf2"))
@@ -55,8 +55,8 @@ class Tf2Echo(SingleNode):
 
     def _look(self) -> None:
         if self._waiting:
-            possible, reason = self._buffer.can_transform_core(self._source, self._target, _LATEST)
-            if not possible:
+            is_possible, reason = self._buffer.can_transform_core(self._source, self._target, _LATEST)
+            if not is_possible:
                 self._node.get_logger().info(
                     f"Waiting for transform {self._source} ->  {self._target}: {reason}", throttle_duration_sec=1.0
                 )
@@ -79,41 +79,41 @@ def describe(transform: Any) -> str:
     stamp, translation, rotation = transform.header.stamp, transform.transform.translation, transform.transform.rotation
     position = (translation.x, translation.y, translation.z)
     quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
-    turn = rotation_matrix(quaternion)
-    angles = _roll_pitch_yaw(turn)
-    rows = np.eye(4)
-    rows[:3, :3], rows[:3, 3] = turn, position
+    matrix = rotation_matrix(quaternion)
+    angles = _roll_pitch_yaw(matrix)
+    transform_matrix = np.eye(4)
+    transform_matrix[:3, :3], transform_matrix[:3, 3] = matrix, position
     return "\n".join(
         [
             # As in tf2_echo, the nanoseconds have no leading zeros.
             f"At time {stamp.sec}.{stamp.nanosec}",
-            f"- Translation: [{_listed(position)}]",
-            f"- Rotation: in Quaternion (xyzw) [{_listed(quaternion)}]",
-            f"- Rotation: in RPY (radian) [{_listed(angles)}]",
-            f"- Rotation: in RPY (degree) [{_listed([degrees(angle) for angle in angles])}]",
+            f"- Translation: [{_join_numbers(position)}]",
+            f"- Rotation: in Quaternion (xyzw) [{_join_numbers(quaternion)}]",
+            f"- Rotation: in RPY (radian) [{_join_numbers(angles)}]",
+            f"- Rotation: in RPY (degree) [{_join_numbers([degrees(angle) for angle in angles])}]",
             "- Matrix:",
-            *("".join(f" {value:6.3f}" for value in row) for row in rows.tolist()),
+            *("".join(f" {value:6.3f}" for value in row) for row in transform_matrix.tolist()),
         ]
     )
 
 
-def _roll_pitch_yaw(turn: NDArray[np.float64]) -> tuple[float, float, float]:
+def _roll_pitch_yaw(matrix: NDArray[np.float64]) -> tuple[float, float, float]:
     """Return roll, pitch and yaw of a rotation matrix, with the signs of zero as in tf2."""
-    (xx, xy, xz), (yx, _, _), (zx, zy, zz) = turn.tolist()
+    (xx, xy, xz), (yx, _, _), (zx, zy, zz) = matrix.tolist()
     if abs(zx) >= 1.0:
         # In gimbal lock, roll and yaw rotate about the same axis, so the whole angle is assigned to roll.
         delta = atan2(xy, xz) if zx < 0.0 else atan2(-xy, -xz)
         return delta, pi / 2.0 if zx < 0.0 else -pi / 2.0, 0.0
     pitch = -asin(zx)
-    level = cos(pitch)
-    return atan2(zy / level, zz / level), pitch, atan2(yx / level, xx / level)
+    cos_pitch = cos(pitch)
+    return atan2(zy / cos_pitch, zz / cos_pitch), pitch, atan2(yx / cos_pitch, xx / cos_pitch)
 
 
-def _listed(values: Any) -> str:
+def _join_numbers(values: Any) -> str:
     return ", ".join(f"{value:.3f}" for value in values)
 
 
-def _rate(text: str) -> float:
+def _parse_rate(text: str) -> float:
     try:
         rate = float(text)
     except ValueError:

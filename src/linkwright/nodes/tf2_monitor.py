@@ -8,23 +8,23 @@ from collections.abc import Iterable
 
 from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, TransformException
 from linkwright.graph.time.values import Time
-from linkwright.graph.transforms.core import BufferCore, nanoseconds_of
+from linkwright.graph.transforms.core import BufferCore, to_nanoseconds
 from linkwright.messages import TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 AUTHORITY = "<no authority available>"
 USAGE = "TF_Monitor: usage: tf2_monitor framea frameb"
 
-_KEPT = 1000
-_LOOK_EVERY_SECONDS = 0.5
-_LOOKS_A_REPORT = 21
-_LOW_PASS = 0.01
+_MAX_DELAYS = 1000
+_UPDATE_PERIOD_SECONDS = 0.5
+_UPDATES_PER_REPORT = 21
+_FILTER_WEIGHT = 0.01
 _LATEST = Time()
-_SHORTEST_SPAN_S = 1e-8
+_MIN_SPAN_S = 1e-8
 
 
 class Tf2Monitor(SingleNode):
-    """The running tf2_monitor node, which prints a report every ten seconds.
+    """The running tf2_monitor node, which prints a report about every ten seconds.
 
     The report covers all frames, or the chain between two frames.
     """
@@ -42,12 +42,12 @@ class Tf2Monitor(SingleNode):
             return
         self._ends = (arguments[0], arguments[1]) if arguments else None
         self._chain: list[str] = []
-        self._gathering = False
-        self._looks = 0
-        self._average = self._greatest = 0.0
+        self._is_gathering = False
+        self._update_count = 0
+        self._average_delay = self._max_delay = 0.0
         self._delays: dict[str, deque[float]] = {}
-        self._message_delays: deque[float] = deque(maxlen=_KEPT)
-        self._message_times: deque[float] = deque(maxlen=_KEPT)
+        self._message_delays: deque[float] = deque(maxlen=_MAX_DELAYS)
+        self._message_times: deque[float] = deque(maxlen=_MAX_DELAYS)
         self._buffer = BufferCore(logger=self._node.get_logger().get_child("tf2"))
         self._node.create_subscription(TFMessage, "/tf", lambda message: self._receive(message, static=False), TF_QOS)
         self._node.create_subscription(
@@ -55,41 +55,41 @@ class Tf2Monitor(SingleNode):
         )
         if self._ends is not None:
             self._output(f"Waiting for transform chain to become available between {' and '.join(self._ends)} ")
-        self._node.create_timer(_LOOK_EVERY_SECONDS, self._look)
+        self._node.create_timer(_UPDATE_PERIOD_SECONDS, self._look)
 
     def _receive(self, message: TFMessage, *, static: bool) -> None:
         now_ns = self._clock.now().nanoseconds
         self._buffer.update(message, static=static)
         total = 0.0
         for transform in message.transforms:
-            delay = (now_ns - nanoseconds_of(transform.header.stamp)) / 1e9
+            delay = (now_ns - to_nanoseconds(transform.header.stamp)) / 1e9
             total += delay
-            self._delays.setdefault(transform.child_frame_id, deque(maxlen=_KEPT)).append(delay)
+            self._delays.setdefault(transform.child_frame_id, deque(maxlen=_MAX_DELAYS)).append(delay)
         self._message_delays.append(total / max(1, len(message.transforms)))
         self._message_times.append(now_ns / 1e9)
 
     def _look(self) -> None:
-        if not self._gathering and not self._begin():
+        if not self._is_gathering and not self._begin():
             return
         if self._ends is not None:
             self._measure(*self._ends)
-        self._looks += 1
-        if self._looks >= _LOOKS_A_REPORT:
-            self._looks = 0
+        self._update_count += 1
+        if self._update_count >= _UPDATES_PER_REPORT:
+            self._update_count = 0
             self._report()
 
     def _begin(self) -> bool:
-        """Start reporting if the chain between the two frames is known, and return whether it is."""
-        what = "all frames"
+        """Start gathering data if the chain between the two frames is available; return whether gathering started."""
+        subject = "all frames"
         if self._ends is not None:
             first, second = self._ends
             try:
                 self._chain = self._buffer.chain(second, _LATEST, first, _LATEST, second)
             except TransformException:
                 return False
-            what = f"{first} -> {second}"
-        self._output(f"Gathering data on {what} for 10 seconds...")
-        self._gathering = True
+            subject = f"{first} -> {second}"
+        self._output(f"Gathering data on {subject} for 10 seconds...")
+        self._is_gathering = True
         return True
 
     def _measure(self, first: str, second: str) -> None:
@@ -98,8 +98,8 @@ class Tf2Monitor(SingleNode):
         except TransformException:
             return
         delay = (self._clock.now().nanoseconds - stamp_ns) / 1e9
-        self._average = _LOW_PASS * delay + (1.0 - _LOW_PASS) * self._average
-        self._greatest = max(self._greatest, delay)
+        self._average_delay = _FILTER_WEIGHT * delay + (1.0 - _FILTER_WEIGHT) * self._average_delay
+        self._max_delay = max(self._max_delay, delay)
 
     def _report(self) -> None:
         lines = ["", "", ""]
@@ -107,22 +107,22 @@ class Tf2Monitor(SingleNode):
             lines += [
                 f"RESULTS: for {' to '.join(self._ends)}",
                 f"Chain is: {' -> '.join(self._chain)}",
-                f"Net delay     avg = {self._average:g}: max = {self._greatest:g}",
+                f"Net delay     avg = {self._average_delay:g}: max = {self._max_delay:g}",
             ]
         else:
             lines.append("RESULTS: for all Frames")
         lines += ["", "Frames:"]
         for frame, delays in sorted(self._delays.items()):
             if self._ends is None or frame in self._chain:
-                lines.append(f"Frame: {frame}, published by {AUTHORITY}, {_average_and_greatest(delays, ', ')}")
+                lines.append(f"Frame: {frame}, published by {AUTHORITY}, {_delay_text(delays, ', ')}")
         lines += ["", "All Broadcasters:"]
         if self._message_times:
-            span = max(_SHORTEST_SPAN_S, self._message_times[-1] - self._message_times[0])
+            span = max(_MIN_SPAN_S, self._message_times[-1] - self._message_times[0])
             frequency = len(self._message_times) / span
-            lines.append(f"Node: {AUTHORITY} {frequency:g} Hz, {_average_and_greatest(self._message_delays, ' ')}")
+            lines.append(f"Node: {AUTHORITY} {frequency:g} Hz, {_delay_text(self._message_delays, ' ')}")
         self._output("\n".join(lines))
 
 
-def _average_and_greatest(delays: Iterable[float], between: str) -> str:
+def _delay_text(delays: Iterable[float], separator: str) -> str:
     values = list(delays)
-    return f"Average Delay: {sum(values) / len(values):g}{between}Max Delay: {max(0.0, *values):g}"
+    return f"Average Delay: {sum(values) / len(values):g}{separator}Max Delay: {max(0.0, *values):g}"

@@ -1,4 +1,4 @@
-"""Publishes velocities as geometry_msgs/msg/Twist or TwistStamped, whichever the subscribers expect."""
+"""Publishes velocities as geometry_msgs/msg/Twist or TwistStamped, depending on the subscribers."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _DEPTH = 10
 def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
     """Return the message types to subscribe to for velocities.
 
-    The result is one type if `stamped` is set, otherwise both types. A type that is already published comes first, so
-    that no warning about a type mismatch is logged.
+    The result is one type if `stamped` is True or False, and both types if it is None. If TwistStamped is already
+    published, it comes first, so that no warning about a type mismatch is logged.
     """
     if stamped is not None:
         return (TWIST_STAMPED if stamped else TWIST,)
-    published = {endpoint.topic_type for endpoint in node.get_publishers_info_by_topic(topic)}
-    return (TWIST_STAMPED, TWIST) if TWIST_STAMPED in published else (TWIST, TWIST_STAMPED)
+    published_types = {endpoint.topic_type for endpoint in node.get_publishers_info_by_topic(topic)}
+    return (TWIST_STAMPED, TWIST) if TWIST_STAMPED in published_types else (TWIST, TWIST_STAMPED)
 
 
 class VelocityTopic:
@@ -35,11 +35,11 @@ class VelocityTopic:
         frame_id: the frame in the header of a TwistStamped.
 
     Attributes:
-        name: the full name.
-        foreign: a type on the topic that is neither Twist nor TwistStamped, or None.
+        name: the full name of the topic, after remapping.
+        foreign_type: a type on the topic that is neither Twist nor TwistStamped, or None.
 
     Raises:
-        LinkwrightError: the name is not a topic name.
+        LinkwrightError: if `topic` is not a valid topic name.
     """
 
     def __init__(self, node: Node, topic: str, stamped: bool | None = None, frame_id: str = "") -> None:
@@ -49,12 +49,12 @@ class VelocityTopic:
         self.frame_id = frame_id
         self._publisher: Publisher[Any] | None = None
         self.name = node.resolve_topic_name(topic)
-        self.foreign: str | None = None
+        self.foreign_type: str | None = None
         self.review()
 
     @property
     def type_name(self) -> str:
-        """The type that is published."""
+        """The message type that is published, or an empty string if there is no publisher."""
         return self._publisher.type_name if self._publisher is not None else ""
 
     def review(self, *, may_change: bool = True) -> int:
@@ -66,24 +66,26 @@ class VelocityTopic:
         Returns:
             The number of subscribers with the published type.
         """
-        own = None if self._publisher is None else self._publisher.gid
-        others = [
-            endpoint for endpoint in self._node.graph.endpoints() if endpoint.name == self.name and endpoint.gid != own
+        own_gid = None if self._publisher is None else self._publisher.gid
+        other_endpoints = [
+            endpoint
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.name == self.name and endpoint.gid != own_gid
         ]
-        self.foreign = min({other.type_name for other in others} - {TWIST, TWIST_STAMPED}, default=None)
-        if self.foreign is not None:
+        self.foreign_type = min({other.type_name for other in other_endpoints} - {TWIST, TWIST_STAMPED}, default=None)
+        if self.foreign_type is not None:
             self.stop()
             self.close()
             return 0
-        listeners = [other.type_name for other in others if other.kind is EndpointKind.SUBSCRIPTION]
-        kind = self._wanted(listeners)
+        subscriber_types = [other.type_name for other in other_endpoints if other.kind is EndpointKind.SUBSCRIPTION]
+        kind = self._wanted(subscriber_types)
         if self._publisher is None or (may_change and self._publisher.type_name != kind):
             self.close()
             self._publisher = self._node.create_publisher(kind, self._topic, _DEPTH)
-        return listeners.count(self._publisher.type_name)
+        return subscriber_types.count(self._publisher.type_name)
 
     def publish(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Publish a velocity, unless the topic is closed.
+        """Publish a velocity if there is a publisher.
 
         Args:
             linear: the linear velocity along x, y and z, in m/s.
@@ -112,7 +114,7 @@ class VelocityTopic:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None
 
-    def _wanted(self, listeners: Sequence[str]) -> str:
+    def _wanted(self, subscriber_types: Sequence[str]) -> str:
         if self._stamped is not None:
             return TWIST_STAMPED if self._stamped else TWIST
-        return TWIST_STAMPED if TWIST_STAMPED in listeners and TWIST not in listeners else TWIST
+        return TWIST_STAMPED if TWIST_STAMPED in subscriber_types and TWIST not in subscriber_types else TWIST

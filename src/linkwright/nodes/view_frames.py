@@ -21,7 +21,7 @@ class ViewFrames(SingleNode):
     """The running view_frames node, which writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` to the current folder.
 
     Raises:
-        LinkwrightError: NODE411, an argument is invalid.
+        LinkwrightError: NODE411 if an argument is invalid.
     """
 
     DEFAULT_NAME = "view_frames"
@@ -31,7 +31,7 @@ class ViewFrames(SingleNode):
         self._logger = self._node.get_logger()
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         with starting(self._node):
-            self._settings = _parse(arguments)
+            self._settings = _parse_arguments(arguments)
         self._buffer = Buffer(node=self._node)
         TransformListener(
             self._buffer,
@@ -62,20 +62,20 @@ class ViewFrames(SingleNode):
 
         text = self._buffer.all_frames_as_yaml()
         self._logger.info(f"Result:tf2_msgs.srv.FrameGraph_Response(frame_yaml={text!r})")
-        base = self._settings.output or f"frames_{time.strftime('%Y-%m-%d_%H.%M.%S')}"
-        drawing, image = Path(f"{base}.gv"), Path(f"{base}.pdf")
+        stem = self._settings.output or f"frames_{time.strftime('%Y-%m-%d_%H.%M.%S')}"
+        dot_path, image = Path(f"{stem}.gv"), Path(f"{stem}.pdf")
         self._logger.info(f"Exporting graph in {image} file...")
         seconds = self._node.get_clock().now().nanoseconds / 1e9
         dot = frames_as_dot(yaml.safe_load(text) or {}, seconds)
         try:
-            write_whole_file(drawing, dot)
+            write_whole_file(dot_path, dot)
         except OSError as error:
             raise LinkwrightError(
                 Diagnostic(
                     "NODE412",
                     phrase(
                         "'{drawing}' cannot be written: {strerror}",
-                        drawing=drawing,
+                        drawing=dot_path,
                         strerror=foreign(error.strerror or error),
                     ),
                 )
@@ -84,21 +84,21 @@ class ViewFrames(SingleNode):
 
 
 def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) -> str:
-    """Return the tree of frames in Graphviz's language.
+    """Return the tree of frames in the DOT language of Graphviz.
 
     Args:
-        frames: the transform buffer's data about each frame, by name.
+        frames: the data of the transform buffer for each frame, by frame name.
         recorded_s: the time of the recording, in seconds since the epoch.
     """
     if not frames:
         return 'digraph G { "No tf data received" }'
     lines = ["digraph G {"]
-    for name, facts in frames.items():
+    for name, frame_data in frames.items():
         lines.append(
-            f'"{facts["parent"]}" -> "{name}"[label=" Broadcaster: {facts["broadcaster"]}\\n'
-            f"Average rate: {facts['rate']}\\nBuffer length: {facts['buffer_length']}\\n"
-            f"Most recent transform: {facts['most_recent_transform']}\\n"
-            f'Oldest transform: {facts["oldest_transform"]}\\n"];'
+            f'"{frame_data["parent"]}" -> "{name}"[label=" Broadcaster: {frame_data["broadcaster"]}\\n'
+            f"Average rate: {frame_data['rate']}\\nBuffer length: {frame_data['buffer_length']}\\n"
+            f"Most recent transform: {frame_data['most_recent_transform']}\\n"
+            f'Oldest transform: {frame_data["oldest_transform"]}\\n"];'
         )
     legend = f"Recorded at time: {recorded_s}"
     roots = dict.fromkeys(facts["parent"] for facts in frames.values() if facts["parent"] not in frames)
@@ -113,7 +113,7 @@ def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) ->
     return "\n".join(lines)
 
 
-def _parse(arguments: Sequence[str]) -> argparse.Namespace:
+def _parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="view_frames",
         description="Create a diagram of the TF frames being broadcast over ROS",
@@ -130,7 +130,7 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--tf_topic", default=DEFAULT_TF_TOPIC, help="Topic for dynamic transforms")
     parser.add_argument("--tf_static_topic", default=DEFAULT_STATIC_TF_TOPIC, help="Topic for static transforms")
     try:
-        settings, unknown = parser.parse_known_args(arguments)
+        settings, unknown_arguments = parser.parse_known_args(arguments)
     except argparse.ArgumentError as problem:
         raise LinkwrightError(
             Diagnostic(
@@ -139,7 +139,7 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
                 hint=foreign(parser.format_usage().strip()),
             )
         ) from problem
-    if unknown:
-        message = phrase("view_frames does not know the arguments {unknown}", unknown=" ".join(unknown))
+    if unknown_arguments:
+        message = phrase("view_frames does not accept the arguments {unknown}", unknown=" ".join(unknown_arguments))
         raise LinkwrightError(Diagnostic("NODE411", message, hint=foreign(parser.format_usage().strip())))
     return settings

@@ -10,17 +10,17 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class ZenohRouter(SingleNode):
-    """A running Zenoh router, at tcp/localhost:7447 unless the settings name another address.
+    """The running Zenoh router, which listens at tcp/localhost:7447 by default.
 
-    The settings are those of rmw_zenohd, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. By default, the
-    router accepts only connections from this machine, unlike rmw_zenohd. The router's node is hidden.
+    The environment variables of rmw_zenohd, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``, configure the
+    router. Unlike rmw_zenohd, it accepts only connections from this machine by default. The router's node is hidden.
 
     Args:
         graph: the graph to which the node is added.
         options: the options of the node.
 
     Raises:
-        LinkwrightError: NODE003, Zenoh is not installed; DDS111 and DDS112, the router cannot be opened.
+        LinkwrightError: NODE003 if Zenoh is not installed; DDS111 or DDS112 if the router cannot be opened.
     """
 
     DEFAULT_NAME = "_rmw_zenohd"

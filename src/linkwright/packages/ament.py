@@ -15,10 +15,10 @@ from pathlib import Path
 from linkwright.packages.manifest import MANIFEST
 
 PREFIX_PATH = "AMENT_PREFIX_PATH"
-"""The environment variable that sourcing a ROS or a workspace sets."""
+"""The environment variable that is set when ROS or a workspace is sourced."""
 
 ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-"""The other variables that sourcing ROS 2 sets, with the values of Humble, which we follow."""
+"""The other variables that are set when ROS 2 is sourced, with the values for Humble, which Linkwright follows."""
 
 _MARKERS = Path("share", "ament_index", "resource_index", "packages")
 _COLCON_LAYOUT = ".colcon_install_layout"

@@ -71,14 +71,14 @@ def get_resources(resource_type: str) -> dict[str, str]:
         InvalidResourceTypeNameError: the type is invalid.
     """
     _check_type(resource_type)
-    found: dict[str, str] = {}
+    prefixes_by_name: dict[str, str] = {}
     for prefix in _prefixes():
         for name in _entries(prefix / INDEX / resource_type):
-            found.setdefault(name, str(prefix))
+            prefixes_by_name.setdefault(name, str(prefix))
     if resource_type == _PACKAGES:
         for name, share in current_finder().packages().items():
-            found.setdefault(name, str(install_prefix(share)))
-    return found
+            prefixes_by_name.setdefault(name, str(install_prefix(share)))
+    return prefixes_by_name
 
 
 def get_resource_types() -> set[str]:

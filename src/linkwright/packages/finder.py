@@ -23,7 +23,7 @@ from linkwright.packages.manifest import SourceScan, enclosing_package
 from linkwright.packages.share_layout import share_of_sources, substituted_share, substitutes
 
 START_VARIABLE = "LINKWRIGHT_START"
-"""The environment variable by which a launcher tells its processes where its own search for packages began."""
+"""The environment variable with the start folders of a launcher, which its processes also search for packages."""
 
 
 class PackageNotFoundError(LinkwrightError, KeyError):
@@ -34,8 +34,8 @@ class PackageNotFoundError(LinkwrightError, KeyError):
 
     Args:
         name: the name that was searched for.
-        searched: the descriptions of the locations that were searched.
-        meant: the hint that names a similar package, or None.
+        locations: the descriptions of the locations that were searched.
+        suggestion: the hint that names a similar package, or None.
         is_slip: see the attribute.
 
     Attributes:
@@ -43,9 +43,9 @@ class PackageNotFoundError(LinkwrightError, KeyError):
         is_slip: whether the name is a misspelling of an existing package's name.
     """
 
-    def __init__(self, name: str, searched: Sequence[str], meant: Phrase | None, *, is_slip: bool) -> None:
-        notes = tuple(Note(phrase("searched {place}", place=place)) for place in searched)
-        hint = meant or phrase("change to the workspace that contains it, or source its install/setup.bash")
+    def __init__(self, name: str, locations: Sequence[str], suggestion: Phrase | None, *, is_slip: bool) -> None:
+        notes = tuple(Note(phrase("searched {place}", place=location)) for location in locations)
+        hint = suggestion or phrase("change to the workspace that contains it, or source its install/setup.bash")
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name
         self.is_slip = is_slip
@@ -65,13 +65,13 @@ class PackageFinder:
     5. the packages shipped with Linkwright;
     6. Linkwright's substitutes for ROS packages that launch files include; see `linkwright.packages.share_layout`.
 
-    Nothing is read from disk before it is needed. The search through a source tree does not enter the packages in it.
+    Folders are read only when a search reaches them. The search through a source tree does not descend into packages.
 
     Args:
         start: the user's folder, or several folders in order of preference; by default, the current folder, followed by
             the folders in `START_VARIABLE`.
         environment: the environment variables, with ``AMENT_PREFIX_PATH``; by default, those of the process.
-        extra: package name -> share folder, searched first.
+        extra: package name -> share folder; these packages take precedence.
         sources_first: whether sources take precedence over the files that an earlier build installed from them.
     """
 
@@ -92,9 +92,9 @@ class PackageFinder:
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
         self._sources_first = sources_first
         self._scans: dict[Path, SourceScan] = {}
-        self._known: dict[str, Path] = {}
-        self._meant: dict[str, tuple[Phrase | None, bool]] = {}
-        self._offered: str | None = None
+        self._shares: dict[str, Path] = {}
+        self._suggestions: dict[str, tuple[Phrase | None, bool]] = {}
+        self._own_prefix_path: str | None = None
 
     def starting_at(self, start: Sequence[Path]) -> PackageFinder:
         """Return a finder that starts in other folders.
@@ -117,11 +117,13 @@ class PackageFinder:
 
         For packages that are not installed, see `share_of_sources`.
         """
-        share = self._known.get(name)
+        share = self._shares.get(name)
         if share is None:
-            share = next((place for place in self._places(name) if place is not None), None)
+            share = next(
+                (share_folder for share_folder in self._candidate_shares(name) if share_folder is not None), None
+            )
             if share is not None:
-                self._known[name] = share
+                self._shares[name] = share
         return share
 
     def find_in_sources(self, name: str) -> Path | None:
@@ -129,8 +131,8 @@ class PackageFinder:
 
         The files of an earlier build are ignored.
         """
-        found = (_share_of_optional_sources(name, self._scan(root).find(name)) for root in self._source_roots())
-        return next(filter(None, found), None)
+        shares = (_share_of_optional_sources(name, self._scan(root).find(name)) for root in self._source_roots())
+        return next(filter(None, shares), None)
 
     def share(self, name: str) -> Path:
         """Return the share folder of a package.
@@ -142,10 +144,10 @@ class PackageFinder:
         """
         share = self.find(name)
         if share is None:
-            if name not in self._meant:
-                self._meant[name] = self._nearest(name)
-            meant, is_slip = self._meant[name]
-            raise PackageNotFoundError(name, self._searched_locations(), meant, is_slip=is_slip)
+            if name not in self._suggestions:
+                self._suggestions[name] = self._nearest(name)
+            suggestion, is_slip = self._suggestions[name]
+            raise PackageNotFoundError(name, self._searched_locations(), suggestion, is_slip=is_slip)
         return share
 
     def packages(self) -> dict[str, Path]:
@@ -153,10 +155,10 @@ class PackageFinder:
 
         If several packages have the same name, the first in the order of the search is included.
         """
-        found = dict(self._extra)
+        packages = dict(self._extra)
         for name, share in self._all():
-            found.setdefault(name, share)
-        return found
+            packages.setdefault(name, share)
+        return packages
 
     def resolve(self, address: str, relative_to: Path | None = None) -> Path:
         """Return the path for a URI or path in a description or launch file.
@@ -175,42 +177,44 @@ class PackageFinder:
     def offer_prefix_path(self, environment: MutableMapping[str, str]) -> None:
         """Set ``AMENT_PREFIX_PATH`` for programs that read this variable, unless it is set already.
 
-        The value contains the prefixes that sourcing the workspaces would set or, before a build, the folder to which a
-        build would install. This finder ignores the variable until a program changes it.
+        The value contains the prefixes that sourcing the workspaces would set or, before a build, the folder into which
+        a build would install. This finder ignores the value that it set itself.
         """
         if environment.get(ament.PREFIX_PATH):
             return
         shares = (share for install in self._install_folders() for _, share in ament.packages_in_install(install))
         prefixes = dict.fromkeys(str(install_prefix(share)) for share in shares) or [str(self._starts[0] / "install")]
-        self._offered = environment[ament.PREFIX_PATH] = os.pathsep.join(prefixes)
+        self._own_prefix_path = environment[ament.PREFIX_PATH] = os.pathsep.join(prefixes)
 
     def _prefixes(self) -> list[Path]:
-        if self._environment.get(ament.PREFIX_PATH) == self._offered:
+        if self._environment.get(ament.PREFIX_PATH) == self._own_prefix_path:
             return []
         return ament.environment_prefixes(self._environment)
 
     def forget(self) -> None:
         """Clear all cached results, so that the next search reads the disk again."""
-        self._known.clear()
-        self._meant.clear()
+        self._shares.clear()
+        self._suggestions.clear()
         self._scans.clear()
 
     # --- the places -----------------------------------------------------------------------------------------
 
-    def _places(self, name: str) -> Iterator[Path | None]:
+    def _candidate_shares(self, name: str) -> Iterator[Path | None]:
         yield self._extra.get(name)
         for prefix in self._prefixes():
             yield ament.share_in_prefix(prefix, name)
-        places = (self._in_sources, self._in_installs) if self._sources_first else (self._in_installs, self._in_sources)
-        for place in places:
-            yield from place(name)
+        searches = (
+            (self._in_sources, self._in_installs) if self._sources_first else (self._in_installs, self._in_sources)
+        )
+        for search in searches:
+            yield from search(name)
         yield self._shipped_packages().get(name)
         yield substituted_share(name)
 
     def _in_installs(self, name: str) -> Iterator[Path | None]:
         for install in self._install_folders():
             yield ament.share_in_install(install, name)
-        for prefix in self._holding():
+        for prefix in self._enclosing_prefixes():
             yield ament.share_in_prefix(prefix, name)
 
     def _in_sources(self, name: str) -> Iterator[Path | None]:
@@ -223,7 +227,7 @@ class PackageFinder:
             yield from ament.packages_in_prefix(prefix)
         for install in self._install_folders():
             yield from ament.packages_in_install(install)
-        for prefix in self._holding():
+        for prefix in self._enclosing_prefixes():
             yield from ament.packages_in_prefix(prefix)
         yield from self._enclosing_packages()
         for root in self._source_roots():
@@ -232,11 +236,11 @@ class PackageFinder:
         yield from substitutes()
 
     def _start_folders_and_parents(self) -> Iterator[Path]:
-        seen: set[Path] = set()
+        visited: set[Path] = set()
         for start in self._starts:
             for folder in (start, *start.parents):
-                if folder not in seen:
-                    seen.add(folder)
+                if folder not in visited:
+                    visited.add(folder)
                     yield folder
 
     def _install_folders(self) -> Iterator[Path]:
@@ -245,21 +249,21 @@ class PackageFinder:
             if ament.is_colcon_install(install):
                 yield install
 
-    def _holding(self) -> Iterator[Path]:
+    def _enclosing_prefixes(self) -> Iterator[Path]:
         return (folder.parent for folder in self._start_folders_and_parents() if ament.is_share_of_prefix(folder))
 
     def _enclosing_packages(self) -> Iterator[tuple[str, Path]]:
         for start in self._starts:
-            found = enclosing_package(start)
-            if found:
-                yield found
+            package = enclosing_package(start)
+            if package:
+                yield package
 
     def _source_roots(self) -> Iterator[Path]:
         roots: dict[Path, None] = {}
         for start in self._starts:
-            found = enclosing_package(start)
-            if found:
-                roots[found[1].parent] = None
+            package = enclosing_package(start)
+            if package:
+                roots[package[1].parent] = None
             else:
                 roots[start] = None
             for folder in (start, *start.parents):
@@ -282,37 +286,40 @@ class PackageFinder:
 
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
         """Return a hint on a similar package name, or None, and whether the name is a misspelling."""
-        ours = self._shipped_packages()
-        known = [package for package in self.packages() if package not in ours or is_misspelt(name, [package])]
-        return did_you_mean(name, known), is_misspelt(name, known)
+        shipped = self._shipped_packages()
+        candidates = [package for package in self.packages() if package not in shipped or is_misspelt(name, [package])]
+        return did_you_mean(name, candidates), is_misspelt(name, candidates)
 
     def _searched_locations(self) -> list[Phrase]:
         prefixes = self._prefixes()
         if prefixes:
-            places = [phrase("AMENT_PREFIX_PATH: {prefixes}", prefixes=os.pathsep.join(map(str, prefixes)))]
+            locations = [phrase("AMENT_PREFIX_PATH: {prefixes}", prefixes=os.pathsep.join(map(str, prefixes)))]
         else:
-            places = [phrase("AMENT_PREFIX_PATH: not set")]
-        places += [
+            locations = [phrase("AMENT_PREFIX_PATH: not set")]
+        locations += [
             phrase("colcon install folder {install}", install=display_path(install))
             for install in self._install_folders()
         ]
-        places += [phrase("the packages installed in {prefix}", prefix=display_path(path)) for path in self._holding()]
+        locations += [
+            phrase("the packages installed in {prefix}", prefix=display_path(path))
+            for path in self._enclosing_prefixes()
+        ]
         for root in self._source_roots():
             scan = self._scan(root)
             if scan.truncated:
-                files = phrase(
-                    "package.xml files below {root} (only in part: too many folders)", root=display_path(root)
+                location = phrase(
+                    "package.xml files below {root} (incomplete: there are too many folders)", root=display_path(root)
                 )
             else:
-                files = phrase("package.xml files below {root}", root=display_path(root))
-            places.append(files)
-            places += [
-                phrase("{folder}, which names no package", folder=display_path(folder / "package.xml"))
+                location = phrase("package.xml files below {root}", root=display_path(root))
+            locations.append(location)
+            locations += [
+                phrase("{folder}, which does not contain a package name", folder=display_path(folder / "package.xml"))
                 for folder in scan.unnamed
             ]
         shipped = joined(self._shipped_packages()) or phrase("none")
-        places.append(phrase("the packages shipped with Linkwright: {shipped}", shipped=shipped))
-        return places
+        locations.append(phrase("the packages shipped with Linkwright: {shipped}", shipped=shipped))
+        return locations
 
 
 def shipped_folder() -> Path | None:

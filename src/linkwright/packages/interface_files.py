@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-_ENDINGS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".action", ".idl")}
+_EXTENSIONS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".action", ".idl")}
 
 
 def interface_files(share: Path, kind: str) -> dict[str, Path]:
@@ -19,17 +19,17 @@ def interface_files(share: Path, kind: str) -> dict[str, Path]:
     Returns:
         Name of the interface -> file.
     """
-    found: dict[str, Path] = {}
-    for ending in _ENDINGS[kind]:
-        for path in sorted(share.glob(f"{kind}/*{ending}")):
-            found.setdefault(path.stem, path)
-    return found
+    files: dict[str, Path] = {}
+    for extension in _EXTENSIONS[kind]:
+        for path in sorted(share.glob(f"{kind}/*{extension}")):
+            files.setdefault(path.stem, path)
+    return files
 
 
 def interface_file(share: Path, kind: str, name: str) -> Path | None:
     """Return the file that defines an interface of a package, or None if there is no such file."""
-    for ending in _ENDINGS[kind]:
-        path = share / kind / (name + ending)
+    for extension in _EXTENSIONS[kind]:
+        path = share / kind / (name + extension)
         if path.is_file():
             return path
     return None

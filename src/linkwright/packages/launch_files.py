@@ -7,14 +7,14 @@ from pathlib import Path
 
 from linkwright.packages.share_layout import source_of
 
-_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
-_DEPTH = 4
+_LAUNCH_SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
+_MAX_DEPTH = 4
 _BUILD_FOLDERS = ("build", "install", "log")
 
 
 def is_launch_file_name(name: str) -> bool:
-    """Return whether a file name is that of a launch file (``ros2launch.api.is_launch_file``)."""
-    return name.endswith(_ENDINGS)
+    """Return whether a file name denotes a launch file (``ros2launch.api.is_launch_file``)."""
+    return name.endswith(_LAUNCH_SUFFIXES)
 
 
 def launch_files_below(folder: Path) -> list[Path]:
@@ -23,13 +23,13 @@ def launch_files_below(folder: Path) -> list[Path]:
     Hidden folders and the build folders of colcon are left out. A share folder may contain a file twice, at its path in
     the sources and at its installed path (see `share_layout`). Such a file is returned once.
     """
-    found: dict[str, Path] = {}
-    for path in _below(folder, _DEPTH):
-        found.setdefault(source_of(str(path)), path)
-    return list(found.values())
+    launch_files: dict[str, Path] = {}
+    for path in _launch_files_within(folder, _MAX_DEPTH):
+        launch_files.setdefault(source_of(str(path)), path)
+    return list(launch_files.values())
 
 
-def _below(folder: Path, depth: int) -> Iterator[Path]:
+def _launch_files_within(folder: Path, depth: int) -> Iterator[Path]:
     try:
         entries = sorted(folder.iterdir())
     except OSError:
@@ -37,6 +37,6 @@ def _below(folder: Path, depth: int) -> Iterator[Path]:
     for entry in entries:
         if entry.is_dir():
             if depth and not entry.name.startswith(".") and entry.name not in _BUILD_FOLDERS:
-                yield from _below(entry, depth - 1)
+                yield from _launch_files_within(entry, depth - 1)
         elif is_launch_file_name(entry.name):
             yield entry

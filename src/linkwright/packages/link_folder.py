@@ -11,12 +11,12 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from linkwright.files.user_folders import SHARES, cache_folder
+from linkwright.files.user_folders import SHARES_SUBFOLDER, cache_folder
 from linkwright.packages.readers.installed_file import InstalledFile
 
-_MOST_LINKS = 5000
-_KEPT_SECONDS = 7 * 24 * 3600.0
-"""How long a layout is kept that its package no longer has; a program that still runs may use it."""
+_MAX_LINKS = 5000
+_RETENTION_SECONDS = 7 * 24 * 3600.0
+"""Seconds before an unused layout is deleted; until then, a running program may still use the layout."""
 
 
 def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
@@ -34,21 +34,23 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
         OSError: the folder cannot be created.
     """
     links: dict[str, str | Path] = {}
-    tops = {path.partition("/")[0] for path in moved}
+    top_names = {path.partition("/")[0] for path in moved}
     for entry in sorted(folder.iterdir()):
         if entry.name.startswith("."):
             continue
-        if entry.name in tops and entry.is_dir():
+        if entry.name in top_names and entry.is_dir():
             links |= {path.relative_to(folder).as_posix(): path for path in entry.rglob("*") if path.is_file()}
         else:
             links[entry.name] = entry
     for path, file in moved.items():
-        links[path] = file.text(folder) if file.is_made else folder / file.source
-    if len(links) > _MOST_LINKS:
+        links[path] = file.text(folder) if file.is_generated else folder / file.source
+    if len(links) > _MAX_LINKS:
         raise OSError("too many files")
-    mark = hashlib.sha256(repr((str(folder), sorted((path, str(link)) for path, link in links.items()))).encode())
-    layouts = cache_folder() / SHARES / hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]
-    share = layouts / mark.hexdigest()[:12] / name
+    content_hash = hashlib.sha256(
+        repr((str(folder), sorted((path, str(link)) for path, link in links.items()))).encode()
+    )
+    layouts = cache_folder() / SHARES_SUBFOLDER / hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]
+    share = layouts / content_hash.hexdigest()[:12] / name
     if share.is_dir():
         with suppress(OSError):
             os.utime(share.parent)
@@ -76,5 +78,5 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
 def _delete_old_layouts(layouts: Path) -> None:
     for layout in layouts.iterdir():
         with suppress(OSError):
-            if time.time() - layout.stat().st_mtime > _KEPT_SECONDS:
+            if time.time() - layout.stat().st_mtime > _RETENTION_SECONDS:
                 shutil.rmtree(layout, ignore_errors=True)

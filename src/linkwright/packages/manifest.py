@@ -29,8 +29,8 @@ def package_name(folder: Path) -> str | None:
         text = (folder / MANIFEST).read_text(encoding="utf-8", errors="replace")
     except OSError:
         return None
-    found = _NAME.search(_COMMENT.sub("", text))
-    return found.group(1) if found else None
+    match = _NAME.search(_COMMENT.sub("", text))
+    return match.group(1) if match else None
 
 
 def enclosing_package(path: Path) -> tuple[str, Path] | None:
@@ -53,17 +53,17 @@ MAXIMUM_FOLDERS = 3000
 
 
 class SourceScan:
-    """A breadth-first search for packages below one folder, which proceeds only on demand.
+    """A breadth-first search for packages below one folder, which reads only as many folders as needed.
 
     Folders nearer to the root come first, and siblings are sorted by name. A folder with a ``package.xml`` is a package
-    and is not searched further. Hidden folders, build products and folders with an ignore marker are left out. The
+    and is not searched further. Hidden folders, build products and folders with an ignore marker are skipped. The
     search ends `MAXIMUM_DEPTH` levels below the root or after `MAXIMUM_FOLDERS` folders, so that a search that starts
     in a home folder does not read the whole disk.
 
     Attributes:
         root: the folder where the search starts.
         truncated: whether the search reached a limit before it had visited all folders.
-        unnamed: the folders with a ``package.xml`` that names no package.
+        unnamed: the folders with a ``package.xml`` that does not contain a package name.
     """
 
     def __init__(self, root: Path) -> None:
@@ -105,13 +105,13 @@ class SourceScan:
         return True
 
     def _walk(self) -> Iterator[tuple[str, Path]]:
-        waiting: deque[tuple[str, int]] = deque([(str(self.root), 0)])
+        pending: deque[tuple[str, int]] = deque([(str(self.root), 0)])
         visited = 0
-        while waiting:
+        while pending:
             if visited >= MAXIMUM_FOLDERS:
                 self.truncated = True
                 return
-            folder, depth = waiting.popleft()
+            folder, depth = pending.popleft()
             visited += 1
             files, folders = _list_folder(folder)
             if not IGNORE_MARKERS.isdisjoint(files):
@@ -127,7 +127,7 @@ class SourceScan:
             if depth == MAXIMUM_DEPTH:
                 self.truncated = self.truncated or bool(folders)
                 continue
-            waiting.extend((f"{folder}{os.sep}{entry}", depth + 1) for entry in folders)
+            pending.extend((f"{folder}{os.sep}{entry}", depth + 1) for entry in folders)
 
 
 def _list_folder(folder: str) -> tuple[set[str], list[str]]:
@@ -158,5 +158,5 @@ def _links_upwards(entry: os.DirEntry[str]) -> bool:
         return False
     link = Path(entry.path)
     target = link.resolve()
-    above = link.parent.resolve()
-    return target == above or target in above.parents
+    parent = link.parent.resolve()
+    return target == parent or target in parent.parents

@@ -14,44 +14,48 @@ from linkwright.loading.deferred import lazy_pattern
 
 _IDENTIFIER = lazy_pattern(r"[A-Za-z][A-Za-z0-9_]*")
 # The names that catkin_pkg accepts, including those of old packages.
-_ACCEPTED = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_-]*")
+_PACKAGE_NAME = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _DEPENDENCY = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
-# The addresses that catkin_pkg, and thus colcon, accepts: ASCII, with a top-level domain of two or more letters.
+# The addresses that catkin_pkg, and therefore colcon, accepts: ASCII, with a top-level domain of two or more letters.
 _EMAIL = lazy_pattern(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", re.ASCII)
 
 
 def check_package_name(name: str) -> list[Diagnostic]:
     """Return the findings on the name of a package: errors (PKG201), or else warnings (PKG202)."""
     if not _IDENTIFIER.fullmatch(name):
-        message = phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=_broken_rule(name))
+        message = phrase(
+            "'{name}' cannot be the name of a package: {problem}", name=name, problem=_identifier_problem(name)
+        )
         return [Diagnostic("PKG201", message, hint=_suggestion(name))]
     if keyword.iskeyword(name):
         message = phrase("'{name}' cannot be the name of a package: it is a Python keyword", name=name)
         return [Diagnostic("PKG201", message, hint=phrase("did you mean {names}?", names=quoted(f"{name}_robot")))]
-    return [] if _violated_rule(name) is None else [rep_144_warning(name)]
+    return [] if _rep_144_advice(name) is None else [rep_144_warning(name)]
 
 
 def rep_144_warning(name: str) -> Diagnostic:
     """Return the warning (PKG202) that names the rule of REP 144 that a name violates."""
-    advice = _violated_rule(name) or _broken_rule(name)
+    advice = _rep_144_advice(name) or _identifier_problem(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
     return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))
 
 
-def check_member_name(name: str, what: str) -> list[Diagnostic]:
+def check_member_name(name: str, member_kind: str) -> list[Diagnostic]:
     """Return the findings on the name of a node or library (PKG203).
 
     Args:
         name: the name.
-        what: ``node`` or ``library``.
+        member_kind: ``node`` or ``library``.
     """
     if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
         return []
-    problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _broken_rule(name)
+    problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _identifier_problem(name)
     return [
         Diagnostic(
             "PKG203",
-            phrase("'{name}' cannot be the name of a {what}: {problem}", name=name, what=term(what), problem=problem),
+            phrase(
+                "'{name}' cannot be the name of a {what}: {problem}", name=name, what=term(member_kind), problem=problem
+            ),
             hint=_suggestion(name),
         )
     ]
@@ -75,7 +79,7 @@ def check_email(address: str) -> list[Diagnostic]:
 
 def is_accepted_name(name: str) -> bool:
     """Return whether colcon builds a package with this name, even if REP 144 advises against it."""
-    return _ACCEPTED.fullmatch(name) is not None
+    return _PACKAGE_NAME.fullmatch(name) is not None
 
 
 def is_email(address: str) -> bool:
@@ -83,17 +87,17 @@ def is_email(address: str) -> bool:
     return _EMAIL.fullmatch(address) is not None
 
 
-def _broken_rule(name: str) -> Phrase:
+def _identifier_problem(name: str) -> Phrase:
     if not name:
         return phrase("it is empty")
-    wrong = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
-    if wrong:
-        shown = " ".join("a blank" if character.isspace() else character for character in wrong)
-        return phrase("it may contain only letters, digits and underscores, not {shown}", shown=shown)
+    invalid_characters = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
+    if invalid_characters:
+        character_list = " ".join("a blank" if character.isspace() else character for character in invalid_characters)
+        return phrase("it may contain only letters, digits and underscores, not {shown}", shown=character_list)
     return phrase("it must begin with a letter")
 
 
-def _violated_rule(name: str) -> Phrase | None:
+def _rep_144_advice(name: str) -> Phrase | None:
     if name != name.lower():
         return phrase("use lower case")
     if "__" in name:
@@ -104,12 +108,14 @@ def _violated_rule(name: str) -> Phrase | None:
 
 
 def _suggestion(name: str) -> Phrase | None:
-    better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")
-    if len(better) == 1:
-        return phrase("choose a longer name, such as {names}", names=quoted(f"{better}_robot"))
-    fits = _IDENTIFIER.fullmatch(better) and better != name and _violated_rule(better) is None
+    suggested_name = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")
+    if len(suggested_name) == 1:
+        return phrase("choose a longer name, such as {names}", names=quoted(f"{suggested_name}_robot"))
+    is_valid = (
+        _IDENTIFIER.fullmatch(suggested_name) and suggested_name != name and _rep_144_advice(suggested_name) is None
+    )
     return (
-        phrase("did you mean {names}?", names=quoted(better))
-        if fits
+        phrase("did you mean {names}?", names=quoted(suggested_name))
+        if is_valid
         else phrase("start with a letter, and use only letters, digits and underscores")
     )

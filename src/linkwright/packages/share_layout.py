@@ -5,7 +5,7 @@ folder. Some packages differ: ``install(DIRECTORY description/urdf DESTINATION s
 ``glob('cfg/*')`` to ``config``. For these packages, a folder of links is created in the user's cache, with the
 installed files at their installed paths and all other files from the sources. A program that uses the share folder,
 such as a launch file with ``os.path.join``, then finds the files that would exist after a build. Files that require
-compilation are replaced by Linkwright's, if there are any.
+compilation are replaced by Linkwright's files, if there are any.
 
 Linkwright's substitutes replace ROS packages that launch files include, such as those of Gazebo and nav2. They contain
 the launch files of those packages and the files that these need, and start Linkwright's nodes. The substitutes are
@@ -23,7 +23,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from linkwright.files.user_folders import SHARES
+from linkwright.files.user_folders import SHARES_SUBFOLDER
 from linkwright.loading.extensions import extensions
 from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
@@ -51,13 +51,13 @@ def substitutes() -> Iterator[tuple[str, Path]]:
 
 
 def _share_with_files(name: str) -> Path | None:
-    entry = extensions(_GROUP).get(name)
-    if entry is None:
+    entry_point = extensions(_GROUP).get(name)
+    if entry_point is None:
         return None
     try:
-        prefix = Path(entry.load().__file__).parent
+        prefix = Path(entry_point.load().__file__).parent
     except Exception as error:  # noqa: BLE001 - a broken package must not stop the search
-        warnings.warn(f"'{entry.distribution}' provides no substitute for '{name}': {error}", stacklevel=2)
+        warnings.warn(f"'{entry_point.distribution}' provides no substitute for '{name}': {error}", stacklevel=2)
         return None
     return share_in_prefix(prefix, name)
 
@@ -98,20 +98,20 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
         name: the package.
         folder: the source folder of the package.
     """
-    text = _text_with_targets(folder)  # checked first, because entry points take longer to read
+    text = _text_with_targets(folder)  # checked first, because reading the entry points takes longer
     share = None if text is None else _share_with_files(name)
     if text is None or share is None or not _is_compiled(folder, text):
         return {}
-    ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
+    substitute_files = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
     return {
         path: InstalledFile(str(file), f"share/{name}/{path}")
-        for path, file in ours.items()
+        for path, file in substitute_files.items()
         if path != MANIFEST and file.suffix != ".pyc" and not (folder / path).is_file()
     }
 
 
-_COMPILING = ("add_executable", "add_library", "add_module", "add_subdirectory", "include", "register_node")
-"""Parts of the commands of CMake by which a file, or one that it names, declares compiled targets."""
+_COMPILING_COMMANDS = ("add_executable", "add_library", "add_module", "add_subdirectory", "include", "register_node")
+"""Fragments of the CMake commands that declare compiled targets, or that run other files which may declare them."""
 
 
 def _text_with_targets(folder: Path) -> str | None:
@@ -120,8 +120,8 @@ def _text_with_targets(folder: Path) -> str | None:
         text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
     except OSError:
         return None
-    lowered = text.casefold()
-    return text if any(command in lowered for command in _COMPILING) else None
+    lower_text = text.casefold()
+    return text if any(command in lower_text for command in _COMPILING_COMMANDS) else None
 
 
 def _is_compiled(folder: Path, text: str) -> bool:
@@ -132,7 +132,7 @@ def _is_compiled(folder: Path, text: str) -> bool:
     return bool(read_cmake(SourceText(str(folder / "CMakeLists.txt"), text), folder).compiled)
 
 
-_MARK = os.path.join("", "linkwright", SHARES, "")  # noqa: PTH118 - a part of the path as text
+_LINK_FOLDER_MARK = os.path.join("", "linkwright", SHARES_SUBFOLDER, "")  # noqa: PTH118 - a part of the path as text
 
 
 def share_of_sources(name: str, folder: Path) -> Path:
@@ -145,9 +145,9 @@ def share_of_sources(name: str, folder: Path) -> Path:
         name: the package.
         folder: the source folder of the package.
     """
-    if _MARK in str(folder):  # a launch file in a folder of links started the search
+    if _LINK_FOLDER_MARK in str(folder):  # a launch file in a folder of links started the search
         return folder
-    moved = {path: file for path, file in _shared(name, folder) if path != file.source}
+    moved = {path: file for path, file in _share_files(name, folder) if path != file.source}
     moved |= substituted_files(name, folder)
     if not moved:
         return folder
@@ -161,22 +161,22 @@ def share_of_sources(name: str, folder: Path) -> Path:
 
 def source_of(path: str) -> str:
     """Return the source file behind a file in a folder of links, and any other path unchanged."""
-    return os.path.realpath(path) if _MARK in path else path
+    return os.path.realpath(path) if _LINK_FOLDER_MARK in path else path
 
 
-def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
+def _share_files(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
     """Yield the files that a package installs into its share folder, each with its path there.
 
-    Some files whose path is the same in the sources are left out.
+    Some files with the same path in the sources are omitted.
     """
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
-        for file in _installed(folder, share):
-            if file.destination.startswith(share) and _is_own(file.source):
+        for file in _installed_files(folder, share):
+            if file.destination.startswith(share) and _is_inside_package(file.source):
                 yield file.destination[len(share) :], file
 
 
-def _is_own(source: str) -> bool:
+def _is_inside_package(source: str) -> bool:
     """Return whether a source path is inside the package.
 
     A page must not show files from outside an untrusted package.
@@ -185,7 +185,7 @@ def _is_own(source: str) -> bool:
     return not path.is_absolute() and path.parts[:1] != (os.pardir,)
 
 
-def _installed(folder: Path, share: str) -> Iterator[InstalledFile]:
+def _installed_files(folder: Path, share: str) -> Iterator[InstalledFile]:
     for build_file in ("CMakeLists.txt", "setup.py"):
         try:
             text = (folder / build_file).read_text(encoding="utf-8", errors="replace")

@@ -1,4 +1,4 @@
-"""Resolution of ``package://`` and ``file://`` URIs and of plain paths in descriptions."""
+"""Resolution of ``package://`` and ``file://`` URIs, and of plain paths, in descriptions."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
         LinkwrightError: an error of `share`; PKG102, the URI has another form.
     """
     if not address.strip():
-        raise _bad_uri(phrase("'{uri}' is empty, but the path of a file is expected", uri=address))
+        raise _bad_uri(phrase("'{uri}' is empty; write the path of a file", uri=address))
     scheme = _SCHEME.match(address)
     if scheme is None:
         path = Path(address)
         return path if path.is_absolute() or relative_to is None else relative_to / path
-    kind, rest = scheme.group(1).lower(), address[scheme.end() :]
-    if kind == "package":
-        return _package_path(address, rest, share)
-    if kind == "file":
-        return _file_path(address, rest)
+    scheme_name, remainder = scheme.group(1).lower(), address[scheme.end() :]
+    if scheme_name == "package":
+        return _package_path(address, remainder, share)
+    if scheme_name == "file":
+        return _file_path(address, remainder)
     hint = phrase("use package://PACKAGE/PATH")
-    if kind in ("http", "https"):
+    if scheme_name in ("http", "https"):
         hint = phrase(
             "files are not fetched from the network: put the file into a package and use package://PACKAGE/PATH"
         )
@@ -49,13 +49,13 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
 def _package_path(address: str, rest: str, share: Callable[[str], Path]) -> Path:
     if not rest.startswith("//"):
         raise _bad_uri(
-            phrase("'{uri}' lacks the two slashes after the scheme", uri=address),
+            phrase("'{uri}' has no '//' after the scheme", uri=address),
             phrase("write package://PACKAGE/PATH"),
         )
     name, _, path = rest[2:].partition("/")
     if not name:
-        raise _bad_uri(phrase("'{uri}' names no package", uri=address), phrase("write package://PACKAGE/PATH"))
-    return share(_decoded(name)) / _decoded(path).lstrip("/")
+        raise _bad_uri(phrase("'{uri}' does not name a package", uri=address), phrase("write package://PACKAGE/PATH"))
+    return share(_decode(name)) / _decode(path).lstrip("/")
 
 
 def _file_path(address: str, rest: str) -> Path:
@@ -82,11 +82,11 @@ def absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | No
         rest = rest[2:]
     drive = _DRIVE.match(rest) if with_drives else None
     if drive is not None:
-        return _decoded(rest[drive.start(1) :])
-    return _decoded(rest) if rest.startswith("/") else None
+        return _decode(rest[drive.start(1) :])
+    return _decode(rest) if rest.startswith("/") else None
 
 
-def _decoded(text: str) -> str:
+def _decode(text: str) -> str:
     if "%" not in text:
         return text
     from urllib.parse import unquote

@@ -1,1 +1,1 @@
-"""The page in the browser as its server sees it: protocol, admission, open pages, and outboxes."""
+"""The server side of the page in the browser: protocol, access control, open pages, and outboxes."""

@@ -1,4 +1,4 @@
-"""The open pages, the exchange of messages with them, and the lateness of the event loop."""
+"""The open pages, the exchange of messages with them, and the lag of the event loop."""
 
 from __future__ import annotations
 
@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics.translation import language as language_of_terminal
 from linkwright.diagnostics.translation import language_of
 from linkwright.graph import log_failure
-from linkwright.page.outbox import BULK, TRANSFORMS, ChunkedFrame, Line, Outbox, Outgoing, Payload, ScaledData
+from linkwright.page.outbox import (
+    MIN_MEASURED_SIZE,
+    TRANSFORMS,
+    ChunkedFrame,
+    ConnectionMeter,
+    Outbox,
+    Outgoing,
+    Payload,
+    ScaledData,
+)
 from linkwright.page.protocol.message import (
     BadMessageError,
     PageMessage,
@@ -33,29 +42,29 @@ if TYPE_CHECKING:
     from linkwright.page.protocol.voice import SoundBlock
 
 
-_EVERY = 0.05
-"""Seconds between two measurements."""
+_MEASURE_PERIOD = 0.05
+"""Seconds between two measurements of the lag."""
 
-_LOOKS = 20
-"""Measurements that count."""
+_MEASUREMENT_COUNT = 20
+"""The number of measurements in the mean."""
 
 
-class Lateness:
+class LoopLag:
     """Measures the lag of the event loop, from its creation until it is closed.
 
-    Messages from a page wait for that time before they are read, and messages to a page before they are sent.
+    Messages from a page wait for this time before they are read, and messages to a page before they are sent.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        self._seen: deque[float] = deque(maxlen=_LOOKS)
-        self._due = self._loop.time() + _EVERY
+        self._lags: deque[float] = deque(maxlen=_MEASUREMENT_COUNT)
+        self._due = self._loop.time() + _MEASURE_PERIOD
         self._timer = self._loop.call_at(self._due, self._look)
 
     @property
     def mean(self) -> float:
-        """The mean lateness over the last second, in seconds; 0.0 before the first measurement."""
-        return sum(self._seen) / len(self._seen) if self._seen else 0.0
+        """The mean lag over the last second, in seconds; 0.0 before the first measurement."""
+        return sum(self._lags) / len(self._lags) if self._lags else 0.0
 
     def close(self) -> None:
         """Stop measuring."""
@@ -63,31 +72,31 @@ class Lateness:
 
     def _look(self) -> None:
         now = self._loop.time()
-        self._seen.append(now - self._due)
-        self._due = now + _EVERY
+        self._lags.append(now - self._due)
+        self._due = now + _MEASURE_PERIOD
         self._timer = self._loop.call_at(self._due, self._look)
 
 
-MAXIMUM_PAGES = 32
-"""Most open pages; more are refused."""
+MAX_PAGES = 32
+"""The largest number of open pages, beyond which pages are refused."""
 
 _PATIENCE = 20
-"""Messages outside of the protocol that a page may send before it is disconnected."""
+"""The number of invalid messages after which a page is disconnected."""
 
-_OURS = 4
-"""The program delays each message and its answer: so many times that is twice its share of the time."""
+_LAG_FACTOR = 4
+"""A page receives a notice that the program is late if the lag times this factor exceeds the round-trip time."""
 
 _QUIET = 0.3
-"""Seconds of an idle line after which a page receives the full data of content that it has only in part."""
+"""Seconds for which a connection must be idle before a page receives the full data of reduced content."""
 
 
 def requested_language(request: Request) -> str:
-    """Return the language that a page requests, one of `LANGUAGES`; by default the terminal's."""
+    """Return the language that a page requests, one of `LANGUAGES`; by default the language of the terminal."""
     return language_of(request.query.get("language", "")) or language_of_terminal()
 
 
 class Page:
-    """An open page: its socket and its outbox.
+    """An open page, with its socket and its outbox.
 
     Args:
         socket: the page's socket.
@@ -103,15 +112,15 @@ class Page:
         self.language = language
         self.own = own
         self.is_here = is_here
-        self.line = Line(asyncio.get_running_loop().time)
+        self.line = ConnectionMeter(asyncio.get_running_loop().time)
         self._socket = socket
         self._reduced: dict[str, tuple[ScaledData, int]] = {}
-        self._lateness: Lateness | None = None
-        self._reported_late = False
+        self._loop_lag: LoopLag | None = None
+        self._has_reported_late = False
         self._opening: list[Payload] = []
-        self._completing: asyncio.TimerHandle | None = None
+        self._completion_timer: asyncio.TimerHandle | None = None
         self._completion: ChunkedFrame | None = None
-        self._completions = 0
+        self._completion_count = 0
 
     def open(self, opening: Iterable[Payload]) -> None:
         """Set the messages that are sent first to the page."""
@@ -122,113 +131,113 @@ class Page:
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
-        """Send the opening payloads, then those of the outbox, until the connection is lost."""
+        """Send the opening payloads and then the payloads of the outbox, until the connection is lost."""
         try:
             for payload in self._opening:
-                made = self.outbox.make(payload)
-                if made is not None:
-                    await self._send(made)
+                content = self.outbox.make(payload)
+                if content is not None:
+                    await self._send(content)
             self._opening.clear()
             while True:
                 await self._send(await self.outbox.take())
         except ConnectionError:
-            pass  # the reader notices this too, and cleans up
+            pass  # the reader also notices this, and cleans up
 
     def received(self, count: int) -> None:
         """Record that the page has acknowledged its first `count` messages."""
         self.line.received(count)
-        self._line_changed()
+        self._on_connection_change()
 
     def close(self) -> None:
         """Cancel scheduled work."""
-        if self._lateness is not None:
-            self._lateness.close()
-            self._lateness = None
-        self._stop_completing()
+        if self._loop_lag is not None:
+            self._loop_lag.close()
+            self._loop_lag = None
+        self._cancel_completion()
 
-    def _stop_completing(self) -> None:
-        if self._completing is not None:
-            self._completing.cancel()
-            self._completing = None
+    def _cancel_completion(self) -> None:
+        if self._completion_timer is not None:
+            self._completion_timer.cancel()
+            self._completion_timer = None
 
     async def _send(self, payload: Outgoing | ScaledData) -> None:
         if not isinstance(payload, (str, bytes)):
-            payload = await self._fitted(payload)
+            payload = await self._fitted_frame(payload)
         size = len(payload)
-        began = self.line.sending(size)
+        start_time = self.line.sending(size)
         if isinstance(payload, bytes):
             await self._socket.send_bytes(payload)
         else:
             await self._socket.send_str(payload)
-        self.line.sent(size, began)
-        self._line_changed()
+        self.line.sent(size, start_time)
+        self._on_connection_change()
 
-    async def _fitted(self, payload: ScaledData) -> bytes:
+    async def _fitted_frame(self, payload: ScaledData) -> bytes:
         """Return a frame with as much of the content as the connection can carry.
 
         The full content is sent later, when the connection is idle.
         """
-        room = self.line.room
-        frame = await payload.fitting(room)
+        byte_budget = self.line.room
+        frame = await payload.fitting(byte_budget)
         if frame is payload.full_frame:
             self._reduced.pop(payload.key, None)
         else:
-            self._reduced[payload.key] = (payload, room)
+            self._reduced[payload.key] = (payload, byte_budget)
         return frame
 
-    def _line_changed(self) -> None:
+    def _on_connection_change(self) -> None:
         self.outbox.hold(self.line.is_full)
         self._report_lateness()
         if self._completion is not None and self._completion.done:
-            self._completed(self._completion)
-        room = self.line.room
-        for key, (payload, was) in list(self._reduced.items()):
+            self._end_completion(self._completion)
+        byte_budget = self.line.room
+        for key, (payload, previous_budget) in list(self._reduced.items()):
             if payload.gone:
                 del self._reduced[key]
-            elif room >= 2 * was and key not in self.outbox and not self._completes(payload):
+            elif byte_budget >= 2 * previous_budget and key not in self.outbox and not self._is_completing(payload):
                 del self._reduced[key]
                 self.outbox.put(key, payload)
         if self._completion is not None:
             if self._completion.key not in self.outbox:
                 self.outbox.put(self._completion.key, self._completion)
         elif not self.line.is_idle:
-            self._stop_completing()
-        elif self._reduced and self._completing is None:
-            self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
+            self._cancel_completion()
+        elif self._reduced and self._completion_timer is None:
+            self._completion_timer = asyncio.get_running_loop().call_later(_QUIET, self._start_completion)
 
     def _report_lateness(self) -> None:
         """Notify the page when this program starts or stops being the reason for reduced data."""
-        if self._lateness is None and self._reduced:
-            self._lateness = Lateness(asyncio.get_running_loop())
-        elif self._lateness is not None and not self._reduced:
-            self._lateness.close()
-            self._lateness = None
-        late = self._lateness is not None and self._lateness.mean * _OURS >= (self.line.took or math.inf)
-        if late != self._reported_late:
-            self._reported_late = late
-            self.send(ProgramIsLate(late))
+        if self._loop_lag is None and self._reduced:
+            self._loop_lag = LoopLag(asyncio.get_running_loop())
+        elif self._loop_lag is not None and not self._reduced:
+            self._loop_lag.close()
+            self._loop_lag = None
+        is_late = self._loop_lag is not None and self._loop_lag.mean * _LAG_FACTOR >= (self.line.took or math.inf)
+        if is_late != self._has_reported_late:
+            self._has_reported_late = is_late
+            self.send(ProgramIsLate(is_late))
 
-    def _complete(self) -> None:
+    def _start_completion(self) -> None:
         """Send the full content of a reduced payload in chunks, because the connection is idle."""
-        self._completing = None
+        self._completion_timer = None
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
-                self._completions += 1
-                self._completion = ChunkedFrame(payload, self._completions, self._piece)
+                self._completion_count += 1
+                self._completion = ChunkedFrame(payload, self._completion_count, self._chunk_size)
                 self.outbox.put(payload.key, self._completion)
                 return
 
-    def _completes(self, payload: ScaledData) -> bool:
+    def _is_completing(self, payload: ScaledData) -> bool:
         return self._completion is not None and self._completion.payload is payload
 
-    def _completed(self, completion: ChunkedFrame) -> None:
+    def _end_completion(self, completion: ChunkedFrame) -> None:
         self._completion = None
         if self._reduced.get(completion.key, (None,))[0] is completion.payload:
             del self._reduced[completion.key]
 
-    def _piece(self) -> int:
+    def _chunk_size(self) -> int:
         """Return the size of a chunk in bytes; at most two chunks are in transit."""
-        return max(BULK, self.line.room // 2)
+        return max(MIN_MEASURED_SIZE, self.line.room // 2)
 
 
 class PageGroup:
@@ -260,7 +269,7 @@ class PageGroup:
                 page.outbox.put(key, texts[page.language])
 
     def send_data(self, key: str, payload: Payload) -> None:
-        """Send a display's data to every page, replacing data that is still queued under the same key."""
+        """Send data of a display to every page, replacing data that is still queued under the same key."""
         for page in self._pages:
             page.outbox.put(key, payload)
 
@@ -275,9 +284,9 @@ class Audience(PageGroup):
 
     Args:
         opening: returns the payloads for a new page, which contain the full current state.
-        receivers: the receivers of messages from pages, by the address of the message's class; other messages are
+        receivers: the functions that handle messages of pages, by the address of the message class; other messages are
             ignored.
-        gone: called when a page has closed.
+        on_page_closed: called when a page has closed.
         logger: logs invalid messages, and failures to handle a message.
     """
 
@@ -285,30 +294,30 @@ class Audience(PageGroup):
         self,
         opening: Callable[[Page], list[Payload]],
         receivers: Mapping[str, Callable[[Page, Any], object]],
-        gone: Callable[[Page], None],
+        on_page_closed: Callable[[Page], None],
         logger: Logger,
     ) -> None:
         super().__init__()
         self._opening = opening
         self._receivers = receivers
-        self._gone = gone
+        self._gone = on_page_closed
         self._logger = logger
         self._sockets: set[WebSocketResponse] = set()
-        self._expected = 0
+        self._reserved_slots = 0
 
     @property
     def is_full(self) -> bool:
         """Whether the maximum number of pages is open or being opened."""
-        return len(self) + self._expected >= MAXIMUM_PAGES
+        return len(self) + self._reserved_slots >= MAX_PAGES
 
     @contextmanager
     def expecting(self) -> Iterator[None]:
-        """Reserve a slot for a page while its socket is being opened; `attend` takes the slot over."""
-        self._expected += 1
+        """Reserve a slot for a page while its socket is opened; then `attend` uses the slot."""
+        self._reserved_slots += 1
         try:
             yield
         finally:
-            self._expected -= 1
+            self._reserved_slots -= 1
 
     async def attend(self, page: Page, socket: WebSocketResponse) -> None:
         """Serve a page on its socket until the socket closes."""
@@ -328,19 +337,19 @@ class Audience(PageGroup):
 
     async def close(self) -> None:
         """Close the connection to every page (1001, going away)."""
-        goodbyes = (socket.close(code=1001, message=b"the viewer is closing") for socket in list(self._sockets))
-        await asyncio.gather(*goodbyes, return_exceptions=True)
+        closings = (socket.close(code=1001, message=b"the viewer is closing") for socket in list(self._sockets))
+        await asyncio.gather(*closings, return_exceptions=True)
 
     async def _listen(self, page: Page, socket: WebSocketResponse) -> None:
         from linkwright.page.http_server import web
 
-        patience = _PATIENCE
-        pace = Pace(asyncio.get_running_loop().time)
+        remaining_invalid = _PATIENCE
+        rate_limit = Pace(asyncio.get_running_loop().time)
         async for message in socket:
             if message.type not in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
                 continue
-            if (pause := pace.wait()) > 0:
-                await asyncio.sleep(pause)
+            if (delay := rate_limit.wait()) > 0:
+                await asyncio.sleep(delay)
             if message.type is web.WSMsgType.BINARY:
                 from linkwright.page.protocol.voice import unpack_sound
 
@@ -348,23 +357,23 @@ class Audience(PageGroup):
                 if sound is None:
                     await socket.close(code=1003, message=b"pages send text, and sound in blocks")
                     return
-                self._hand_on(page, sound)
+                self._handle_message(page, sound)
                 continue
             try:
                 decoded = decode(message.data)
             except BadMessageError as error:
                 self._logger.warning(f"A page sent an invalid message: {error}")
-                patience -= 1
-                if patience == 0:
+                remaining_invalid -= 1
+                if remaining_invalid == 0:
                     await socket.close(code=1008, message=b"too many messages outside of the protocol")
                     return
             else:
                 if isinstance(decoded, Received):
                     page.received(decoded.count)
                 else:
-                    self._hand_on(page, decoded)
+                    self._handle_message(page, decoded)
 
-    def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
+    def _handle_message(self, page: Page, message: PageMessage | SoundBlock) -> None:
         receive = self._receivers.get(address_of(type(message)))
         if receive is None:
             return
@@ -374,13 +383,13 @@ class Audience(PageGroup):
             log_failure(self._logger, f"'{type(message).__name__}' of a page", error)
 
 
-_RATE = 1000.0
-_BURST = 4000.0
-"""A page of a large robot reports all its meshes at once."""
+_MAX_RATE = 1000.0
+_MAX_BURST = 4000.0
+"""The number of messages that a page may send at once, such as the reports of all meshes of a large robot."""
 
 
 class Pace:
-    """Limits the rate of a sender's messages, so that one page cannot block the others.
+    """Limits the rate of messages of a page, so that it cannot block other pages.
 
     Args:
         clock: returns the time in seconds.
@@ -388,12 +397,12 @@ class Pace:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._left = _BURST
-        self._at = clock()
+        self._remaining_messages = _MAX_BURST
+        self._last_time = clock()
 
     def wait(self) -> float:
-        """Return for how many seconds the next message must be delayed."""
+        """Return the time in seconds by which the next message must be delayed."""
         now = self._clock()
-        self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
-        self._at = now
-        return max(0.0, -self._left / _RATE)
+        self._remaining_messages = min(_MAX_BURST, self._remaining_messages + (now - self._last_time) * _MAX_RATE) - 1.0
+        self._last_time = now
+        return max(0.0, -self._remaining_messages / _MAX_RATE)

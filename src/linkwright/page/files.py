@@ -1,8 +1,9 @@
 """The files that pages may fetch: meshes, files next to them, and generated files.
 
-Neither a description nor a request can be trusted. A page is served only meshes and images, only from folders that the
-current descriptions name, and only if the real path, with links followed, is still inside. A file generated for a page
-can be fetched once, and only for a short time. Recordings that pages made can be fetched while the program runs.
+Neither a description nor a request can be trusted. Pages can read only meshes and images, only in folders that the
+current descriptions name, and only if the real path, with links followed, is inside such a
+folder. A file generated for a page
+can be fetched once, and only for a short time. Recordings of pages can be fetched as long as the program runs.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.diagnostics.diagnostic import FETCH, IS_POINTER, is_pointer_file
+from linkwright.diagnostics.diagnostic import POINTER_HINT, POINTER_REASON, is_pointer_file
 from linkwright.packages import PackageFinder, PackageNotFoundError, enclosing_package
 
 MESH_TYPES = {
@@ -44,25 +45,25 @@ IMAGE_TYPES = {
 CONTENT_TYPES = {**MESH_TYPES, **IMAGE_TYPES, ".mtl": "model/mtl", ".bin": "application/octet-stream"}
 
 _SECRET = secrets.token_bytes(32)
-_SECRET_OF_KEY = re.compile(r"(/mesh/[A-Za-z0-9_.-]+)~[0-9a-f]{32}(?=/)")
+_SECRET_IN_ADDRESS = re.compile(r"(/mesh/[A-Za-z0-9_.-]+)~[0-9a-f]{32}(?=/)")
 
 _PACKAGE_URI = re.compile(r"package://([^/%]+)/")
 
 _MODEL_CONFIG = "model.config"
 """The file that marks the folder of a Gazebo model."""
 
-_LOOSE_DEPTH = 2
-"""A mesh outside of any package and model gives access only to its folder and the folders in that."""
+_MAX_LOOSE_DEPTH = 2
+"""The maximum number of parts of a path below the folder of a mesh outside of packages and models."""
 
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: of a package, of a Gazebo model, or of a mesh outside of both.
+    """A folder that pages may read from: a package, a Gazebo model, or the folder of a mesh outside of both.
 
     Attributes:
         root: the folder.
-        package: the name of the package, or None if the folder is not a package's.
-        is_model: whether the folder is that of a Gazebo model, with its meshes and textures.
+        package: the name of the package, or None if the folder is not a package.
+        is_model: whether the folder is a Gazebo model, with its meshes and textures.
     """
 
     root: Path
@@ -71,10 +72,10 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """The key of the folder in addresses, which is readable and secret and does not contain the path.
+        """The key of the folder in addresses: a readable name and a secret, without the path.
 
-        It must be secret because the image elements of textures cannot send the token: only a page that received the
-        address can fetch the file.
+        The secret is needed because the image elements of textures cannot send the token. Only a page that received
+        the address can fetch the file.
         """
         name = re.sub(r"[^A-Za-z0-9_.-]", "_", self.package or self.root.name)
         root = os.fsencode(self.root)
@@ -83,7 +84,7 @@ class ServedFolder:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """The address of a file for pages, or None and the reason why there is no address."""
+    """The address of a file for pages, or None and the reason why the file has no address."""
 
     url: str | None
     problem: Phrase | None = None
@@ -107,7 +108,7 @@ class MeshIndex:
 
     finder: PackageFinder
     folders: dict[str, ServedFolder] = field(default_factory=dict)
-    _unknown: dict[str, Located] = field(default_factory=dict)
+    _missing_packages: dict[str, Located] = field(default_factory=dict)
 
     def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> Located:
         """Return the address of a file, and add its folder to `folders`.
@@ -118,25 +119,30 @@ class MeshIndex:
             types: the supported suffixes, in lower case.
         """
         package = _PACKAGE_URI.match(uri)
-        if package and package[1] in self._unknown:
-            return self._unknown[package[1]]  # searches are slow, and a robot names its package often
+        if package and package[1] in self._missing_packages:
+            return self._missing_packages[package[1]]  # searches are slow, and a robot names its package often
         try:
             path = Path(os.path.normpath(self.finder.resolve(uri, base)))
         except PackageNotFoundError as error:
-            return self._unknown.setdefault(error.name, Located(None, error.diagnostics[0].message))
+            return self._missing_packages.setdefault(error.name, Located(None, error.diagnostics[0].message))
         except LinkwrightError as error:
             return Located(None, error.diagnostics[0].message)
         except ValueError:
-            return Located(None, phrase("its path contains an invalid character"))
+            return Located(None, phrase("the path contains an invalid character"))
         if not path.is_file():
             return Located(None, phrase("there is no file '{path}'", path=path))
         if path.suffix.lower() not in types:
-            known = ", ".join(sorted(suffix[1:].upper() for suffix in types))
+            supported_formats = ", ".join(sorted(suffix[1:].upper() for suffix in types))
             return Located(
-                None, phrase("the format of '{path}' is not supported; supported are {known}", path=path, known=known)
+                None,
+                phrase(
+                    ("the format of '{path}' is not supported; the supported formats are {known}"),
+                    path=path,
+                    known=supported_formats,
+                ),
             )
         if is_pointer_file(path):
-            return Located(None, phrase("'{path}': {why}; {how}", path=path, why=IS_POINTER, how=FETCH))
+            return Located(None, phrase("'{path}': {why}; {how}", path=path, why=POINTER_REASON, how=POINTER_HINT))
         folder = self._folder_of(uri, path)
         relative = path.relative_to(folder.root)
         try:
@@ -148,10 +154,10 @@ class MeshIndex:
         return Located(f"/mesh/{folder.key}/{quote(relative.as_posix())}?v={version:x}")
 
     def _folder_of(self, uri: str, path: Path) -> ServedFolder:
-        named = _PACKAGE_URI.match(uri)
-        share = self.finder.find(named[1]) if named else None
-        if named and share and path.is_relative_to(share):
-            return ServedFolder(share, named[1])
+        package_match = _PACKAGE_URI.match(uri)
+        share_folder = self.finder.find(package_match[1]) if package_match else None
+        if package_match and share_folder and path.is_relative_to(share_folder):
+            return ServedFolder(share_folder, package_match[1])
         package = enclosing_package(path.parent)
         if package:
             return ServedFolder(package[1], package[0])
@@ -160,12 +166,12 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """Return a text in which file addresses have no secret part, so that the text can be shared."""
-    return _SECRET_OF_KEY.sub(r"\1", text)
+    """Return a text without the secrets in file addresses, so that the text can be shared."""
+    return _SECRET_IN_ADDRESS.sub(r"\1", text)
 
 
 class MeshFolders:
-    """The folders that pages may read from, by key; each display adds those of its description."""
+    """The folders that pages may read from, by key; each display adds the folders of its description."""
 
     def __init__(self) -> None:
         self._folders: dict[str, dict[str, ServedFolder]] = {}
@@ -176,9 +182,9 @@ class MeshFolders:
 
     def copy(self) -> MeshFolders:
         """Return a copy that is not affected by later changes of the displays."""
-        made = MeshFolders()
-        made._folders.update(self._folders)
-        return made
+        copied = MeshFolders()
+        copied._folders.update(self._folders)
+        return copied
 
     def file(self, key: str, relative: str) -> Path:
         """Return the real path of a requested file.
@@ -199,8 +205,8 @@ class MeshFolders:
 def resolve(folder: ServedFolder, relative: str) -> Path:
     """Return the real path of a file below a folder, with links followed and checked.
 
-    A link may lead out of a package's folder only to a file of the same package, because
-    ``colcon build --symlink-install`` arranges share folders that way.
+    A link may lead out of the folder of a package only to a file of the same package, as in share folders that
+    ``colcon build --symlink-install`` creates.
 
     Raises:
         FileRefusedError: 404 if there is no such file, 403 if it may not be read.
@@ -210,26 +216,26 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
         raise FileRefusedError(403, "the path leads out of its folder")
     if PurePosixPath(relative).suffix.lower() not in CONTENT_TYPES:
         raise FileRefusedError(403, "only meshes and images are served")
-    if folder.package is None and not folder.is_model and len(parts) > _LOOSE_DEPTH:
+    if folder.package is None and not folder.is_model and len(parts) > _MAX_LOOSE_DEPTH:
         raise FileRefusedError(403, "too deep below a mesh that is in no package")
     try:
-        real = _beside(folder.root / relative).resolve(strict=True)
+        real_path = _existing_or_texture(folder.root / relative).resolve(strict=True)
         root = folder.root.resolve(strict=True)
     except (OSError, RuntimeError, ValueError):
         raise FileRefusedError(404, "no such file") from None
-    if not real.is_file():
+    if not real_path.is_file():
         raise FileRefusedError(404, "no such file")
-    if real.suffix.lower() not in CONTENT_TYPES:
+    if real_path.suffix.lower() not in CONTENT_TYPES:
         raise FileRefusedError(403, "only meshes and images are served")
-    if not real.is_relative_to(root) and not _of_package(real, folder.package):
+    if not real_path.is_relative_to(root) and not _is_in_package(real_path, folder.package):
         raise FileRefusedError(403, "a link leads out of the package")
-    return real
+    return real_path
 
 
-def _beside(path: Path) -> Path:
-    """Return the path, or that of the image with the same name in a Gazebo model's texture folder.
+def _existing_or_texture(path: Path) -> Path:
+    """Return the path, or the path of the image with the same name in the texture folder of a Gazebo model.
 
-    The latter is used only if there is no file at the path.
+    The texture folder is used only if there is no file at the path.
     """
     if path.suffix.lower() in IMAGE_TYPES and not path.exists():
         model = path.parent.parent
@@ -239,18 +245,18 @@ def _beside(path: Path) -> Path:
     return path
 
 
-def _of_package(path: Path, name: str | None) -> bool:
+def _is_in_package(path: Path, name: str | None) -> bool:
     package = enclosing_package(path.parent)
     return package is not None and package[0] == name
 
 
-_KEPT_SECONDS = 60.0
-_MOST_KEPT = 4
+_OFFER_SECONDS = 60.0
+_MAX_OFFERED = 4
 
 
 @dataclass(frozen=True, slots=True)
 class Download:
-    """A file for a page to fetch."""
+    """A generated file that a page can fetch once."""
 
     name: str
     content_type: str
@@ -263,29 +269,29 @@ class Downloads:
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
-        self._reusable: dict[str, Path] = {}
+        self._reusable_paths: dict[str, Path] = {}
 
     def keep(self, path: Path) -> str:
         """Offer a file for any number of fetches, and return its address."""
         key = secrets.token_urlsafe(16)
-        self._reusable[key] = path
+        self._reusable_paths[key] = path
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
         """Return the path of a file that `keep` offers under a key, or None."""
-        return self._reusable.get(key)
+        return self._reusable_paths.get(key)
 
     def put(self, file: Download) -> str:
         """Offer a file for one fetch, and return its address."""
-        while len(self._files) >= _MOST_KEPT:
+        while len(self._files) >= _MAX_OFFERED:
             del self._files[next(iter(self._files))]
         key = secrets.token_urlsafe(16)
         self._files[key] = file
         return f"/export/{key}/{quote(file.name)}"
 
     def take(self, key: str) -> Download | None:
-        """Return the file that `put` offers under a key, and withdraw it; None if there is none."""
+        """Return the file that `put` offers under a key and withdraw the file; None if there is none."""
         now = time.monotonic()
-        for old in [old for old, file in self._files.items() if now - file.made > _KEPT_SECONDS]:
+        for old in [expired_key for expired_key, file in self._files.items() if now - file.made > _OFFER_SECONDS]:
             del self._files[old]
         return self._files.pop(key, None)

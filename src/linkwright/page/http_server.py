@@ -1,8 +1,8 @@
-"""Loads aiohttp's server without its client, which takes about as long to load as the server.
+"""Loads the server of aiohttp without the client, which takes about as long to load as the server.
 
-``import aiohttp`` loads both, and the client reads the system's certificates twice while it loads. This module
+``import aiohttp`` loads both, and the client reads the certificates of the system twice. This module
 registers the package without running its ``__init__``, and loads only the modules that a server needs. ``__init__``
-runs at the first access to one of its names, for example by a user's node that downloads a file.
+runs when one of its names is first used, for example by a node of the user that downloads a file.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ def _register_package() -> None:
     if spec is None or spec.loader is None or spec.origin is None:
         return  # the import of aiohttp below raises the error
     package, loader, lock = module_from_spec(spec), spec.loader, RLock()
-    installed = [path.stem for path in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
+    distributions = [path.stem for path in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
 
     def missing(name: str) -> Any:
-        if name == "__version__" and len(installed) == 1:
-            return installed[0].partition("-")[2]  # the version, which is part of the server's name in responses
+        if name == "__version__" and len(distributions) == 1:
+            return distributions[0].partition("-")[2]  # the server puts the version into its name in responses
         with lock:
             if package.__dict__.get("__getattr__") is missing:
                 if find_spec(f"aiohttp.{name}"):
@@ -50,7 +50,7 @@ if "aiohttp" not in sys.modules:
 try:
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
-except (AttributeError, ImportError):  # a later version, whose server needs `__init__`
+except (AttributeError, ImportError):  # in this version of aiohttp, the server needs `__init__`
     _unregister_package()
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
@@ -59,11 +59,11 @@ __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
 def _is_server_error(record: logging.LogRecord) -> bool:
-    """Return whether a record is logged: not if a malformed request or a disconnect caused the error."""
+    """Return whether to log a record: not if a malformed request or a disconnect caused the error."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
 
 
 SERVER_LOGGER = logging.getLogger(__name__)
-"""The logger for each ``web.AppRunner``: aiohttp's own one prints a traceback whenever a client leaves."""
+"""The logger for each ``web.AppRunner``; the logger of aiohttp prints a traceback if a client disconnects."""
 SERVER_LOGGER.addFilter(_is_server_error)

@@ -1,7 +1,7 @@
 """The queue of payloads for a page, and the measured rate of the page's connection.
 
-Only the newest payload of each kind is queued, transforms precede all others, and large content is reduced for a slow
-connection or sent in chunks.
+Only the newest payload of each kind is queued. Transforms precede other payloads. Large content is reduced for a slow
+connection, or sent in chunks.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
-from linkwright.page.protocol.message import DataContent, pack_piece
+from linkwright.page.protocol.message import DataContent, pack_chunk
 
 Pack = Callable[[DataContent], bytes]
 Shrink = Callable[[int], DataContent]
-"""Reduces the content to about so many bytes, or as far as possible; runs in a thread."""
+"""Returns the content reduced to about the given number of bytes, or as far as possible; runs in a thread."""
 
 
 class ScaledData:
@@ -28,10 +28,10 @@ class ScaledData:
         key: the key of the content in outboxes.
         content: the full content.
         shrink: returns the content reduced to a number of bytes.
-        pack: returns the binary frame with some content.
+        pack: returns the binary frame with the given content.
 
     Attributes:
-        gone: whether the content was replaced or removed, and must not be sent any more.
+        gone: whether the content was replaced or removed, so that it must not be sent any more.
     """
 
     def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
@@ -40,7 +40,7 @@ class ScaledData:
         self._content = content
         self._shrink = shrink
         self._pack = pack
-        self._smaller: dict[int, asyncio.Future[bytes]] = {}
+        self._frames_by_size: dict[int, asyncio.Future[bytes]] = {}
 
     @cached_property
     def full_frame(self) -> bytes:
@@ -50,14 +50,14 @@ class ScaledData:
     async def fitting(self, room: int) -> bytes:
         """Return a frame with as much content as fits into about `room` bytes.
 
-        The room is rounded down to a power of two, so that pages with similar connections share a frame.
+        `room` is rounded down to a power of two, so that pages with similar connections share a frame.
         """
         if len(self.full_frame) <= room:
             return self.full_frame
         size = 1 << (room.bit_length() - 1)
-        if size not in self._smaller:
-            self._smaller[size] = asyncio.ensure_future(asyncio.to_thread(self._made, size))
-        return await asyncio.shield(self._smaller[size])
+        if size not in self._frames_by_size:
+            self._frames_by_size[size] = asyncio.ensure_future(asyncio.to_thread(self._made, size))
+        return await asyncio.shield(self._frames_by_size[size])
 
     def _made(self, size: int) -> bytes:
         return self._pack(self._shrink(size))
@@ -76,43 +76,43 @@ class ChunkedFrame:
         self.payload = payload
         self.key = payload.key
         self._number = number
-        self._size = size
-        self._given = 0
+        self._next_size = size
+        self._sent_bytes = 0
 
     @property
     def done(self) -> bool:
         """Whether all chunks were sent, or the content was replaced or removed."""
-        return self.payload.gone or self._given >= len(self.payload.full_frame)
+        return self.payload.gone or self._sent_bytes >= len(self.payload.full_frame)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """Return the next chunk, or None if there is none, and `seen` unchanged.
 
-        This object itself counts the chunks.
+        The position in the frame is stored in this object, not in `seen`.
         """
         if self.done:
             return None, seen
-        size = self._size()
-        piece = pack_piece(self.payload.full_frame, self._number, self._given, size)
-        self._given += size
-        return piece, seen
+        size = self._next_size()
+        chunk = pack_chunk(self.payload.full_frame, self._number, self._sent_bytes, size)
+        self._sent_bytes += size
+        return chunk, seen
 
 
 FRAME_TABLE = "frame_table"
 TRANSFORMS = "transforms"
-_URGENT = (FRAME_TABLE, TRANSFORMS)
+_URGENT_KEYS = (FRAME_TABLE, TRANSFORMS)
 
 Outgoing = str | bytes
-"""Text of a control message, or a binary frame."""
+"""The text of a control message, or a binary frame."""
 
 
 class Changes(Protocol):
-    """Content that is sent as changes: each page receives the combined changes that it lacks.
+    """Content that is sent as changes; each page receives all changes since its last message in one message.
 
-    A slow page then receives many changes in one frame, and no content that has been removed since.
+    A slow page therefore receives many changes in one frame, and no content that was removed in the meantime.
     """
 
     key: str
-    """Its key in the outbox."""
+    """The key of the content in outboxes."""
 
     def since(self, seen: int) -> tuple[Outgoing | None, int]:
         """Return the message or binary frame for a page.
@@ -121,7 +121,7 @@ class Changes(Protocol):
             seen: the number that this method returned for the page's previous message; 0 for a new page.
 
         Returns:
-            The message or frame, or None if the page lacks nothing; and the number to pass for the next message.
+            The message or frame, or None if nothing has changed, and the number to pass for the next message.
         """
 
 
@@ -133,8 +133,8 @@ class Outbox:
 
     A payload replaces a queued payload with the same key and moves to the end, so payloads are sent in the order of
     their creation. Large content keeps its position, because the most frequent content would otherwise starve the rest.
-    Frame tables and transforms have a separate queue that alternates with the other one: a slider moves the scene
-    before anything else is sent, but on a slow page the other payloads are not starved.
+    Frame tables and transforms have a separate queue, which precedes and alternates with the other queue. A slider
+    therefore moves the scene immediately, and other payloads are not starved on a slow connection.
 
     Attributes:
         is_held: whether the connection is full, in which case only frame tables and transforms are taken.
@@ -143,9 +143,9 @@ class Outbox:
     def __init__(self) -> None:
         self._urgent: dict[str, Payload] = {}
         self._ordinary: dict[str, Payload] = {}
-        self._filled = asyncio.Event()
-        self._urgent_last = False
-        self._seen: dict[str, int] = {}
+        self._has_payloads = asyncio.Event()
+        self._was_urgent = False
+        self._seen_numbers: dict[str, int] = {}
         self.is_held = False
 
     def __len__(self) -> int:
@@ -153,61 +153,61 @@ class Outbox:
 
     def put(self, key: str, payload: Payload) -> None:
         """Queue a payload, replacing a queued payload with the same key."""
-        line = self._urgent if key in _URGENT else self._ordinary
-        before = line.get(key)
-        if not (isinstance(before, ScaledData) and isinstance(payload, ScaledData) and not before.gone):
-            line.pop(key, None)
-        line[key] = payload
-        self._filled.set()
+        queue = self._urgent if key in _URGENT_KEYS else self._ordinary
+        previous = queue.get(key)
+        if not (isinstance(previous, ScaledData) and isinstance(payload, ScaledData) and not previous.gone):
+            queue.pop(key, None)
+        queue[key] = payload
+        self._has_payloads.set()
 
     def __contains__(self, key: str) -> bool:
         return key in self._urgent or key in self._ordinary
 
-    def hold(self, held: bool) -> None:
-        """Set whether everything except frame tables and transforms is held back."""
-        self.is_held = held
-        self._filled.set()
+    def hold(self, holds_back: bool) -> None:
+        """Set whether all payloads except frame tables and transforms are held back."""
+        self.is_held = holds_back
+        self._has_payloads.set()
 
     async def take(self) -> Outgoing | ScaledData:
         """Return the next payload, waiting until there is one."""
         while True:
             while not self._urgent and (self.is_held or not self._ordinary):
-                self._filled.clear()
-                await self._filled.wait()
-            others = self._ordinary and not self.is_held
-            self._urgent_last = bool(self._urgent) and not (self._urgent_last and others)
-            line = self._urgent if self._urgent_last else self._ordinary
-            made = self.make(line.pop(next(iter(line))))
-            if made is not None:
-                return made
+                self._has_payloads.clear()
+                await self._has_payloads.wait()
+            has_others = self._ordinary and not self.is_held
+            self._was_urgent = bool(self._urgent) and not (self._was_urgent and has_others)
+            queue = self._urgent if self._was_urgent else self._ordinary
+            content = self.make(queue.pop(next(iter(queue))))
+            if content is not None:
+                return content
 
     def make(self, payload: Payload) -> Outgoing | ScaledData | None:
-        """Return what is to be sent for a payload, or None if there is nothing to send."""
+        """Return the content to send for a payload, or None if there is nothing to send."""
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
             return None if payload.gone else payload
-        made, self._seen[payload.key] = payload.since(self._seen.get(payload.key, 0))
-        return made
+        content, self._seen_numbers[payload.key] = payload.since(self._seen_numbers.get(payload.key, 0))
+        return content
 
 
-BULK = 4096
-"""Messages of at least so many bytes are counted; pages acknowledge those (and some smaller ones)."""
+MIN_MEASURED_SIZE = 4096
+"""The minimum size in bytes of messages that are measured; pages acknowledge all of these messages."""
 
-_SHARE = 0.1
-"""Seconds that one payload may keep the line busy."""
+_MAX_BUSY_TIME = 0.1
+"""The time in s for which one payload may occupy the connection."""
 
-_FIRST_ROOM = 24 * 1024
-_LEAST_ROOM = 6 * 1024
+_INITIAL_BUDGET = 24 * 1024
+_MIN_BUDGET = 6 * 1024
 
-_BLOCKED = 0.02
-"""Seconds of waiting for the socket that indicate a slow line, not a busy machine."""
+_MIN_BLOCKED_TIME = 0.02
+"""The minimum time of waiting for the socket, in s, of a slow connection."""
 
-_MEAN_OF = 8
-"""Number of answers in the mean."""
+_AVERAGED_COUNT = 8
+"""The number of acknowledgements over which times are averaged."""
 
-_MOST_ON_THE_WAY = 64
-"""Messages remembered for the first answer of a page that may never answer."""
+_MAX_IN_TRANSIT = 64
+"""The largest number of stored messages for a page that has not acknowledged any message yet."""
 
 
 @dataclass(slots=True)
@@ -217,20 +217,18 @@ class _InTransit:
     sent: float
 
 
-class Line:
+class ConnectionMeter:
     """Measures the connection to one page.
 
-    A page acknowledges large messages, so that the full path is measured, including tunnels that have their own
-    buffers.
-    For a page that sends no acknowledgements, only the time in which the socket accepted the data is known.
+    A page acknowledges large messages, so that the full path is measured, including tunnels with buffers. For a page
+    without acknowledgements, only the time in which the socket accepts the data is known.
 
     Args:
         clock: returns the time in seconds.
 
     Attributes:
         rate: bytes per second; None until it is known.
-        took: the mean time in seconds from a large message to its acknowledgement, over the last such messages; None
-            until it is known.
+        took: the mean time in seconds between a large message and its acknowledgement; None until it is known.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -238,70 +236,70 @@ class Line:
         self.took: float | None = None
         self._clock = clock
         self._number = 0
-        self._answers = False
-        self._shortest = float("inf")
-        self._on_the_way: deque[_InTransit] = deque()
-        self._hello: float | None = None
+        self._has_acknowledged = False
+        self._shortest_time = float("inf")
+        self._in_transit: deque[_InTransit] = deque()
+        self._first_sent_time: float | None = None
 
     @property
     def room(self) -> int:
-        """The size in bytes that a reducible payload should have."""
-        return _FIRST_ROOM if self.rate is None else max(_LEAST_ROOM, int(self.rate * _SHARE))
+        """The size in bytes to which large content should be reduced."""
+        return _INITIAL_BUDGET if self.rate is None else max(_MIN_BUDGET, int(self.rate * _MAX_BUSY_TIME))
 
     @property
     def is_full(self) -> bool:
-        """Whether large messages must wait until the page has acknowledged earlier ones."""
-        return self._answers and sum(on_the_way.size for on_the_way in self._on_the_way) >= self.room / 2
+        """Whether large messages must wait until the page has acknowledged earlier messages."""
+        return self._has_acknowledged and sum(message.size for message in self._in_transit) >= self.room / 2
 
     @property
     def is_idle(self) -> bool:
         """Whether the page has acknowledged all large messages."""
-        return self._answers and not self._on_the_way
+        return self._has_acknowledged and not self._in_transit
 
     def sending(self, size: int) -> float:
         """Record that `size` bytes are passed to the socket; return the time to pass to `sent`."""
         now = self._clock()
         self._number += 1
         if self._number == 1:
-            self._hello = now
-        if size >= BULK:
-            self._on_the_way.append(_InTransit(self._number, size, now))
+            self._first_sent_time = now
+        if size >= MIN_MEASURED_SIZE:
+            self._in_transit.append(_InTransit(self._number, size, now))
         return now
 
-    def sent(self, size: int, since: float) -> None:
+    def sent(self, size: int, start_time: float) -> None:
         """Record that the socket has accepted a message of `size` bytes.
 
-        `since` is the time that `sending` returned.
+        `start_time` is the time that `sending` returned.
         """
-        if self._answers or size < BULK:
+        if self._has_acknowledged or size < MIN_MEASURED_SIZE:
             return
-        while len(self._on_the_way) > _MOST_ON_THE_WAY:
-            self._on_the_way.popleft()
-        seconds = self._clock() - since
-        if seconds >= _BLOCKED:
-            self._learn(size / seconds)
-        elif 2 * size >= self.room:  # some buffer of unknown size took it
-            self._learn(float("inf"))
+        while len(self._in_transit) > _MAX_IN_TRANSIT:
+            self._in_transit.popleft()
+        seconds = self._clock() - start_time
+        if seconds >= _MIN_BLOCKED_TIME:
+            self._update_rate(size / seconds)
+        elif 2 * size >= self.room:  # a buffer of unknown size has accepted it
+            self._update_rate(float("inf"))
 
     def received(self, count: int) -> None:
         """Record that the page has acknowledged its first `count` messages."""
         now = self._clock()
-        if not self._answers:
-            self._answers = True
-            if self._hello is not None:
-                self._shortest = now - self._hello
-        while self._on_the_way and self._on_the_way[0].number <= count:
-            arrived = self._on_the_way.popleft()
-            took = now - arrived.sent
-            self._shortest = min(self._shortest, took)
-            self.took = took if self.took is None else self.took + (took - self.took) / _MEAN_OF
-            if 2 * arrived.size >= min(self.room, _FIRST_ROOM):
-                self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
+        if not self._has_acknowledged:
+            self._has_acknowledged = True
+            if self._first_sent_time is not None:
+                self._shortest_time = now - self._first_sent_time
+        while self._in_transit and self._in_transit[0].number <= count:
+            acknowledged = self._in_transit.popleft()
+            elapsed = now - acknowledged.sent
+            self._shortest_time = min(self._shortest_time, elapsed)
+            self.took = elapsed if self.took is None else self.took + (elapsed - self.took) / _AVERAGED_COUNT
+            if 2 * acknowledged.size >= min(self.room, _INITIAL_BUDGET):
+                self._update_rate(acknowledged.size / max(elapsed - self._shortest_time, elapsed / 10, 1e-4))
 
-    def _learn(self, rate: float) -> None:
+    def _update_rate(self, rate: float) -> None:
         """Update the rate with a measurement in bytes per second.
 
         A measurement at most doubles or halves the rate, because it may be an outlier.
         """
-        known = self.room / _SHARE
-        self.rate = min(max(rate, known / 2), known * 2)
+        previous_rate = self.room / _MAX_BUSY_TIME
+        self.rate = min(max(rate, previous_rate / 2), previous_rate * 2)

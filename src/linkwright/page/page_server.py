@@ -1,10 +1,10 @@
-"""The server of a viewer, which serves the page even before there is a viewer."""
+"""The server of a viewer, which serves the page even before the viewer exists."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwright.page.access import Gate, PortToken, keep_token, leave_token, new_token
+from linkwright.page.access import Gate, PortToken, load_token, new_token, store_pages_wait
 from linkwright.page.files import Downloads, MeshFolders
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ class PageServer:
     """Listens at an address, and checks the token of pages.
 
     Args:
-        host: the address to listen on; any address except loopback admits other machines that know the token.
+        host: the address to listen on; any address except loopback admits other machines with the token.
         port: the port; 0 for any free port; None for 7448 or the next free port.
 
     Attributes:
@@ -39,7 +39,7 @@ class PageServer:
         self._port_token: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
-        """Start listening, and serve the page's files; other requests wait for `show`.
+        """Start listening, and serve the files of the page; other requests wait for `show`.
 
         Raises:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
@@ -50,7 +50,7 @@ class PageServer:
         self.is_open_to_others = is_open_to_others(listener)
         if self._port != 0 and not self.is_open_to_others:
             port = listener.getsockname()[1]
-            self._port_token = port, keep_token(port)
+            self._port_token = port, load_token(port)
         gate = Gate(self.host, self._port_token[1].token if self._port_token else new_token())
         self.web = WebServer(gate, self.meshes, self.downloads)
         self.url = await self.web.start(listener)
@@ -62,14 +62,14 @@ class PageServer:
 
     @property
     def pages_wait(self) -> bool:
-        """Whether pages of the former program at this port are waiting to reconnect."""
+        """Whether pages of the previous program at this port are waiting to reconnect."""
         return self._port_token is not None and self._port_token[1].pages_wait
 
-    def leave_token(self, *, pages_wait: bool) -> None:
-        """Store, before the program ends, whether its pages wait for the next program."""
+    def store_pages_wait(self, *, pages_wait: bool) -> None:
+        """Store whether pages wait for the next program; to be called before the program ends."""
         if self._port_token is not None:
             (port, port_token), self._port_token = self._port_token, None
-            leave_token(port, port_token.token, pages_wait=pages_wait)
+            store_pages_wait(port, port_token.token, pages_wait=pages_wait)
 
     async def close(self) -> None:
         """Close the connections to pages and stop listening."""

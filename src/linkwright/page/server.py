@@ -30,24 +30,24 @@ if TYPE_CHECKING:
 PAGE_FOLDER = Path(__file__).parent / "built"
 """The folder into which ``frontend/`` is built."""
 
-MAXIMUM_MESSAGE = 1024 * 1024
-"""Longest message accepted from a page, bytes: a configuration file. A longer one ends the connection (1009)."""
+MAX_MESSAGE_SIZE = 1024 * 1024
+"""The size in bytes of the longest message from a page, such as a configuration; a longer one closes it (1009)."""
 
-_OWN_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
+_OWN_CONFIGURATION_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
 _HEARTBEAT = 15.0
-_IDLE = 30.0
-"""Seconds that a connection may wait for its next request."""
+_IDLE_TIMEOUT = 30.0
+"""Seconds for which a connection may stay open without a request."""
 
 _BACKLOG = 128
-_BLOCK = 256 * 1024
-"""Bytes of a long file that are read at once."""
+_BLOCK_SIZE = 256 * 1024
+"""The number of bytes of a large file that are read at once."""
 
-_LEAST_PACKED, _WORTH_PACKING, _PACKING_LEVEL = 4096, 0.9, 1
-"""Meshes from so many bytes on go compressed, where so small a part of them is left. The next levels take twice the
-time and save another tenth."""
+_MIN_PACKED_SIZE, _MAX_PACKED_RATIO, _PACKING_LEVEL = 4096, 0.9, 1
+"""The minimum size of a mesh to compress, the ratio below which the result is sent, and the level of gzip. The next
+levels take twice the time and save another tenth."""
 
-_GOODBYE = 0.5
-"""Seconds a page has to answer a closing handshake, and a request to end."""
+_CLOSE_TIMEOUT = 0.5
+"""Seconds for a page to answer a closing handshake, and for a request to end."""
 
 _NOT_BUILT = """\
 The page of this viewer has not been built.
@@ -75,22 +75,22 @@ _PAGE_TYPES = {
 }
 
 DEFAULT_PORT = 7448
-"""Beside 7447, where routers of Zenoh listen (decision 0066)."""
+"""The port after 7447, on which Zenoh routers listen (decision 0066)."""
 
-_TRIES = 10
+_PORT_COUNT = 10
 _WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - what an address to open is instead of
 
-MOST_UNSENT = 16 * 1024
-"""Bytes that may wait in the program, and again as many in the operating system, before the writer must wait."""
+MAX_UNSENT_BYTES = 16 * 1024
+"""The number of unsent bytes, in the program and again in the operating system, above which writers wait."""
 
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
 @dataclass(slots=True)
-class _Shown:
-    """The services for pages: the audience that serves their WebSockets, and the guests.
+class _Services:
+    """The services for pages: the audience for their WebSockets, and the guests.
 
-    The guests show recordings that pages upload. `uploads` is created by the first upload request.
+    The guests show recordings that pages upload. `uploads` is created when the first upload is requested.
     """
 
     audience: Audience
@@ -99,7 +99,7 @@ class _Shown:
 
 
 class WebServer:
-    """Serves one viewer, and the files of the page even before the viewer exists.
+    """Serves a viewer, and serves the files of the page even before the viewer exists.
 
     Args:
         gate: checks requests.
@@ -113,27 +113,27 @@ class WebServer:
         self._meshes = meshes
         self._downloads = downloads
         self._page_folder = page_folder
-        self._shown: asyncio.Future[_Shown] = asyncio.get_running_loop().create_future()
+        self._services: asyncio.Future[_Services] = asyncio.get_running_loop().create_future()
         self._runner: web.AppRunner | None = None
-        self._listening: asyncio.Server | None = None
+        self._server: asyncio.Server | None = None
         self._admission: Admission | None = None
-        self._page_contents: dict[tuple[Path, bool], _FileRead] = {}
-        self._reading = asyncio.Lock()
+        self._page_contents: dict[tuple[Path, bool], _FileVersion] = {}
+        self._read_lock = asyncio.Lock()
 
     async def start(self, listener: socket.socket) -> str:
         """Serve on a listening socket, and return the address to open, including the token.
 
-        The socket is closed if this fails.
+        If this fails, the socket is closed.
         """
-        application = web.Application(middlewares=[self._guard])
+        application = web.Application(middlewares=[self._check_access])
         application.on_response_prepare.append(self._add_headers)
         application.router.add_get("/", self._index)
         application.router.add_get("/proof", self._proof, allow_head=False)
         application.router.add_get("/ws", self._socket, allow_head=False)
         application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
-        for method, path, take in _UPLOADS:
-            application.router.add_route(method, path, self._require_token(partial(self._upload, take)))
+        for method, path, handle_upload in _UPLOADS:
+            application.router.add_route(method, path, self._require_token(partial(self._upload, handle_upload)))
         application.router.add_post(
             "/export/{key}/{name}", self._require_token(partial(self._upload, self._show_own_recording))
         )
@@ -143,17 +143,17 @@ class WebServer:
             handle_signals=False,
             access_log=None,
             logger=SERVER_LOGGER,
-            shutdown_timeout=_GOODBYE,
-            keepalive_timeout=_IDLE,
+            shutdown_timeout=_CLOSE_TIMEOUT,
+            keepalive_timeout=_IDLE_TIMEOUT,
         )
         try:
             await self._runner.setup()
             loop = asyncio.get_running_loop()
             self._admission = Admission(cast("web.Server", self._runner.server))
-            self._listening = await loop.create_server(
+            self._server = await loop.create_server(
                 self._admission, sock=listener, backlog=_BACKLOG, start_serving=False
             )
-            await self._listening.start_serving()
+            await self._server.start_serving()
         except BaseException:
             try:
                 await self.close()
@@ -163,26 +163,26 @@ class WebServer:
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
     def show(self, audience: Audience, guests: Guests | None = None) -> None:
-        """Admit pages, including those that are already waiting.
+        """Admit pages, including pages that are already waiting.
 
         Args:
             audience: serves the WebSockets of pages.
             guests: shows the recordings that pages upload; None if uploads are not accepted.
         """
-        self._shown.set_result(_Shown(audience, guests))
+        self._services.set_result(_Services(audience, guests))
 
     async def close(self) -> None:
         """Close the connections to pages, and stop serving."""
-        if self._listening is not None:
-            self._listening.close()
-            self._listening = None
-        if not self._shown.done():
-            self._shown.cancel()
-        elif not self._shown.cancelled():
-            shown = self._shown.result()
-            await shown.audience.close()
-            if shown.uploads is not None:
-                shown.uploads.close()
+        if self._server is not None:
+            self._server.close()
+            self._server = None
+        if not self._services.done():
+            self._services.cancel()
+        elif not self._services.cancelled():
+            services = self._services.result()
+            await services.audience.close()
+            if services.uploads is not None:
+                services.uploads.close()
         if self._runner is not None:
             await self._runner.cleanup()
             self._runner = None
@@ -190,14 +190,14 @@ class WebServer:
     # --- every request -----------------------------------------------------------------------------------------
 
     @web.middleware
-    async def _guard(
+    async def _check_access(
         self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
     ) -> web.StreamResponse:
         if self._admission is not None:
             self._admission.asked(request.protocol)
         reason = self._gate.refusal(request.headers)
         if reason is not None:
-            return _refused(403, reason)
+            return _refusal(403, reason)
         if self._gate.is_shown_token(request.query):
             self._admit(request)
         return await handler(request)
@@ -220,7 +220,7 @@ class WebServer:
         return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
 
     async def _proof(self, request: web.Request) -> web.Response:
-        """Prove to a page that knows the token that this program knows it too; see `Gate.proof`."""
+        """Prove to a page with the token that this program knows the token too; see `Gate.proof`."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
             return web.Response(status=400, text="This address only answers the page.\n")
@@ -232,20 +232,18 @@ class WebServer:
         content_type = _PAGE_TYPES.get(Path(parts[-1]).suffix)
         if content_type is None or any(part in ("", ".", "..") or "\0" in part or "\\" in part for part in parts):
             raise web.HTTPNotFound(text="There is no such page.\n")
-        hashed = parts[0] == "assets"  # such names contain a hash of the content, by Vite
-        cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
+        is_hashed = parts[0] == "assets"  # the names of assets contain a hash of their content
+        cache = "private, max-age=31536000, immutable" if is_hashed else "no-cache"
         file = self._page_folder / path
-        packed = file.with_name(f"{file.name}.gz")
-        if not (hashed and packed.is_file()):
+        packed_path = file.with_name(f"{file.name}.gz")
+        if not (is_hashed and packed_path.is_file()):
             return await self._page_response(request, file, content_type, cache)
-        if not _takes_gzip(request):
+        if not _accepts_gzip(request):
             vary = {"Vary": "Accept-Encoding"}
-            return await self._page_response(request, packed, content_type, cache, vary, unpack=True)
-        # Compression reduces the files to a quarter, so that on a slow connection the page loads in seconds instead of
-        # tens of
-        # seconds.
-        packing = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
-        return await self._page_response(request, packed, content_type, cache, packing)
+            return await self._page_response(request, packed_path, content_type, cache, vary, unpack=True)
+        # Compression reduces the files to a quarter, which saves tens of seconds on a slow connection.
+        encoding_headers = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
+        return await self._page_response(request, packed_path, content_type, cache, encoding_headers)
 
     async def _page_response(
         self,
@@ -253,20 +251,20 @@ class WebServer:
         path: Path,
         content_type: str,
         cache: str,
-        packing: Mapping[str, str] | None = None,
+        encoding_headers: Mapping[str, str] | None = None,
         *,
         unpack: bool = False,
     ) -> web.StreamResponse:
         """Send a file of the page; concurrent requests share one copy of the file in memory."""
-        async with self._reading:
+        async with self._read_lock:
             cached = self._page_contents.get((path, unpack))
             try:
-                read = await asyncio.to_thread(_read, path, cached.tag if cached else "", unpack=unpack)
+                file_version = await asyncio.to_thread(_read, path, cached.tag if cached else "", unpack=unpack)
             except OSError:
-                raise _no_file() from None
-            if cached is None or read.body is not None:
-                cached = self._page_contents[path, unpack] = read
-        headers = {"Cache-Control": cache, "ETag": cached.tag, **(packing or {})}
+                raise _not_found() from None
+            if cached is None or file_version.body is not None:
+                cached = self._page_contents[path, unpack] = file_version
+        headers = {"Cache-Control": cache, "ETag": cached.tag, **(encoding_headers or {})}
         if cached.body is None or cached.is_known_to(request):
             return web.Response(status=304, headers=headers)
         response = web.StreamResponse(headers={**headers, "Content-Type": content_type})
@@ -274,8 +272,8 @@ class WebServer:
         await response.prepare(request)
         if request.method != "HEAD":
             content = memoryview(cached.body)
-            for start in range(0, len(content), MOST_UNSENT):
-                await response.write(content[start : start + MOST_UNSENT])
+            for start in range(0, len(content), MAX_UNSENT_BYTES):
+                await response.write(content[start : start + MAX_UNSENT_BYTES])
         await response.write_eof()
         return response
 
@@ -287,7 +285,7 @@ class WebServer:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
         self._admit(request)
         content_type = CONTENT_TYPES[path.suffix.lower()]
-        packs = _takes_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are already compressed
+        packs = _accepts_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are already compressed
         return await _file_response(request, path, content_type, "private, no-cache", packs=packs)
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
@@ -300,27 +298,28 @@ class WebServer:
             raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
         self._admit(request)
         return web.Response(
-            body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": _attached(file.name)}
+            body=file.data,
+            headers={"Content-Type": file.content_type, "Content-Disposition": _attachment_header(file.name)},
         )
 
     async def _upload(
-        self, take: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
+        self, handle_upload: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
     ) -> web.Response:
-        shown = await self._viewer()
-        if shown.guests is None:
+        services = await self._viewer()
+        if services.guests is None:
             raise web.HTTPNotFound(text="This program does not accept recordings.\n")
-        if shown.uploads is None:
+        if services.uploads is None:
             from linkwright.page.uploads import Uploads
 
-            shown.uploads = Uploads(shown.guests)
-        return await take(shown.uploads, request)
+            services.uploads = Uploads(services.guests)
+        return await handle_upload(services.uploads, request)
 
-    async def _viewer(self) -> _Shown:
+    async def _viewer(self) -> _Services:
         """Wait until the services for pages are available, and return them."""
         try:
-            return await asyncio.shield(self._shown)
+            return await asyncio.shield(self._services)
         except asyncio.CancelledError:
-            if not self._shown.cancelled():
+            if not self._services.cancelled():
                 raise  # the client has disconnected
             raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
 
@@ -334,7 +333,7 @@ class WebServer:
     def _require_token(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
-        """Return a handler that calls another one only for requests with the token."""
+        """Return a handler that calls the given handler only for requests with the token."""
 
         async def asked(request: web.Request) -> web.StreamResponse:
             return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
@@ -344,27 +343,27 @@ class WebServer:
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         if not self._gate.is_shown_token(request.query):
             return _without_token()
-        shown = await self._viewer()
+        services = await self._viewer()
         from linkwright.page.audience import Page, requested_language
 
-        audience = _audience_of(shown, request)
+        audience = _audience_of(services, request)
         if audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
             heartbeat=_HEARTBEAT,
-            timeout=_GOODBYE,
+            timeout=_CLOSE_TIMEOUT,
             compress=False,
-            max_msg_size=MAXIMUM_MESSAGE,
-            writer_limit=MOST_UNSENT,
+            max_msg_size=MAX_MESSAGE_SIZE,
+            writer_limit=MAX_UNSENT_BYTES,
         )
         if not socket.can_prepare(request):
             return web.Response(status=400, text="This address is for the page's WebSocket.\n")
         with audience.expecting():
             await socket.prepare(request)
         if request.transport is not None:
-            keep_short(request.transport)
+            limit_buffers(request.transport)
         page = Page(
-            socket, _own_displays(request), is_here=_is_from_here(request), language=requested_language(request)
+            socket, _own_configuration(request), is_here=_is_from_here(request), language=requested_language(request)
         )
         await audience.attend(page, socket)
         return socket
@@ -376,46 +375,46 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
     ("POST", "/recordings/{key}", lambda uploads, request: uploads.open(request)),
     ("DELETE", "/recordings/{key}", lambda uploads, request: uploads.cancel_upload(request)),
 )
-"""Method, address and handler of the requests with which pages upload a recording."""
+"""The methods, addresses and handlers of the requests with which pages upload recordings."""
 
 
-def _audience_of(shown: _Shown, request: web.Request) -> Audience:
-    """Return the audience of the recording that a request names, if that is still shown.
+def _audience_of(services: _Services, request: web.Request) -> Audience:
+    """Return the audience of the recording that a request names, if the recording is still shown.
 
     Otherwise, return the audience of the viewer.
     """
     key = request.query.get("recording", "")
-    found = None if shown.guests is None or not key else shown.guests.audience(key)
-    return shown.audience if found is None else found
+    audience = None if services.guests is None or not key else services.guests.audience(key)
+    return services.audience if audience is None else audience
 
 
 def _is_from_here(request: web.Request) -> bool:
-    """Return whether a request is from this machine: over loopback, or from the server's own address."""
+    """Return whether a request comes from this machine, over loopback or from the address of the server."""
     transport = request.transport
-    peer, own = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
-    if not peer or not own:
+    peer_address, own_address = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
+    if not peer_address or not own_address:
         return False
-    address = ipaddress.ip_address(peer[0].partition("%")[0])
-    mapped = getattr(address, "ipv4_mapped", None)
-    return (mapped or address).is_loopback or peer[0] == own[0]
+    address = ipaddress.ip_address(peer_address[0].partition("%")[0])
+    ipv4_address = getattr(address, "ipv4_mapped", None)
+    return (ipv4_address or address).is_loopback or peer_address[0] == own_address[0]
 
 
-def _own_displays(request: web.Request) -> str:
-    """Return the name of the page's own configuration in its address; empty for the shared one."""
+def _own_configuration(request: web.Request) -> str:
+    """Return the name of the page's own configuration in a request; empty for the shared configuration."""
     key = request.query.get("own", "")
-    return key if _OWN_KEY.fullmatch(key) else ""
+    return key if _OWN_CONFIGURATION_KEY.fullmatch(key) else ""
 
 
-def _takes_gzip(request: web.Request) -> bool:
-    offered = request.headers.get("Accept-Encoding", "").split(",")
-    return any(encoding.strip().lower() == "gzip" for encoding in offered)
+def _accepts_gzip(request: web.Request) -> bool:
+    encodings = request.headers.get("Accept-Encoding", "").split(",")
+    return any(encoding.strip().lower() == "gzip" for encoding in encodings)
 
 
 def _without_token() -> web.Response:
-    return _refused(401, "the token is missing or wrong: open the address that linkwright printed, token included")
+    return _refusal(401, "the token is missing or wrong: open the address that linkwright printed, token included")
 
 
-def _refused(status: int, reason: str) -> web.Response:
+def _refusal(status: int, reason: str) -> web.Response:
     """Return an error response that closes its connection."""
     response = web.Response(status=status, text=f"{reason[0].upper()}{reason[1:]}.\n")
     response.force_close()
@@ -427,32 +426,32 @@ async def _file_response(
 ) -> web.Response:
     """Return a response with a file, or 304 if the browser already has this version of the file.
 
-    The ETag changes with the content. With `packs`, the file is compressed if that makes it clearly smaller, and a
-    header has the uncompressed length.
+    The ETag changes with the content. If `packs` is true, the file is compressed if that makes it clearly smaller, and
+    a header contains the uncompressed length.
 
-    aiohttp's own FileResponse is not used: it also looks for compressed files next to the requested one, which no check
-    covers.
+    FileResponse of aiohttp is not used, because it also looks for compressed files next to the requested file, which
+    no check covers.
     """
     try:
-        read = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
+        file_version = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
     except OSError:
-        raise _no_file() from None
-    headers = {"Cache-Control": cache, "ETag": read.tag, "Vary": "Accept-Encoding"}
-    if read.body is None:
+        raise _not_found() from None
+    headers = {"Cache-Control": cache, "ETag": file_version.tag, "Vary": "Accept-Encoding"}
+    if file_version.body is None:
         return web.Response(status=304, headers=headers)
     headers["Content-Type"] = content_type
-    body = read.body
-    if packs and len(body) >= _LEAST_PACKED:
-        packed = await asyncio.to_thread(gzip.compress, body, _PACKING_LEVEL, mtime=0)
-        if len(packed) < _WORTH_PACKING * len(body):
+    body = file_version.body
+    if packs and len(body) >= _MIN_PACKED_SIZE:
+        packed_body = await asyncio.to_thread(gzip.compress, body, _PACKING_LEVEL, mtime=0)
+        if len(packed_body) < _MAX_PACKED_RATIO * len(body):
             headers |= {"Content-Encoding": "gzip", "X-Unpacked-Length": str(len(body))}
-            body = packed
+            body = packed_body
     response = web.Response(body=body, headers=headers)
-    response.last_modified = read.modified
+    response.last_modified = file_version.modified
     return response
 
 
-def _attached(name: str) -> str:
+def _attachment_header(name: str) -> str:
     return f"attachment; filename*=UTF-8''{quote(name)}"
 
 
@@ -461,26 +460,26 @@ async def _stream_file(request: web.Request, path: Path) -> web.StreamResponse:
     try:
         file = await asyncio.to_thread(path.open, "rb")
     except OSError:
-        raise _no_file() from None
+        raise _not_found() from None
     with file:
         response = web.StreamResponse(
-            headers={"Content-Type": "application/octet-stream", "Content-Disposition": _attached(path.name)}
+            headers={"Content-Type": "application/octet-stream", "Content-Disposition": _attachment_header(path.name)}
         )
-        response.content_length = left = os.fstat(file.fileno()).st_size
+        response.content_length = remaining_bytes = os.fstat(file.fileno()).st_size
         await response.prepare(request)
-        while left and (block := await asyncio.to_thread(file.read, min(left, _BLOCK))):
-            left -= len(block)
+        while remaining_bytes and (block := await asyncio.to_thread(file.read, min(remaining_bytes, _BLOCK_SIZE))):
+            remaining_bytes -= len(block)
             await response.write(block)
     await response.write_eof()
     return response
 
 
-def _no_file() -> web.HTTPNotFound:
+def _not_found() -> web.HTTPNotFound:
     return web.HTTPNotFound(text="There is no such file.\n")
 
 
 @dataclass(frozen=True, slots=True)
-class _FileRead:
+class _FileVersion:
     """A version of a file: its ETag, its modification time (seconds), and its content."""
 
     tag: str
@@ -492,24 +491,24 @@ class _FileRead:
         return _is_among(self.tag, request.headers.get("If-None-Match", ""))
 
 
-def _read(path: Path, known: str, *, unpack: bool = False) -> _FileRead:
-    """Return the current version of a regular file, decompressed if `unpack` is set.
+def _read(path: Path, known_tags: str, *, unpack: bool = False) -> _FileVersion:
+    """Return the current version of a regular file, decompressed if `unpack` is true.
 
-    The content is omitted if the ETag is in `known`, an If-None-Match header.
+    The content is omitted if the ETag is in `known_tags`, an If-None-Match header.
     """
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
-        facts = os.fstat(descriptor)
-        if not stat.S_ISREG(facts.st_mode):
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode):
             raise OSError("not a regular file")
-        tag = f'"{facts.st_mtime_ns:x}-{facts.st_size:x}{"-unpacked" if unpack else ""}"'
-        if _is_among(tag, known):
-            return _FileRead(tag, facts.st_mtime, None)
-        return _FileRead(tag, facts.st_mtime, gzip.decompress(file.read()) if unpack else file.read())
+        tag = f'"{status.st_mtime_ns:x}-{status.st_size:x}{"-unpacked" if unpack else ""}"'
+        if _is_among(tag, known_tags):
+            return _FileVersion(tag, status.st_mtime, None)
+        return _FileVersion(tag, status.st_mtime, gzip.decompress(file.read()) if unpack else file.read())
 
 
-def _is_among(tag: str, known: str) -> bool:
-    return tag in {entry.strip().removeprefix("W/") for entry in known.split(",")}
+def _is_among(tag: str, known_tags: str) -> bool:
+    return tag in {entry.strip().removeprefix("W/") for entry in known_tags.split(",")}
 
 
 def listen(host: str, port: int | None) -> socket.socket:
@@ -517,7 +516,7 @@ def listen(host: str, port: int | None) -> socket.socket:
 
     Args:
         host: a name or address of this machine.
-        port: 0 for any port; None for `DEFAULT_PORT`, or the next free one if that is in use.
+        port: the port; 0 for any free port; None for `DEFAULT_PORT` or the next free port.
 
     Raises:
         LinkwrightError: VIEW101, the requested port is in use; VIEW102, it is not possible to listen on the port;
@@ -529,7 +528,7 @@ def listen(host: str, port: int | None) -> socket.socket:
         hint = phrase("use 127.0.0.1, or 0.0.0.0 to accept connections from other machines")
         message = phrase("'{host}' is not a name or address of this machine", host=host)
         raise LinkwrightError(Diagnostic("VIEW103", message, hint=hint)) from None
-    candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _TRIES), 0]
+    candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _PORT_COUNT), 0]
     for candidate in candidates:
         try:
             return _listen_at(family, (address[0], candidate))
@@ -540,7 +539,7 @@ def listen(host: str, port: int | None) -> socket.socket:
 
 
 def url_of(listener: socket.socket) -> str:
-    """Return the URL at which a browser on this machine reaches a listening socket."""
+    """Return the URL with which a browser on this machine reaches a listening socket."""
     host, port = listener.getsockname()[:2]
     host = _WILDCARDS.get(host, host)
     return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
@@ -557,12 +556,12 @@ def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
         if os.name == "posix":
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
-        listener.listen(64)  # detects a conflict: two programs may bind a port, but only one can listen
+        listener.listen(64)  # several programs may bind a port, but `listen` fails for all except one
         listener.setblocking(False)
     except (OSError, OverflowError) as error:
         listener.close()
         if isinstance(error, OverflowError):
-            raise OSError(errno.EINVAL, phrase("give a port from 0 to 65535")) from None
+            raise OSError(errno.EINVAL, phrase("the port must be from 0 to 65535")) from None
         raise
     return listener
 
@@ -582,14 +581,14 @@ def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
     )
 
 
-def keep_short(transport: asyncio.Transport) -> None:
+def limit_buffers(transport: asyncio.Transport) -> None:
     """Limit the amount of unsent data in a connection's buffers, without limiting the data in flight.
 
-    Buffered data can neither be replaced by newer data nor be overtaken. The operating system lets its send buffer grow
-    to megabytes, which take many seconds on a slow connection. Where it offers no other limit (Windows), its buffer
-    is left unchanged, and only the pages' acknowledgements limit the buffered data.
+    Buffered data can be neither replaced by newer data nor overtaken. The send buffer of the operating system can grow
+    to megabytes, which take many seconds on a slow connection. On Windows, which does not offer this limit, only the
+    acknowledgements of pages limit the buffered data.
     """
-    transport.set_write_buffer_limits(high=MOST_UNSENT)
+    transport.set_write_buffer_limits(high=MAX_UNSENT_BYTES)
     connection = transport.get_extra_info("socket")
     if connection is not None and _NOT_SENT_LOW_WATER is not None:
-        connection.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_WATER, MOST_UNSENT)
+        connection.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_WATER, MAX_UNSENT_BYTES)

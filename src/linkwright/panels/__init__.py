@@ -1,1 +1,1 @@
-"""The page features of a viewer, each a module or package, which handle most requests of pages."""
+"""The page features of a viewer, which handle most requests of pages; each is a module or a package."""

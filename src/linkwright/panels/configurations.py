@@ -40,7 +40,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config import file as configuration_file
 from linkwright.rviz.config.locations import RecentFiles, configuration_path, list_folder, remove_recovery_files
 from linkwright.rviz.config.rviz_config import RvizConfig
-from linkwright.rviz.config.schema import MAXIMUM_TEXT
+from linkwright.rviz.config.schema import MAX_TEXT_LENGTH
 from linkwright.rviz.displays.catalogue import has_display
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from linkwright.rviz.visualization.manager import VisualizationManager
 
 
-_UNNAMED = "untitled.rviz"
+_DEFAULT_FILE_NAME = "untitled.rviz"
 
 
 Message = TypeVar("Message")
@@ -56,7 +56,7 @@ Message = TypeVar("Message")
 
 @dataclass(frozen=True, slots=True)
 class Request(Generic[Message]):
-    """A request of a page, and the configuration that the page shows."""
+    """A request of a page, and the manager of the configuration that the page shows."""
 
     page: Page
     manager: VisualizationManager
@@ -64,9 +64,9 @@ class Request(Generic[Message]):
 
 
 class ConfigurationFeature(PageFeature):
-    """Handles pages' requests about configurations.
+    """Handles requests of pages about configurations.
 
-    Unsaved edits are never discarded unless the page confirms it.
+    Unsaved edits are discarded only if the page confirms it.
 
     Args:
         viewer: the viewer of the feature.
@@ -76,33 +76,33 @@ class ConfigurationFeature(PageFeature):
     def __init__(self, viewer: FeatureHost, recent: RecentFiles | None = None) -> None:
         super().__init__(viewer)
         self._recent = recent or RecentFiles()
-        self._sent: dict[VisualizationManager, Configuration] = {}
+        self._sent_states: dict[VisualizationManager, Configuration] = {}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the current state of the configuration: its file, and the names of undo and redo."""
-        self._sent[manager] = self._state(manager)
-        return [self._sent[manager]]
+        """Return the state of the configuration: its file, and the names of the edits to undo and redo."""
+        self._sent_states[manager] = self._state(manager)
+        return [self._sent_states[manager]]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Discard the state that was sent to the manager's pages."""
-        self._sent.pop(manager, None)
+        """Discard the state that was sent to the pages of the manager."""
+        self._sent_states.pop(manager, None)
 
     def edited(self, manager: VisualizationManager) -> None:
         """Send the state of the configuration to its pages if the state has changed."""
         state = self._state(manager)
-        if self._sent.get(manager) != state:
-            self._sent[manager] = state
+        if self._sent_states.get(manager) != state:
+            self._sent_states[manager] = state
             manager.publish(state)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a request, or send the reason for refusing it."""
+        """Handle a request, or send the page the reason why it is refused."""
         manager = self.managers.of(page)
         try:
             _HANDLERS[type(message)](self, Request(page, manager, message))
         except LinkwrightError as error:
-            first = error.diagnostics[0]
-            where = f" ({first.span.file}:{first.span.line})" if first.span else ""
-            page.send(ConfigurationRefused(first.message + where, None, None))
+            diagnostic = error.diagnostics[0]
+            location = f" ({diagnostic.span.file}:{diagnostic.span.line})" if diagnostic.span else ""
+            page.send(ConfigurationRefused(diagnostic.message + location, None, None))
         except ValueError as error:
             page.send(ConfigurationRefused(str(error), None, None))
 
@@ -120,8 +120,8 @@ class ConfigurationFeature(PageFeature):
 
     # --- displays ----------------------------------------------------------------------------------------------
 
-    def _add(self, asked: Request[AddDisplay]) -> None:
-        message, manager = asked.message, asked.manager
+    def _add(self, request: Request[AddDisplay]) -> None:
+        message, manager = request.message, request.manager
         if not has_display(message.cls):
             raise ValueError(f"there are no displays of the class '{message.cls[:100]}'")
         entry = manager.config.make(message.cls, _name(message.name))
@@ -134,105 +134,109 @@ class ConfigurationFeature(PageFeature):
             prepare = partial(show_topic, topic=topic)
         manager.tree.add(entry, group.config if group else None, prepare)
 
-    def _duplicate(self, asked: Request[DuplicateDisplays]) -> None:
-        if displays := _displays_of(asked.manager, asked.message.displays):
-            asked.manager.tree.duplicate(displays)
+    def _duplicate(self, request: Request[DuplicateDisplays]) -> None:
+        if displays := _displays_of(request.manager, request.message.displays):
+            request.manager.tree.duplicate(displays)
 
-    def _rename(self, asked: Request[RenameDisplay]) -> None:
-        for display in _displays_of(asked.manager, [asked.message.display]):
-            asked.manager.tree.rename(display, _name(asked.message.name))
+    def _rename(self, request: Request[RenameDisplay]) -> None:
+        for display in _displays_of(request.manager, [request.message.display]):
+            request.manager.tree.rename(display, _name(request.message.name))
 
-    def _remove(self, asked: Request[RemoveDisplays]) -> None:
-        if displays := _displays_of(asked.manager, asked.message.displays):
-            asked.manager.tree.remove(displays)
+    def _remove(self, request: Request[RemoveDisplays]) -> None:
+        if displays := _displays_of(request.manager, request.message.displays):
+            request.manager.tree.remove(displays)
 
-    def _move(self, asked: Request[MoveDisplays]) -> None:
-        message, manager = asked.message, asked.manager
+    def _move(self, request: Request[MoveDisplays]) -> None:
+        message, manager = request.message, request.manager
         group = manager.display(message.group) if message.group is not None else None
-        before = manager.display(message.before) if message.before is not None else None
+        next_display = manager.display(message.before) if message.before is not None else None
         displays = _displays_of(manager, message.displays)
         if displays and (group is None) == (message.group is None):
-            manager.tree.move(displays, group.config if group else None, before.config if before else None)
+            manager.tree.move(displays, group.config if group else None, next_display.config if next_display else None)
 
-    def _group(self, asked: Request[GroupDisplays]) -> None:
-        if displays := _displays_of(asked.manager, asked.message.displays):
-            asked.manager.tree.gather(displays, _name(asked.message.name))
+    def _group(self, request: Request[GroupDisplays]) -> None:
+        if displays := _displays_of(request.manager, request.message.displays):
+            request.manager.tree.gather(displays, _name(request.message.name))
 
-    def _undo(self, asked: Request[Undo]) -> None:
-        asked.manager.history.undo()
+    def _undo(self, request: Request[Undo]) -> None:
+        request.manager.history.undo()
 
-    def _redo(self, asked: Request[Redo]) -> None:
-        asked.manager.history.redo()
+    def _redo(self, request: Request[Redo]) -> None:
+        request.manager.history.redo()
 
     # --- questions ---------------------------------------------------------------------------------------------
 
-    def _ask_displays(self, asked: Request[AskDisplayChoices]) -> None:
+    def _ask_displays(self, request: Request[AskDisplayChoices]) -> None:
         from linkwright.panels.displays import choices
 
-        asked.page.send(choices(self.context.node))
+        request.page.send(choices(self.context.node))
 
-    def _ask_folder(self, asked: Request[AskFolder]) -> None:
-        asked.page.send(list_folder(asked.message.path, _folder(asked.manager)))
+    def _ask_folder(self, request: Request[AskFolder]) -> None:
+        request.page.send(list_folder(request.message.path, _base_folder(request.manager)))
 
-    def _ask_text(self, asked: Request[AskConfigurationText]) -> None:
-        path = asked.manager.config.path
-        asked.page.send(ConfigurationText(path.name if path else _UNNAMED, asked.manager.config.text()))
+    def _ask_text(self, request: Request[AskConfigurationText]) -> None:
+        path = request.manager.config.path
+        request.page.send(ConfigurationText(path.name if path else _DEFAULT_FILE_NAME, request.manager.config.text()))
 
     # --- files -------------------------------------------------------------------------------------------------
 
-    def _new(self, asked: Request[NewConfiguration]) -> None:
-        if asked.message.discard or self._may_lose(asked.page, asked.manager, None):
-            self._show(asked.manager, RvizConfig.default())
+    def _new(self, request: Request[NewConfiguration]) -> None:
+        if request.message.discard or self._may_discard(request.page, request.manager, None):
+            self._open_config(request.manager, RvizConfig.default())
 
-    def _open(self, asked: Request[OpenConfiguration]) -> None:
-        path = configuration_path(asked.message.path, _folder(asked.manager))
+    def _open(self, request: Request[OpenConfiguration]) -> None:
+        path = configuration_path(request.message.path, _base_folder(request.manager))
         config = RvizConfig.load(path)
-        if asked.message.discard or self._may_lose(asked.page, asked.manager, str(path)):
-            self._show(asked.manager, config)
-            self._remember(asked.manager, path)
+        if request.message.discard or self._may_discard(request.page, request.manager, str(path)):
+            self._open_config(request.manager, config)
+            self._add_to_recent(request.manager, path)
 
-    def _load(self, asked: Request[LoadConfiguration]) -> None:
-        config = RvizConfig.parse(asked.message.text.removeprefix("\ufeff"), asked.message.name[:MAXIMUM_TEXT])
-        if asked.message.discard or self._may_lose(asked.page, asked.manager, None):
-            self._show(asked.manager, config)
+    def _load(self, request: Request[LoadConfiguration]) -> None:
+        config = RvizConfig.parse(request.message.text.removeprefix("\ufeff"), request.message.name[:MAX_TEXT_LENGTH])
+        if request.message.discard or self._may_discard(request.page, request.manager, None):
+            self._open_config(request.manager, config)
 
-    def _revert(self, asked: Request[RevertConfiguration]) -> None:
-        if asked.manager.config.path is not None:
-            self._show(asked.manager, RvizConfig.load(asked.manager.config.path))
+    def _revert(self, request: Request[RevertConfiguration]) -> None:
+        if request.manager.config.path is not None:
+            self._open_config(request.manager, RvizConfig.load(request.manager.config.path))
 
-    def _save(self, asked: Request[SaveConfiguration]) -> None:
-        config, named = asked.manager.config, asked.message.path
-        path = config.path if named is None else configuration_path(named, _folder(asked.manager))
+    def _save(self, request: Request[SaveConfiguration]) -> None:
+        config, requested_path = request.manager.config, request.message.path
+        path = (
+            config.path if requested_path is None else configuration_path(requested_path, _base_folder(request.manager))
+        )
         if path is None:
             raise ValueError("the configuration has no file yet")
-        if not asked.message.replace:
+        if not request.message.replace:
             if path == config.path and config.changed_on_disk:
-                self._ask(asked.page, "changed_on_disk", f"'{path}' was changed by another program", str(path))
+                self._send_question(
+                    request.page, "changed_on_disk", f"'{path}' was changed by another program", str(path)
+                )
                 return
             if path != config.path and configuration_file.state_of(path) is not None:
-                self._ask(asked.page, "exists", f"'{path}' is there already", str(path))
+                self._send_question(request.page, "exists", f"'{path}' is there already", str(path))
                 return
-        former = config.path
+        previous_path = config.path
         config.save(path)
-        remove_recovery_files(former, config, self._recent)
-        asked.page.send(ConfigurationSaved(str(path)))
-        asked.manager.history.saved()
-        self._remember(asked.manager, path)
+        remove_recovery_files(previous_path, config, self._recent)
+        request.page.send(ConfigurationSaved(str(path)))
+        request.manager.history.saved()
+        self._add_to_recent(request.manager, path)
 
-    def _may_lose(self, page: Page, manager: VisualizationManager, path: str | None) -> bool:
+    def _may_discard(self, page: Page, manager: VisualizationManager, path: str | None) -> bool:
         if manager.history.unsaved:
-            self._ask(page, "unsaved", "there are unsaved changes", path)
+            self._send_question(page, "unsaved", "there are unsaved changes", path)
         return not manager.history.unsaved
 
-    def _ask(self, page: Page, question: Question, text: str, path: str | None) -> None:
+    def _send_question(self, page: Page, question: Question, text: str, path: str | None) -> None:
         page.send(ConfigurationRefused(text, question, path))
 
-    def _show(self, manager: VisualizationManager, config: RvizConfig) -> None:
+    def _open_config(self, manager: VisualizationManager, config: RvizConfig) -> None:
         manager.open(config)
         for message in self.viewer.configured(manager):
             manager.publish(message)
 
-    def _remember(self, manager: VisualizationManager, path: Path) -> None:
+    def _add_to_recent(self, manager: VisualizationManager, path: Path) -> None:
         self._recent.add(path)
         self.edited(manager)
 
@@ -265,14 +269,14 @@ def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[V
     return [display for display in manager.displays if display.id in selected]
 
 
-def _folder(manager: VisualizationManager) -> Path:
-    """Return the folder to which paths are relative: the open file's folder, or the working directory."""
+def _base_folder(manager: VisualizationManager) -> Path:
+    """Return the folder that paths are relative to: the folder of the open file, or the working directory."""
     path = manager.config.path
     return path.absolute().parent if path is not None else Path.cwd()
 
 
 def _name(text: str) -> str:
-    """Return a name that a page sent, with each run of white space replaced by a blank.
+    """Return a name from a page, with each run of white space replaced by one space.
 
     Raises:
         ValueError: the name is empty or too long.
@@ -284,10 +288,10 @@ def _name(text: str) -> str:
 
 
 class PanelsFeature(PageFeature):
-    """The open panels of pages, which are initially those of the file.
+    """The open panels of pages, which are initially the panels that the file opens.
 
-    Each page has its own panels, so a change does not affect the other pages. The file receives the panels of the page
-    that changed them last. If there is no file, only the browser stores the panels.
+    Each page has its own panels, so a change does not affect the other pages. The panels of the page that was changed
+    last are written to the file. If there is no file, only the browser stores the panels.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)

@@ -37,47 +37,47 @@ if TYPE_CHECKING:
     from linkwright.rviz.visualization.manager import VisualizationManager
 
 
-Give = Callable[[dict[str, str]], object]
-"""Receives the values that a user gives."""
+OnValues = Callable[[dict[str, str]], object]
+"""Called with the values of the arguments by name."""
 
 
 class ArgumentsFeature(PageFeature):
-    """Shows all pages a form for arguments, and passes on the values of the first page that answers."""
+    """Shows a form for arguments in all pages, and passes on the values from the first page that answers."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (GiveArguments,)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._form = NOTHING_ASKED
-        self._give: Give | None = None
+        self._on_values: OnValues | None = None
 
     def opening(self) -> list[ServerMessage]:
         """Return the form, which is empty if no arguments are requested."""
         return [self._form]
 
-    def ask(self, form: ArgumentForm, give: Give | None) -> None:
+    def ask(self, form: ArgumentForm, on_values: OnValues | None) -> None:
         """Show a form to all pages.
 
         Args:
             form: the requested arguments.
-            give: called with the values of the first answer, by name; None if `form` is empty.
+            on_values: called with the values of the first answer, by name; None if `form` is empty.
         """
-        self._form, self._give = form, give
+        self._form, self._on_values = form, on_values
         self.context.pages.publish(form)
 
     def receive(self, page: Page, message: GiveArguments) -> None:
-        """Close the form, and pass on the values that a page gives to the requested arguments."""
-        give, names = self._give, set(self._form.names)
-        if give is not None:
+        """Close the form, and pass on the values of the requested arguments."""
+        on_values, names = self._on_values, set(self._form.names)
+        if on_values is not None:
             self.ask(NOTHING_ASKED, None)
-            give({name: value for name, value in message.values.items() if name in names})
+            on_values({name: value for name, value in message.values.items() if name in names})
 
 
 Part = TypeVar("Part")
 
 
 class KnownDescription:
-    """The description that a display shows. All methods may be called in another thread.
+    """The description that a display shows. Its methods may be called in any thread.
 
     Args:
         display: the ID of the RobotModel display.
@@ -85,7 +85,7 @@ class KnownDescription:
         robot: the robot.
         text: the text from which the robot was read.
         prefix: the display's TF Prefix.
-        files: the known files from which the text was made.
+        files: the known source files of the text.
     """
 
     def __init__(
@@ -120,7 +120,7 @@ class KnownDescription:
         )
 
     def changes_since(self, before: KnownDescription | None) -> DescriptionChanged:
-        """Return the links and joints that differ from those of the previous description.
+        """Return the names of the links and joints that differ from the previous description.
 
         The lists are empty if `before` is None.
         """
@@ -128,8 +128,8 @@ class KnownDescription:
         joints = _changed(before.robot.joints, self.robot.joints) if before else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
-    def named_text(self, file: str) -> DescriptionText:
-        """Return the text of one of the description's files, or the expanded text for an empty name.
+    def text_of_file(self, file: str) -> DescriptionText:
+        """Return the text of a file of the description, or the expanded text if the name is empty.
 
         The text is None for a file that does not belong to the description.
         """
@@ -139,53 +139,53 @@ class KnownDescription:
     def findings(self, finder: PackageFinder) -> InertiaFindings:
         """Return the findings about implausible masses and inertias.
 
-        They are computed for each call, because meshes may have changed.
+        The findings are computed in each call, because meshes may have changed.
         """
-        from linkwright.panels.description_details import implausible
+        from linkwright.panels.description_details import implausible_inertias
 
-        return InertiaFindings(self.display, self.revision, implausible(self.robot, finder))
-
-
-def _changed(before: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """Return the names of the links or joints that are new or different, apart from their positions."""
-    # Comparing model parts ignores their elements, which have the source positions.
-    return [name for name, part in after.items() if before.get(name) != part]
+        return InertiaFindings(self.display, self.revision, implausible_inertias(self.robot, finder))
 
 
-_Question = AskDescription | AskDescriptionText | AskInertia | AskProvenance
+def _changed(previous: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
+    """Return the names of the links or joints that are new or have changed, ignoring source positions."""
+    # Links and joints are compared without their elements, which contain the source positions.
+    return [name for name, element in after.items() if previous.get(name) != element]
+
+
+_Request = AskDescription | AskDescriptionText | AskInertia | AskProvenance
 
 
 class DescriptionFeature(PageFeature):
-    """Answers pages' requests about descriptions, one at a time, in a thread.
+    """Answers requests of pages about descriptions in a thread, one at a time.
 
-    If a page repeats a request before it was answered, only the last one is answered.
+    If a page repeats a request before it is answered, only the last request is answered.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (AskDescription, AskDescriptionText, AskInertia, AskProvenance)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._known: dict[str, KnownDescription] = {}
-        self._faulty: dict[str, str] = {}
-        self._answers: dict[tuple[Page, str], asyncio.Task[None]] = {}
-        self._thinking = asyncio.Lock()
+        self._descriptions: dict[str, KnownDescription] = {}
+        self._texts_with_findings: dict[str, str] = {}
+        self._answer_tasks: dict[tuple[Page, str], asyncio.Task[None]] = {}
+        self._answer_lock = asyncio.Lock()
 
     def robot_changed(self) -> None:
-        """Send pages the names of the links and joints that have changed."""
+        """Send the names of the links and joints that have changed to pages."""
         shown: set[str] = set()
         for manager in self.managers.all():
             for display in manager.robot_models():
                 shown.add(display.id)
-                before = self._known.get(display.id)
+                before = self._descriptions.get(display.id)
                 known = self._look_at(display)
                 if known is not None and known is not before:
                     manager.pages.publish(known.changes_since(before))
-        for gone in self._known.keys() - shown:
-            del self._known[gone]
+        for removed_id in self._descriptions.keys() - shown:
+            del self._descriptions[removed_id]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Store the texts that the findings refer to, because the files may change later."""
-        self._faulty = {
+        self._texts_with_findings = {
             diagnostic.source.name: diagnostic.source.text
             for diagnostic in diagnostics
             if diagnostic.source is not None
@@ -194,130 +194,142 @@ class DescriptionFeature(PageFeature):
     def files(self, page: Page) -> list[str]:
         """Return the files of the descriptions that a page shows, and those with findings."""
         models = self.managers.of(page).robot_models()
-        return [*(str(path) for model in models for path in self.context.library.files(model.text)), *self._faulty]
+        return [
+            *(str(path) for model in models for path in self.context.library.files(model.text)),
+            *self._texts_with_findings,
+        ]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the revision of each description that pages can request."""
         known = [self._look_at(display) for display in manager.robot_models()]
         return [
-            DescriptionChanged(known_description.display, known_description.revision, [], [])
-            for known_description in known
-            if known_description is not None
+            DescriptionChanged(description.display, description.revision, [], [])
+            for description in known
+            if description is not None
         ]
 
-    def receive(self, page: Page, message: _Question) -> None:
+    def receive(self, page: Page, message: _Request) -> None:
         """Queue a request."""
-        about = message.file if isinstance(message, AskDescriptionText) else ""
-        key = (page, f"{tag_of(message)} {message.display} {about}")
-        if key in self._answers:
-            self._answers[key].cancel()
+        file_name = message.file if isinstance(message, AskDescriptionText) else ""
+        key = (page, f"{tag_of(message)} {message.display} {file_name}")
+        if key in self._answer_tasks:
+            self._answer_tasks[key].cancel()
         task = asyncio.get_running_loop().create_task(self._answer(page, message))
-        self._answers[key] = task
-        task.add_done_callback(lambda done: self._answers.pop(key) if self._answers.get(key) is done else None)
+        self._answer_tasks[key] = task
+        task.add_done_callback(
+            lambda finished_task: self._answer_tasks.pop(key) if self._answer_tasks.get(key) is finished_task else None
+        )
 
     def page_closed(self, page: Page) -> None:
         """Cancel the page's requests."""
-        for (asking, _), task in list(self._answers.items()):
-            if asking is page:
+        for (requesting_page, _), task in list(self._answer_tasks.items()):
+            if requesting_page is page:
                 task.cancel()
 
     def close(self) -> None:
         """Cancel all requests."""
-        for task in self._answers.values():
+        for task in self._answer_tasks.values():
             task.cancel()
 
-    async def _answer(self, page: Page, question: _Question) -> None:
-        seen = self.managers.of(page).robot_models()
-        display = next((display for display in seen if display.id == question.display), None)
+    async def _answer(self, page: Page, request: _Request) -> None:
+        robot_models = self.managers.of(page).robot_models()
+        display = next((display for display in robot_models if display.id == request.display), None)
         known = None if display is None else self._look_at(display)
-        faulty = dict(self._faulty)
+        texts_with_findings = dict(self._texts_with_findings)
 
         def answer() -> ServerMessage | None:
-            if isinstance(question, AskDescriptionText):
-                return _text(known, faulty, question)
+            if isinstance(request, AskDescriptionText):
+                return _text(known, texts_with_findings, request)
             if known is None:
                 return None
-            if isinstance(question, AskDescription):
+            if isinstance(request, AskDescription):
                 return known.account
-            if isinstance(question, AskInertia):
+            if isinstance(request, AskInertia):
                 return known.findings(self.context.finder)
-            return display.provenance(question.link) if display is not None else None
+            return display.provenance(request.link) if display is not None else None
 
-        async with self._thinking:
-            reply = await asyncio.to_thread(answer)
-        if reply is not None:
-            page.send(reply)
+        async with self._answer_lock:
+            response = await asyncio.to_thread(answer)
+        if response is not None:
+            page.send(response)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
-        """Return the description that a display shows now, with a new revision if it has changed; or None."""
+        """Return the current description of a display, with a new revision if it has changed, or None."""
         robot, prefix = display.robot, display.properties.text("TF Prefix")
-        known = self._known.get(display.id)
+        known = self._descriptions.get(display.id)
         if robot is None:
             return known
         if known is None or known.robot is not robot or known.prefix != prefix:
             revision = known.revision + 1 if known else 1
             files = self.context.library.files(display.text)
             known = KnownDescription(display.id, revision, robot, display.text, prefix, files)
-            self._known[display.id] = known
+            self._descriptions[display.id] = known
         return known
 
 
-def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskDescriptionText) -> DescriptionText:
-    """Return the text of a file; for a file with findings, the text that they refer to."""
-    file = question.file
-    if file in faulty:
-        return DescriptionText(question.display, known.revision if known else 0, file, faulty[file])
+def _text(
+    known: KnownDescription | None, texts_with_findings: dict[str, str], request: AskDescriptionText
+) -> DescriptionText:
+    """Return the text of a file; if the file has findings, return the text that they refer to."""
+    file = request.file
+    if file in texts_with_findings:
+        return DescriptionText(request.display, known.revision if known else 0, file, texts_with_findings[file])
     if known is None:
-        return DescriptionText(question.display, 0, file, None)
-    return known.named_text(file)
+        return DescriptionText(request.display, 0, file, None)
+    return known.text_of_file(file)
 
 
 class DiagnosticsFeature(PageFeature):
-    """Shows every page the findings on the description."""
+    """Shows the findings about the description in all pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._found: Sequence[Diagnostic] = ()
-        self._shown = Diagnostics([])
+        self._shown_diagnostics = Diagnostics([])
 
     def opening(self) -> list[ServerMessage]:
         """Return the current findings."""
-        return [self._shown]
+        return [self._shown_diagnostics]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show new findings instead of the current ones; the list may be empty."""
+        """Replace the current findings with new findings; the list may be empty."""
         self._found = diagnostics
-        self._shown = self._all()
-        self.context.pages.publish(self._shown)
+        self._shown_diagnostics = self._all()
+        self.context.pages.publish(self._shown_diagnostics)
 
     def robot_changed(self) -> None:
-        """Show an additional finding while nothing of a robot can be drawn (VIEW207)."""
+        """Show an additional finding (VIEW207) while no visual of a robot can be drawn."""
         shown = self._all()
-        if shown != self._shown:
-            self._shown = shown
+        if shown != self._shown_diagnostics:
+            self._shown_diagnostics = shown
             self.context.pages.publish(shown)
 
     def _all(self) -> Diagnostics:
         models = [model for manager in self.managers.all() for model in manager.robot_models()]
-        unseen = {model.text: found for model in models if (found := _unseen(model)) is not None}
-        return Diagnostics([item_of(diagnostic) for diagnostic in (*self._found, *unseen.values())])
+        invisibility_findings = {
+            model.text: finding for model in models if (finding := _invisibility_finding(model)) is not None
+        }
+        return Diagnostics([item_of(diagnostic) for diagnostic in (*self._found, *invisibility_findings.values())])
 
 
-def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
-    """Return the finding that no visual of a robot can be drawn (VIEW207); None if some can."""
+def _invisibility_finding(model: RobotModelDisplay) -> Diagnostic | None:
+    """Return the finding that no visual of a robot can be drawn (VIEW207), or None if any visual can be drawn."""
     robot, problems = model.robot, model.file_problems
     if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
         return None
-    named = [text for link in robot.links.values() if link.visuals for text in problems.get(link.name, ())]
-    if not named:
+    problem_texts = [text for link in robot.links.values() if link.visuals for text in problems.get(link.name, ())]
+    if not problem_texts:
         return None
     message = phrase("robot '{name}' is not visible: none of its meshes can be read", name=robot.name)
-    hint = phrase("are they in another repository, fetched by the build, or in a package that is not installed?")
-    return Diagnostic("VIEW207", message, severity=Severity.WARNING, notes=(Note(named[0]),), hint=hint)
+    hint = phrase(
+        "check whether the meshes are in another repository, fetched by the build, or in a package that is not "
+        "installed"
+    )
+    return Diagnostic("VIEW207", message, severity=Severity.WARNING, notes=(Note(problem_texts[0]),), hint=hint)
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
-    """Return a diagnostic in the page's form, with the source line that it refers to."""
+    """Return a diagnostic in the form for pages, with the source line that it refers to."""
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""
     return DiagnosticItem(

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
+from linkwright.geometry.single import pose_quaternion, rpy_from_quaternion
 from linkwright.lint.by_link import inertia_findings
 from linkwright.packages import PackageFinder
 from linkwright.page.protocol.description import (
@@ -35,11 +35,11 @@ from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.patches import element_range
 from linkwright.xmltree.reader import read_bytes
 
-_EXPANDED = ""
-_MOST_CALLS = 20
+_EXPANDED_NAME = ""
+_MAX_CALLS = 20
 
 
-class Places:
+class SourcePositions:
     """Looks up the source positions of the links and joints of one description.
 
     Args:
@@ -47,14 +47,14 @@ class Places:
     """
 
     def __init__(self, text: str) -> None:
-        self._expanded: dict[tuple[str, str], Element] = {}
+        self._expanded_elements: dict[tuple[str, str], Element] = {}
         try:
-            document, _ = parse_as_urdfdom(text, _EXPANDED)
+            document, _ = parse_as_urdfdom(text, _EXPANDED_NAME)
         except LinkwrightError:
-            return  # unexpected, because a robot was read from this text
+            return  # not expected, because a robot was read from this text
         for element in document.root.elements():
             key = (element.tag, element.attributes.get("name", ""))
-            self._expanded.setdefault(key, element)
+            self._expanded_elements.setdefault(key, element)
 
     def of(self, tag: str, name: str, element: Element | None) -> Written:
         """Return the positions of a link or joint in the expanded text and in the source files.
@@ -62,13 +62,13 @@ class Places:
         Args:
             tag: ``link`` or ``joint``.
             name: the name of the link or joint.
-            element: the element from which it was read; None if that is unknown.
+            element: the element from which the link or joint was read; None if it is unknown.
         """
-        twin = self._expanded.get((tag, name))
-        expanded = None if twin is None else _range(twin)
+        expanded_element = self._expanded_elements.get((tag, name))
+        expanded = None if expanded_element is None else _source_range(expanded_element)
         if element is None or element.source is None or element.source.name.startswith("<"):
             return Written(expanded, None, [])
-        return Written(expanded, _range(element), list(islice(_calls(element), _MOST_CALLS)))
+        return Written(expanded, _source_range(element), list(islice(_calls(element), _MAX_CALLS)))
 
 
 def _calls(element: Element) -> Iterator[CallSite]:
@@ -82,10 +82,10 @@ def _calls(element: Element) -> Iterator[CallSite]:
             yield CallSite(next(group).macro, span.file, span.line, span.column)
 
 
-def _range(element: Element) -> SourceRange | None:
-    """Return the source range of an element, or of its tag name if the end is unknown; or None."""
-    found = element_range(element)
-    span = element.span() if found is None or element.source is None else element.source.span(*found)
+def _source_range(element: Element) -> SourceRange | None:
+    """Return the source range of an element, or of its tag name if its end is unknown, or None."""
+    offsets = element_range(element)
+    span = element.span() if offsets is None or element.source is None else element.source.span(*offsets)
     if span is None:
         return None
     return SourceRange(span.file, span.line, span.column, span.end_line, span.end_column)
@@ -94,94 +94,94 @@ def _range(element: Element) -> SourceRange | None:
 def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
     """Return all details of a robot except its shapes, which pages already have.
 
-    This takes as long as reading the text again.
+    The text is parsed again, which takes as long as reading the description.
 
     Args:
         robot: the robot that was read from the text.
         text: the expanded description.
-        files: the files from which the text was made.
+        files: the source files of the text.
         display: the ID of the RobotModel display that shows the robot.
         revision: the number of the description, counted for each display.
         prefix: the display's TF Prefix.
     """
-    places = Places(text)
-    above = {joint.child: joint.name for joint in robot.joints.values()}
+    positions = SourcePositions(text)
+    parent_joints = {joint.child: joint.name for joint in robot.joints.values()}
     return Description(
         display=display,
         revision=revision,
         name=robot.name,
         root=robot.root,
-        links=[_link(link, above.get(link.name), prefix, places) for link in robot.links.values()],
-        joints=[_joint(joint, places) for joint in robot.joints.values()],
+        links=[_link(link, parent_joints.get(link.name), prefix, positions) for link in robot.links.values()],
+        joints=[_joint(joint, positions) for joint in robot.joints.values()],
         files=files,
     )
 
 
-def _link(link: Link, parent_joint: str | None, prefix: str, places: Places) -> LinkDetails:
+def _link(link: Link, parent_joint: str | None, prefix: str, positions: SourcePositions) -> LinkDetails:
     return LinkDetails(
         name=link.name,
         frame=frame_of(link.name, prefix),
         parent_joint=parent_joint,
         inertia=link_inertia(link.inertial),
-        written=places.of("link", link.name, link.element),
+        written=positions.of("link", link.name, link.element),
     )
 
 
-def _joint(joint: Joint, places: Places) -> JointDetails:
+def _joint(joint: Joint, positions: SourcePositions) -> JointDetails:
     limit, dynamics, safety = joint.limit, joint.dynamics, joint.safety
-    ranged = limit is not None and joint.type in ("revolute", "prismatic")
-    quaternion = quaternion_of(joint.origin)
+    has_range = limit is not None and joint.type in ("revolute", "prismatic")
+    quaternion = pose_quaternion(joint.origin)
     return JointDetails(
         name=joint.name,
         kind=joint.type,
         parent=joint.parent,
         child=joint.child,
-        xyz=[_finite(part) or 0.0 for part in joint.origin.xyz],
-        rpy=[_finite(part) or 0.0 for part in rpy_from_quaternion(quaternion)],
-        quaternion=[_finite(part) or 0.0 for part in quaternion],
-        axis=_unit(joint.axis),
-        lower=_finite(limit.lower) if limit and ranged else None,
-        upper=_finite(limit.upper) if limit and ranged else None,
-        velocity=_finite(limit.velocity) if limit else None,
-        effort=_finite(limit.effort) if limit else None,
-        damping=_finite(dynamics.damping) if dynamics else None,
-        friction=_finite(dynamics.friction) if dynamics else None,
-        soft_lower=_finite(safety.soft_lower_limit) if safety else None,
-        soft_upper=_finite(safety.soft_upper_limit) if safety else None,
-        k_position=_finite(safety.k_position) if safety else None,
-        k_velocity=_finite(safety.k_velocity) if safety else None,
+        xyz=[_finite_or_none(value) or 0.0 for value in joint.origin.xyz],
+        rpy=[_finite_or_none(angle) or 0.0 for angle in rpy_from_quaternion(quaternion)],
+        quaternion=[_finite_or_none(component) or 0.0 for component in quaternion],
+        axis=_unit_axis(joint.axis),
+        lower=_finite_or_none(limit.lower) if limit and has_range else None,
+        upper=_finite_or_none(limit.upper) if limit and has_range else None,
+        velocity=_finite_or_none(limit.velocity) if limit else None,
+        effort=_finite_or_none(limit.effort) if limit else None,
+        damping=_finite_or_none(dynamics.damping) if dynamics else None,
+        friction=_finite_or_none(dynamics.friction) if dynamics else None,
+        soft_lower=_finite_or_none(safety.soft_lower_limit) if safety else None,
+        soft_upper=_finite_or_none(safety.soft_upper_limit) if safety else None,
+        k_position=_finite_or_none(safety.k_position) if safety else None,
+        k_velocity=_finite_or_none(safety.k_velocity) if safety else None,
         mimic=_mimic(joint.mimic),
-        written=places.of("joint", joint.name, joint.element),
+        written=positions.of("joint", joint.name, joint.element),
     )
 
 
 def _mimic(mimic: Mimic | None) -> JointMimic | None:
     if mimic is None:
         return None
-    return JointMimic(mimic.joint, _finite(mimic.multiplier) or 0.0, _finite(mimic.offset) or 0.0)
+    return JointMimic(mimic.joint, _finite_or_none(mimic.multiplier) or 0.0, _finite_or_none(mimic.offset) or 0.0)
 
 
-def _finite(number: float) -> float | None:
+def _finite_or_none(number: float) -> float | None:
     return float(number) if isfinite(number) else None
 
 
-def _unit(axis: tuple[float, float, float]) -> list[float]:
+def _unit_axis(axis: tuple[float, float, float]) -> list[float]:
     """Return the axis scaled to length 1, or zeros if its length is 0 or not finite."""
     length = float(np.linalg.norm(axis))
     if not (isfinite(length) and length > 0):
         return [0.0, 0.0, 0.0]
-    return [part / length for part in axis]
+    return [value / length for value in axis]
 
 
 class SourceTexts:
-    """The texts of the files of one description; other files cannot be read through this class.
+    """The texts of the source files of one description; other files cannot be read through this class.
 
-    The texts that contain elements are in memory, as they were when the description was made. A file that contributed
-    only values, such as a YAML file, is read on request.
+    The texts with elements are stored as they were when the description was read. A file that contributed only values,
+    such as a YAML file, is read on request.
 
     Args:
         root: the root element of the description.
-        files: the known files from which the description was made, the main one first.
+        files: the known source files of the description, beginning with the main file.
     """
 
     def __init__(self, root: Element | None, files: Iterable[Path]) -> None:
@@ -190,7 +190,7 @@ class SourceTexts:
 
     @property
     def names(self) -> list[str]:
-        """The names of the files, the main one first."""
+        """The names of the files, beginning with the main file."""
         return list(dict.fromkeys([*self._files, *self._read]))
 
     def text(self, name: str) -> str | None:
@@ -208,27 +208,27 @@ class SourceTexts:
 
 
 def _sources(root: Element | None) -> dict[str, SourceText]:
-    """Return the texts that contain the elements, and the calls that produced them, by name."""
-    found: dict[str, SourceText] = {}
-    known: set[int] = set()
+    """Return the source texts of the elements and of the calls that produced them, by file name."""
+    sources: dict[str, SourceText] = {}
+    visited_frames: set[int] = set()
     for element in root.walk() if root is not None else ():
-        for source in (element.source, *_sites(element, known)):
+        for source in (element.source, *_call_sources(element, visited_frames)):
             if source is not None and not source.name.startswith("<"):
-                found.setdefault(source.name, source)
-    return found
+                sources.setdefault(source.name, source)
+    return sources
 
 
-def _sites(element: Element, known: set[int]) -> Iterator[SourceText | None]:
+def _call_sources(element: Element, visited_frames: set[int]) -> Iterator[SourceText | None]:
     innermost = element.origin
-    if not isinstance(innermost, Frame) or id(innermost) in known:
+    if not isinstance(innermost, Frame) or id(innermost) in visited_frames:
         return
-    known.add(id(innermost))
+    visited_frames.add(id(innermost))
     for frame in frames(innermost):
         yield frame.site.source
 
 
-def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
-    """Return the findings about a robot's masses and inertias, each with the name of its link."""
+def implausible_inertias(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
+    """Return the findings about implausible masses and inertias of a robot, with the names of the links."""
     return [
         InertiaFinding(link, finding.code, finding.message, finding.hint or "")
         for link, finding in inertia_findings(robot, finder)

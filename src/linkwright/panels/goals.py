@@ -22,28 +22,28 @@ class GoalSender:
     def __init__(self, node: Node, name: str, kind: str) -> None:
         self._name = name
         self._log = node.get_logger()
-        self._goal = get_action(kind).Goal
+        self._goal_type = get_action(kind).Goal
         self._client = ActionClient(node, kind, name)
 
-    def send(self, pose: Any, refused: Callable[[str], None]) -> None:
-        """Send a pose as a goal; log an error if no server accepts it.
+    def send(self, pose: Any, on_refusal: Callable[[str], None]) -> None:
+        """Send a pose as a goal; report an error if no server accepts it.
 
         Args:
             pose: a geometry_msgs/msg/PoseStamped.
-            refused: called with the error.
+            on_refusal: called with the text of the error.
         """
 
         def refuse(reason: str) -> None:
             self._log.error(reason)
-            refused(reason)
+            on_refusal(reason)
 
-        def answered(answer: Future[Any]) -> None:
-            handle = None if answer.cancelled() or answer.exception() is not None else answer.result()
+        def answered(response: Future[Any]) -> None:
+            handle = None if response.cancelled() or response.exception() is not None else response.result()
             if handle is not None and not handle.accepted:
                 refuse("Goal was rejected by the action server")
 
         if self._client.server_is_ready():
-            self._client.send_goal_async(self._goal(pose=pose)).add_done_callback(answered)
+            self._client.send_goal_async(self._goal_type(pose=pose)).add_done_callback(answered)
         else:
             refuse(f"{self._name} action server is not available. Is the initial pose set?")
 

@@ -23,8 +23,8 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 if TYPE_CHECKING:
     from linkwright.nodes.joint_state_publisher_gui import JointPanel
 
-_LAG = 0.01
-"""Delay before positions are sent after a change, seconds, so that its transforms go out first."""
+_SEND_DELAY = 0.01
+"""The delay in s between a change and the sending of positions, so that transforms are sent first."""
 
 
 @runtime_checkable
@@ -37,7 +37,7 @@ class NodeWithSliders(RunningNode, Protocol):
 
 
 class JointsFeature(PageFeature):
-    """Connects the page's Joints panel with the node's panel that moves the joints, once there is one."""
+    """Connects the Joints panel of pages with the sliders of a node that moves the joints."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
 
@@ -48,14 +48,14 @@ class JointsFeature(PageFeature):
         self._soon: asyncio.TimerHandle | None = None
 
     def attach(self, panel: JointPanel | None) -> None:
-        """Show a panel instead of the previous one; None closes the panel in the page."""
+        """Show the sliders of a node instead of the previous ones; None closes the panel in pages."""
         if self._unsubscribe is not None:
             self._unsubscribe()
         if self._soon is not None:
             self._soon.cancel()
             self._soon = None
         self._panel = panel
-        self._unsubscribe = None if panel is None else panel.subscribe(self._panel_changed)
+        self._unsubscribe = None if panel is None else panel.subscribe(self._on_panel_change)
         for message in self.opening():
             self.context.pages.publish(message)
 
@@ -63,7 +63,7 @@ class JointsFeature(PageFeature):
         """Return the sliders and their values."""
         if self._panel is None:
             return [Joints(None)]
-        return [self._controls(self._panel), JointPositions(self._panel.positions())]
+        return [self._joints_message(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
         """Move joints; unknown joints, and joints that mimic another joint, are ignored."""
@@ -81,14 +81,14 @@ class JointsFeature(PageFeature):
             panel.set_position(message.name, message.position)
 
     def close(self) -> None:
-        """Detach from the panel."""
+        """Disconnect from the sliders of the node."""
         self.attach(None)
 
-    def _panel_changed(self, kind: str) -> None:
+    def _on_panel_change(self, kind: str) -> None:
         if self._panel is not None and kind == "sliders":
-            self.context.pages.publish(self._controls(self._panel))
+            self.context.pages.publish(self._joints_message(self._panel))
         if self._soon is None:
-            self._soon = asyncio.get_running_loop().call_later(_LAG, self._send_positions)
+            self._soon = asyncio.get_running_loop().call_later(_SEND_DELAY, self._send_positions)
 
     def _send_positions(self) -> None:
         self._soon = None
@@ -96,12 +96,12 @@ class JointsFeature(PageFeature):
             self.context.pages.publish(JointPositions(self._panel.positions()))
 
     @staticmethod
-    def _controls(panel: JointPanel) -> Joints:
+    def _joints_message(panel: JointPanel) -> Joints:
         return Joints(
             [
                 JointControl(
                     name=slider.name,
-                    kind=cast("Any", slider.kind),  # movable joints are of these three kinds
+                    kind=cast("Any", slider.kind),  # all movable joints have one of these kinds
                     lower=slider.lower,
                     upper=slider.upper,
                     zero=slider.zero,

@@ -1,10 +1,10 @@
-"""The base class of page features, which handle most requests of pages, and their creation.
+"""The base class of page features, which handle most requests of pages, and the creation of features.
 
 Most features are found through the entry points ``linkwright.page_features`` and are created with the viewer.
 
-Others are created on demand: when a page sends one of their messages, or when one of their topics is published. Each is
-declared by an `OnDemand`, which names the class, so that the class's module is imported only then. Until then, pages
-receive a default message instead. The declarations are found through the entry points
+Other features are created on demand: when a page sends one of their messages, or when one of their topics is
+published. An `OnDemand` declares the class by name, so that its module is imported only then. Until then, pages
+receive a default message. The declarations are found through the entry points
 ``linkwright.page_features_on_demand``, whose values are modules with a tuple ``ON_DEMAND``.
 """
 
@@ -32,11 +32,11 @@ F = TypeVar("F", bound="PageFeature")
 
 
 class FeatureHost(Protocol):
-    """The viewer as its page features see it.
+    """The viewer, as far as its page features use it.
 
     Attributes:
         context: the viewer's node, files and pages.
-        managers: the managers of the configurations that pages show: a shared one, and those of single pages.
+        managers: the managers of the configurations that pages show.
         live: the history of the last minutes; None if it is not stored.
     """
 
@@ -45,17 +45,17 @@ class FeatureHost(Protocol):
     live: LiveHistory | None
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
-        """Return the feature of a class, which is created if it does not exist yet.
+        """Return the feature of a class, creating it if it does not exist yet.
 
         The feature receives all events from then on.
 
         Args:
             cls: the class of the feature.
-            receives: addresses of messages that the feature handles in addition to those that its class names.
+            receives: the addresses of messages that the feature handles in addition to its `RECEIVES`.
         """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return all features' messages about a configuration."""
+        """Return the messages of all features about a configuration."""
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
         """Return the messages and binary frames for a page that opens a configuration.
@@ -67,7 +67,7 @@ class FeatureHost(Protocol):
 class PageFeature:
     """The base class of features, each of which handles some of the messages of pages.
 
-    A feature must cost nothing while no page uses it: it subscribes for the pages that need it, and unsubscribes in
+    A feature must cost nothing while no page uses it. It subscribes when a page needs it, and unsubscribes in
     `page_closed`.
 
     Args:
@@ -75,10 +75,10 @@ class PageFeature:
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = ()
-    """The messages of pages that `receive` handles; those of features created on demand are in their `OnDemand`."""
+    """The messages that `receive` handles; for a feature created on demand, its `OnDemand` declares them."""
 
     BEFORE_DISPLAYS: ClassVar[bool] = False
-    """Whether a page receives its `opening` before the displays, whose places may depend on it."""
+    """Whether a page receives the messages of `opening` before the displays, which may depend on them."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         self.viewer = viewer
@@ -111,48 +111,48 @@ class PageFeature:
         """Handle a new robot of any display."""
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Handle new findings on the description, which replace the former ones; the list may be empty."""
+        """Handle new findings about the description, which replace the previous findings; the list may be empty."""
 
     def recording_shown(self) -> None:
-        """Switch to showing a recording: from now on, refuse requests to robots and simulations."""
+        """Handle that a recording is shown; requests to robots and simulations must be refused from now on."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a message of a page, whose address is one of `receives`."""
+        """Handle a message of a page; its class is one of `receives`."""
 
     def page_closed(self, page: Page) -> None:
         """Discard the data of a page that was closed."""
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store pages' unsaved edits before the program ends, and return the findings about that."""
+        """Store unsaved edits of pages before the program ends, and return the findings about them."""
         return []
 
     def close(self) -> None:
-        """Release everything; called when the viewer closes."""
+        """Release all resources; called when the viewer closes."""
 
 
 GROUP = "linkwright.page_features"
-"""The group of the entry points."""
+"""The group of the entry points of features that are created with the viewer."""
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:
-    """Create all features that have an entry point; those that fail are logged and omitted."""
-    made: list[PageFeature] = []
-    for name, entry in extensions(GROUP).items():
+    """Return new features for all entry points; features that fail are logged and omitted."""
+    features: list[PageFeature] = []
+    for name, entry_point in extensions(GROUP).items():
         try:
-            feature = entry.load()(viewer)
+            feature = entry_point.load()(viewer)
         except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
             problem = f"{type(error).__name__}: {error}"
         else:
             if isinstance(feature, PageFeature):
-                made.append(feature)
+                features.append(feature)
                 continue
-            problem = f"{entry.value} does not make a PageFeature"
+            problem = f"{entry_point.value} does not make a PageFeature"
         viewer.context.node.get_logger().error(f"The page feature '{name}' cannot be loaded: {problem}")
-    return made
+    return features
 
 
 ON_DEMAND_GROUP = "linkwright.page_features_on_demand"
-"""The group of the entry points."""
+"""The group of the entry points of features that are created on demand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,7 @@ class OnDemand:
         receives: the classes of messages that the feature handles, as ``module:class``; the first such message creates
             the feature.
         topics: the topics whose first publisher creates the feature.
-        until: the message that pages receive while the feature does not exist.
+        until: the message that pages receive while the feature does not exist; None for no message.
         refuses_recordings: whether the feature must exist while a recording is shown, to refuse requests.
     """
 
@@ -180,15 +180,15 @@ def messages(module: str, *names: str) -> tuple[str, ...]:
     return tuple(f"{module}:{name}" for name in names)
 
 
-def _declared(logger: Logger) -> Iterator[OnDemand]:
+def _load_declarations(logger: Logger) -> Iterator[OnDemand]:
     """Yield the declarations of all packages; log and skip modules that cannot be imported."""
-    for name, entry in extensions(ON_DEMAND_GROUP).items():
+    for name, entry_point in extensions(ON_DEMAND_GROUP).items():
         try:
-            found: tuple[OnDemand, ...] = entry.load().ON_DEMAND
+            declarations: tuple[OnDemand, ...] = entry_point.load().ON_DEMAND
         except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
             problem = f"{type(error).__name__}: {error}"
         else:
-            yield from found
+            yield from declarations
             continue
         logger.error(f"The page features '{name}' cannot be loaded: {problem}")
 
@@ -201,65 +201,67 @@ class OnDemandFeatures(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._declared = tuple(_declared(self.context.node.get_logger()))
-        self._by_message = {message: feature for feature in self._declared for message in feature.receives}
-        for message in self._by_message:
+        self._declared = tuple(_load_declarations(self.context.node.get_logger()))
+        self._declaration_by_message = {message: feature for feature in self._declared for message in feature.receives}
+        for message in self._declaration_by_message:
             define_later(message)
-        self._asleep = {topic: feature for feature in self._declared for topic in feature.topics}
+        self._declaration_by_topic = {topic: feature for feature in self._declared for topic in feature.topics}
         self._created: set[OnDemand] = set()
-        self._listening = False
+        self._is_watching = False
 
     @property
     def receives(self) -> tuple[str, ...]:
         """The messages of all features that are created on demand."""
-        return tuple(self._by_message)
+        return tuple(self._declaration_by_message)
 
     def opening(self) -> list[ServerMessage]:
-        """Return the messages of features that do not exist yet, and begin to watch their topics."""
-        if not self._listening and self._asleep:
-            self._listening = True
-            self.context.graph_changes.watch(self._review)
-        self._review()
-        waiting = (feature.until for feature in self._declared if feature not in self._created)
-        return sorted((message for message in waiting if message is not None), key=tag_of)
+        """Return the `until` messages of features that do not exist yet, and begin to watch their topics."""
+        if not self._is_watching and self._declaration_by_topic:
+            self._is_watching = True
+            self.context.graph_changes.watch(self._create_published)
+        self._create_published()
+        default_messages = (feature.until for feature in self._declared if feature not in self._created)
+        return sorted((message for message in default_messages if message is not None), key=tag_of)
 
     def receive(self, page: Page, message: Any) -> None:
         """Create the feature that handles the message, and pass the message on."""
-        self._create(self._by_message[address_of(type(message))]).receive(page, message)
+        self._create(self._declaration_by_message[address_of(type(message))]).receive(page, message)
 
     def recording_shown(self) -> None:
-        """Create the features that refuse requests while a recording is shown; they are notified next."""
+        """Create the features that refuse requests while a recording is shown, so that they are notified too."""
         for feature in self._declared:
             if feature.refuses_recordings:
                 self._create(feature)
 
     def page_closed(self, page: Page) -> None:
         """Stop watching topics when the last page has closed."""
-        if self._listening and len(self.context.pages) == 0:
-            self._stop()
+        if self._is_watching and len(self.context.pages) == 0:
+            self._stop_watching()
 
     def close(self) -> None:
         """Stop watching topics."""
-        self._stop()
+        self._stop_watching()
 
-    def _stop(self) -> None:
-        self._listening = False
-        self.context.graph_changes.unwatch(self._review)
+    def _stop_watching(self) -> None:
+        self._is_watching = False
+        self.context.graph_changes.unwatch(self._create_published)
 
-    def _review(self) -> None:
+    def _create_published(self) -> None:
         """Create the features whose topics have publishers."""
-        for topic, feature in list(self._asleep.items()):
+        for topic, feature in list(self._declaration_by_topic.items()):
             if self.context.node.count_publishers(topic):
                 self._create(feature)
 
-    def _create(self, declared: OnDemand) -> PageFeature:
-        module, _, name = declared.feature.partition(":")
-        feature: PageFeature = self.viewer.add_feature(getattr(import_module(module), name), declared.receives)
-        if declared not in self._created:
-            self._created.add(declared)
-            self._asleep = {topic: other for topic, other in self._asleep.items() if other is not declared}
+    def _create(self, declaration: OnDemand) -> PageFeature:
+        module, _, name = declaration.feature.partition(":")
+        feature: PageFeature = self.viewer.add_feature(getattr(import_module(module), name), declaration.receives)
+        if declaration not in self._created:
+            self._created.add(declaration)
+            self._declaration_by_topic = {
+                topic: other for topic, other in self._declaration_by_topic.items() if other is not declaration
+            }
             for message in feature.opening():
                 self.context.pages.publish(message)
-            if not self._asleep:
-                self._stop()
+            if not self._declaration_by_topic:
+                self._stop_watching()
         return feature

@@ -1,6 +1,6 @@
-"""Recording for pages: one recording at a time, shared by all pages, and saving the last minutes.
+"""Records topics for pages, with one recording at a time for all pages, and saves the last minutes.
 
-Files are written to the program's working directory, under names that the program chooses; pages cannot choose them.
+Files are written to the working directory of the program. The program chooses their names; pages cannot.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ if TYPE_CHECKING:
     from linkwright.graph.time.clock import JumpHandle
     from linkwright.panels.live_history import LiveHistory
 
-_PERIOD = 1.0
+_REPORT_PERIOD = 1.0
 """Seconds between two reports of the progress to pages."""
 
-LEFT_FREE = 256_000_000
-"""Bytes of the disk that recordings from pages leave free."""
+MIN_FREE_BYTES = 256_000_000
+"""The number of bytes that recordings from pages leave free on the disk."""
 
-_MOST_FILES = 20
+_MAX_FILES = 20
 
 
 class RecordingFeature(PageFeature):
@@ -52,17 +52,17 @@ class RecordingFeature(PageFeature):
 
     Attributes:
         folder: the folder for recordings.
-        left_free: the number of bytes to leave free on the disk.
+        min_free_bytes: the number of bytes to leave free on the disk.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self.folder = self.context.folder
-        self.left_free = LEFT_FREE
-        self._possible = True
+        self.min_free_bytes = MIN_FREE_BYTES
+        self._is_possible = True
         self._running: _CurrentRecording | None = None
-        self._saved: float | None = None
-        self._saving: asyncio.Task[None] | None = None
+        self._saved_fraction: float | None = None
+        self._save_task: asyncio.Task[None] | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._problem = ""
         self._files: list[RecordedFile] = []
@@ -70,7 +70,7 @@ class RecordingFeature(PageFeature):
 
     def recording_shown(self) -> None:
         """Refuse to record from now on, because a recording is shown."""
-        self._possible = False
+        self._is_possible = False
         self._publish()
 
     def opening(self) -> list[ServerMessage]:
@@ -79,23 +79,23 @@ class RecordingFeature(PageFeature):
 
     def receive(self, page: Page, message: RecordTopics | StopRecording | SaveMinutes) -> None:
         """Start or stop recording, or save the last minutes."""
-        if not self._possible:
+        if not self._is_possible:
             return
         match message:
             case RecordTopics(topics) if self._running is None:
-                self._attempt(lambda: self._begin(topics))
+                self._try_action(lambda: self._begin(topics))
             case StopRecording():
-                self._end()
-            case SaveMinutes(start, end) if self._saving is None and self.viewer.live is not None:
+                self._stop_recording()
+            case SaveMinutes(start, end) if self._save_task is None and self.viewer.live is not None:
                 if all(time is None or isfinite(time) for time in (start, end)):
-                    self._attempt(partial(self._save, self.viewer.live, start, end))
+                    self._try_action(partial(self._save, self.viewer.live, start, end))
 
     def close(self) -> None:
         """Complete the current recording, if there is one."""
-        self._possible = False
-        self._end()
-        if self._saving is not None:
-            self._saving.cancel()
+        self._is_possible = False
+        self._stop_recording()
+        if self._save_task is not None:
+            self._save_task.cancel()
         if self._timer is not None:
             self._timer.cancel()
 
@@ -104,133 +104,137 @@ class RecordingFeature(PageFeature):
     def _begin(self, topics: list[str]) -> None:
         from linkwright.bag import BagWriter, Recorder, TopicSelection
 
-        self._check_room(0)
+        self._check_space(0)
         writer = BagWriter(self._free_path("rosbag2"))
-        simulated = bool(self.context.node.get_parameter("use_sim_time").value)
+        uses_simulated_time = bool(self.context.node.get_parameter("use_sim_time").value)
         node = Node(
             self.context.node.graph,
             "rosbag2_recorder",
-            parameters={"use_sim_time": simulated},
+            parameters={"use_sim_time": uses_simulated_time},
             start_parameter_services=False,
         )
         selection = TopicSelection(everything=not topics, every_service=not topics, names=topics)
-        recorder = Recorder(node, selection, writer, guarded=self._guard)
+        recorder = Recorder(node, selection, writer, wrap_callback=self._guarded)
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
-        jumps = node.get_clock().create_jump_callback(
-            threshold, post_callback=lambda _: self._loop.call_soon_threadsafe(self._end_at_reset, recorder)
+        jump_handle = node.get_clock().create_jump_callback(
+            threshold, post_callback=lambda _: self._loop.call_soon_threadsafe(self._stop_at_reset, recorder)
         )
         self._running = _CurrentRecording(
-            node, writer, recorder, jumps, self.context.node.get_clock() if simulated else None
+            node, writer, recorder, jump_handle, self.context.node.get_clock() if uses_simulated_time else None
         )
-        self._publish_later()
+        self._schedule_publish()
 
-    def _guard(self, callback: Callable[..., object]) -> Callable[..., object]:
-        """Wrap a callback of the recorder's node so that a failed write ends the recording."""
+    def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
+        """Return a callback of the recorder's node wrapped so that a failed write ends the recording."""
 
         def call(*arguments: Any) -> None:
             try:
                 callback(*arguments)
             except LinkwrightError as error:
-                self._refused(error.diagnostics)
-                self._loop.call_soon(self._end)
+                self._report_errors(error.diagnostics)
+                self._loop.call_soon(self._stop_recording)
 
         return call
 
-    def _end_at_reset(self, recorder: Recorder) -> None:
+    def _stop_at_reset(self, recorder: Recorder) -> None:
         if self._running is not None and self._running.recorder is recorder:
             path = display_path(self._running.writer.path)
-            self._refused([_finding(phrase("recording to '{path}' stops: simulated time was reset", path=path))])
-            self._end()
+            self._report_errors(
+                [_finding(phrase(("recording to '{path}' was stopped because simulated time was reset"), path=path))]
+            )
+            self._stop_recording()
 
-    def _end(self) -> None:
-        running, self._running = self._running, None
-        if running is None:
+    def _stop_recording(self) -> None:
+        recording, self._running = self._running, None
+        if recording is None:
             return
-        path = running.writer.path
-        running.jumps.unregister()
+        path = recording.writer.path
+        recording.jump_handle.unregister()
         try:
-            running.recorder.close()
+            recording.recorder.close()
         except LinkwrightError as error:
-            self._refused(error.diagnostics)
-        running.node.destroy_node()
-        if running.recorder.message_count:
-            self._add_file(path, running.length, running.simulated)
+            self._report_errors(error.diagnostics)
+        recording.node.destroy_node()
+        if recording.recorder.message_count:
+            self._add_file(path, recording.length, recording.simulated)
         else:
             shutil.rmtree(path, ignore_errors=True)
-            self._refused([_finding(phrase("no messages arrived, so there is no recording"))])
+            self._report_errors([_finding(phrase("no recording was saved, because no messages arrived"))])
         self._publish()
 
     # --- saving the last minutes -------------------------------------------------------------------------------
 
     def _save(self, live: LiveHistory, start: float | None, end: float | None) -> None:
         history = live.history
-        self._check_room(history.size)
+        self._check_space(history.size)
         start_ns = history.start_ns if start is None else round(start * NANOSECONDS_PER_SECOND)
         end_ns = history.end_ns if end is None else round(end * NANOSECONDS_PER_SECOND)
         path = self._free_path("last_minutes")
-        self._saved = 0.0
-        self._saving = self._loop.create_task(self._write(live, live.topics(), path, start_ns, end_ns))
-        self._saving.add_done_callback(self._written)
-        self._publish_later()
+        self._saved_fraction = 0.0
+        self._save_task = self._loop.create_task(self._write(live, live.topics(), path, start_ns, end_ns))
+        self._save_task.add_done_callback(self._on_saved)
+        self._schedule_publish()
 
     async def _write(
         self, live: LiveHistory, topics: dict[str, SavedTopic], path: Path, start_ns: int, end_ns: int
     ) -> None:
         from linkwright.bag.saving import save_messages
 
-        simulated = bool(self.context.node.get_parameter("use_sim_time").value)
-        messages = await asyncio.to_thread(live.part, topics, start_ns, end_ns, simulated=simulated)
+        uses_simulated_time = bool(self.context.node.get_parameter("use_sim_time").value)
+        messages = await asyncio.to_thread(live.part, topics, start_ns, end_ns, simulated=uses_simulated_time)
         if not messages:
-            self._refused([_finding(phrase("no messages arrived in that time, so there is no recording"))])
+            self._report_errors([_finding(phrase("no recording was saved, because no messages arrived in that time"))])
             return
         try:
-            await asyncio.to_thread(save_messages, path, topics, messages, self._note)
+            await asyncio.to_thread(save_messages, path, topics, messages, self._on_progress)
         except LinkwrightError as error:
-            self._refused(error.diagnostics)
+            self._report_errors(error.diagnostics)
         self._add_file(path, (messages[-1][1] - messages[0][1]) / NANOSECONDS_PER_SECOND)
 
-    def _note(self, part: float) -> None:
-        self._saved = part
+    def _on_progress(self, fraction: float) -> None:
+        self._saved_fraction = fraction
 
-    def _written(self, task: asyncio.Task[None]) -> None:
-        self._saving = self._saved = None
+    def _on_saved(self, task: asyncio.Task[None]) -> None:
+        self._save_task = self._saved_fraction = None
         error = None if task.cancelled() else task.exception()
-        if error is not None:  # otherwise, pages would wait forever
+        if error is not None:  # without a problem, pages would wait forever
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
-            self._refused([_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))])
+            self._report_errors(
+                [_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))]
+            )
         self._publish()
 
     # --- files -------------------------------------------------------------------------------------------------
 
     def _free_path(self, kind: str) -> Path:
         name = f"{kind}_{datetime.now().astimezone():%Y_%m_%d-%H_%M_%S}"
-        taken = 1
+        number = 1
         path = self.folder / name
         while path.exists():
-            taken += 1
-            path = self.folder / f"{name}_{taken}"
+            number += 1
+            path = self.folder / f"{name}_{number}"
         return path
 
-    def _check_room(self, needed: int) -> None:
-        """Check that the disk has enough free space for a number of bytes.
+    def _check_space(self, required_bytes: int) -> None:
+        """Raise if the disk does not have enough free space for a number of bytes.
 
         Raises:
             LinkwrightError: BAG110, there is not enough space.
         """
-        if self._free() < self.left_free + needed:
+        if self._free_bytes() < self.min_free_bytes + required_bytes:
             raise LinkwrightError(
                 _finding(
                     phrase(
-                        "there is not enough space for a recording in '{folder}': {free} MB are free, {least} "
-                        "MB are required",
+                        "there is not enough space for a recording in '{folder}': {free} MB are free, but "
+                        "{least} MB are required",
                         folder=display_path(self.folder),
-                        free=self._free() // 1_000_000,
-                        least=(self.left_free + needed) // 1_000_000,
+                        free=self._free_bytes() // 1_000_000,
+                        least=(self.min_free_bytes + required_bytes) // 1_000_000,
                     )
                 )
             )
 
-    def _free(self) -> int:
+    def _free_bytes(self) -> int:
         """Return the number of free bytes on the disk of the recordings.
 
         The result is ``sys.maxsize`` if it is unknown, because writing then reports a full disk.
@@ -243,21 +247,21 @@ class RecordingFeature(PageFeature):
     def _add_file(self, path: Path, length: float, simulated: float | None = None) -> None:
         for file in sorted(path.glob("*.mcap")):
             url = self.context.downloads.keep(file)
-            made = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated)
-            self._files = [made, *self._files[: _MOST_FILES - 1]]
+            recorded_file = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated)
+            self._files = [recorded_file, *self._files[: _MAX_FILES - 1]]
             self.context.node.get_logger().info(f"Recorded to '{display_path(path)}'")
 
     # --- pages -------------------------------------------------------------------------------------------------
 
-    def _attempt(self, what: Callable[[], object]) -> None:
+    def _try_action(self, action: Callable[[], object]) -> None:
         self._problem = ""
         try:
-            what()
+            action()
         except LinkwrightError as error:
-            self._refused(error.diagnostics)
+            self._report_errors(error.diagnostics)
         self._publish()
 
-    def _refused(self, diagnostics: Iterable[Diagnostic]) -> None:
+    def _report_errors(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Show errors in pages and in the terminal."""
         for diagnostic in diagnostics:
             self.context.report(diagnostic)
@@ -266,58 +270,58 @@ class RecordingFeature(PageFeature):
     def _publish(self) -> None:
         self.context.pages.publish(self._state())
 
-    def _publish_later(self) -> None:
+    def _schedule_publish(self) -> None:
         if self._timer is None:
-            self._timer = self._loop.call_later(_PERIOD, self._look)
+            self._timer = self._loop.call_later(_REPORT_PERIOD, self._look)
 
     def _look(self) -> None:
         self._timer = None
-        if self._running is not None and self._free() < self.left_free:
-            full = phrase(
-                "recording to '{path}' stops: the disk has less than {left} MB left",
+        if self._running is not None and self._free_bytes() < self.min_free_bytes:
+            message = phrase(
+                "recording to '{path}' was stopped because the disk has less than {left} MB left",
                 path=display_path(self._running.writer.path),
-                left=self.left_free // 1_000_000,
+                left=self.min_free_bytes // 1_000_000,
             )
-            self._refused([_finding(full)])
-            self._end()
+            self._report_errors([_finding(message)])
+            self._stop_recording()
         self._publish()
-        if self._running is not None or self._saving is not None:
-            self._publish_later()
+        if self._running is not None or self._save_task is not None:
+            self._schedule_publish()
 
     def _state(self) -> RecordingState:
-        running = self._running
+        recording = self._running
         path, length, size = ("", 0.0, 0)
-        if running is not None:
-            path, length, size = str(running.writer.path), running.length, running.writer.size
-        return RecordingState(self._possible, path, length, size, self._saved, self._problem, self._files)
+        if recording is not None:
+            path, length, size = str(recording.writer.path), recording.length, recording.writer.size
+        return RecordingState(self._is_possible, path, length, size, self._saved_fraction, self._problem, self._files)
 
 
 class _CurrentRecording:
-    """A recording in progress; `clock` is the simulation's clock, or None."""
+    """A recording in progress; `clock` is the simulated clock, or None if time is not simulated."""
 
     def __init__(
-        self, node: Node, writer: BagWriter, recorder: Recorder, jumps: JumpHandle, clock: Clock | None
+        self, node: Node, writer: BagWriter, recorder: Recorder, jump_handle: JumpHandle, clock: Clock | None
     ) -> None:
         self.node = node
         self.writer = writer
         self.recorder = recorder
-        self.jumps = jumps
-        self._began = time.monotonic()
+        self.jump_handle = jump_handle
+        self._start_time = time.monotonic()
         self._clock = clock
-        self._simulated_from = 0 if clock is None else clock.now().nanoseconds
+        self._simulated_start_ns = 0 if clock is None else clock.now().nanoseconds
 
     @property
     def length(self) -> float:
-        """The seconds since the start of the recording."""
-        return time.monotonic() - self._began
+        """The duration of the recording so far, in seconds."""
+        return time.monotonic() - self._start_time
 
     @property
     def simulated(self) -> float | None:
         """The simulated seconds since the start; None if time is not simulated, or was reset."""
         if self._clock is None:
             return None
-        passed = (self._clock.now().nanoseconds - self._simulated_from) / 1e9
-        return passed if passed >= 0 else None
+        elapsed = (self._clock.now().nanoseconds - self._simulated_start_ns) / 1e9
+        return elapsed if elapsed >= 0 else None
 
 
 def _finding(message: Phrase) -> Diagnostic:

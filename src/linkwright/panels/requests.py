@@ -1,4 +1,4 @@
-"""The page features of this package that are created on demand."""
+"""The declarations of the page features of this package that are created on demand."""
 
 from linkwright.page.protocol.time import NOTHING_RECORDED
 from linkwright.panels.page_feature import OnDemand, messages

@@ -1,4 +1,4 @@
-"""Time for pages: the timeline of a recording or of the last minutes, playback, and the Time panel."""
+"""The timeline of a recording or of the last minutes, playback, and the Time panel, for pages."""
 
 from __future__ import annotations
 
@@ -43,19 +43,19 @@ if TYPE_CHECKING:
 
 
 _CLOCK_PERIOD = 0.1
-"""Seconds between two checks of clocks that pages cannot count by themselves."""
+"""Seconds between two checks of clocks that pages cannot advance by themselves."""
 
 
 @dataclass(slots=True)
-class _Since:
-    """The times at which counting of elapsed times started, in nanoseconds."""
+class _ElapsedStart:
+    """The start of the elapsed times, in ROS time and in wall time, in ns since the epoch."""
 
     ros: int
     wall: int
 
 
 class TimeFeature(PageFeature):
-    """Sends pages the values of the Time panel, and applies the panel's settings.
+    """Sends the values of the Time panel to pages, and applies the settings of the panel.
 
     A clock that runs at the speed of the wall clock is sent once, and pages advance it themselves. Other clocks are
     sent while they change.
@@ -65,16 +65,16 @@ class TimeFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._since: dict[VisualizationManager, _Since] = {}
-        self._watching: dict[Page, Clock | None] = {}
+        self._elapsed_starts: dict[VisualizationManager, _ElapsedStart] = {}
+        self._sent_clocks: dict[Page, Clock | None] = {}
         self._timer: asyncio.TimerHandle | None = None
-        self._jumps: JumpHandle | None = None
+        self._jump_handle: JumpHandle | None = None
         self._loop = asyncio.get_running_loop()
 
     def start(self) -> None:
-        """Begin to watch the clock: when simulated time jumps back, everything is reset, as in RViz."""
+        """Begin to watch the clock; if simulated time jumps back, everything is reset, as in RViz."""
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        self._jumps = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._jumped)
+        self._jump_handle = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._on_jump)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the state of the Time panel."""
@@ -83,7 +83,7 @@ class TimeFeature(PageFeature):
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Discard the start of the manager's elapsed times."""
-        self._since.pop(manager, None)
+        self._elapsed_starts.pop(manager, None)
 
     def receive(self, page: Page, message: Any) -> None:
         """Apply settings of the Time panel, or start or stop sending clocks to the page."""
@@ -95,37 +95,39 @@ class TimeFeature(PageFeature):
             self._reset(manager)
         elif isinstance(message, WatchClock):
             if message.watching:
-                self._watching.setdefault(page, None)
+                self._sent_clocks.setdefault(page, None)
                 self._tick()
             else:
                 self.page_closed(page)
 
     def page_closed(self, page: Page) -> None:
         """Stop sending clocks to the page."""
-        self._watching.pop(page, None)
+        self._sent_clocks.pop(page, None)
 
     def close(self) -> None:
         """Stop sending clocks."""
         if self._timer is not None:
             self._timer.cancel()
-        if self._jumps is not None:
-            self._jumps.unregister()
+        if self._jump_handle is not None:
+            self._jump_handle.unregister()
 
-    def _begin(self, manager: VisualizationManager) -> _Since:
-        known = self._since.get(manager)
-        if known is None or known.ros == 0:  # simulated time is 0 until its first message
+    def _begin(self, manager: VisualizationManager) -> _ElapsedStart:
+        elapsed_start = self._elapsed_starts.get(manager)
+        if elapsed_start is None or elapsed_start.ros == 0:  # simulated time is 0 until the first message of /clock
             now = manager.time.now_ns()
-            known = self._since[manager] = _Since(now, time.time_ns() if known is None else known.wall)
-        return known
+            elapsed_start = self._elapsed_starts[manager] = _ElapsedStart(
+                now, time.time_ns() if elapsed_start is None else elapsed_start.wall
+            )
+        return elapsed_start
 
     def _reset(self, manager: VisualizationManager) -> None:
         manager.reset_time()
-        self._since.pop(manager, None)
+        self._elapsed_starts.pop(manager, None)
         self._begin(manager)
         manager.publish(TimeReset())
         self._publish_all()
 
-    def _jumped(self, jump: TimeJump) -> None:
+    def _on_jump(self, jump: TimeJump) -> None:
         if self.context.held_time.switching:
             return
 
@@ -133,67 +135,71 @@ class TimeFeature(PageFeature):
             for manager in self.managers.all():
                 self._reset(manager)
 
-        # Messages of /clock may change the time in any thread.
+        # The callback can run in any thread, because messages of /clock change the time.
         self._loop.call_soon_threadsafe(reset)
 
     def _publish_all(self) -> None:
-        for page in self._watching:
-            self._watching[page] = None
+        for page in self._sent_clocks:
+            self._sent_clocks[page] = None
         self._tick()
 
     def _tick(self) -> None:
-        """Send the clocks that pages cannot advance themselves to the pages that watch them."""
+        """Send clocks that have changed to the pages that watch them, and schedule the next check if necessary."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-        moving = False
-        for page, sent in list(self._watching.items()):
+        must_repeat = False
+        for page, sent_clock in list(self._sent_clocks.items()):
             clock = self._clock(self.managers.of(page))
-            moving = moving or not clock.running
-            if sent is None or (not clock.running and clock.ros != sent.ros) or clock.running != sent.running:
+            must_repeat = must_repeat or not clock.running
+            if (
+                sent_clock is None
+                or (not clock.running and clock.ros != sent_clock.ros)
+                or clock.running != sent_clock.running
+            ):
                 page.send(clock)
-                self._watching[page] = clock
-        if moving:
+                self._sent_clocks[page] = clock
+        if must_repeat:
             self._timer = self._loop.call_later(_CLOCK_PERIOD, self._tick)
 
     def _clock(self, manager: VisualizationManager) -> Clock:
-        since, control = self._begin(manager), manager.time
-        simulated = self.context.node.get_clock().ros_time_is_active
+        elapsed_start, time_control = self._begin(manager), manager.time
+        is_simulated = self.context.node.get_clock().ros_time_is_active
         return Clock(
-            ros=control.now_ns() / 1e9,
-            ros_start=since.ros / 1e9,
+            ros=time_control.now_ns() / 1e9,
+            ros_start=elapsed_start.ros / 1e9,
             wall=time.time(),
-            wall_start=since.wall / 1e9,
-            running=not (simulated or control.paused or control.mode == "Exact"),
+            wall_start=elapsed_start.wall / 1e9,
+            running=not (is_simulated or time_control.paused or time_control.mode == "Exact"),
         )
 
 
 def _state(manager: VisualizationManager) -> TimeState:
-    control = manager.time
-    return TimeState(control.paused, control.mode, control.source, list(control.sources))
+    time_control = manager.time
+    return TimeState(time_control.paused, time_control.mode, time_control.source, list(time_control.sources))
 
 
-_PERIOD = 0.1
-"""Seconds between two positions that pages receive while a recording plays."""
+_PLAYHEAD_PERIOD = 0.1
+"""Seconds between two positions that are sent to pages while a recording plays."""
 
-_PARTS = 200
-"""Equal parts of a recording whose messages are counted."""
+_COUNT_INTERVALS = 200
+"""The number of equal intervals of a recording for which messages are counted."""
 
 _EXTENT_PERIOD = 1.0
-"""Seconds between two reports to pages of the extent of the live history."""
+"""Seconds between two messages to pages about the extent of the live history."""
 
 _CAUGHT_UP_NS = 100_000_000
-"""The distance from the present, nanoseconds, at which playback of the last minutes becomes live."""
+"""The time to the present in ns at which playback of the last minutes becomes live."""
 
 
 class TimelineFeature(PageFeature):
-    """Shows pages the position in a recording or in the last minutes, and controls playback for them.
+    """Sends the position in a recording or in the last minutes to pages, and controls playback for them.
 
     Without a recording or a live history, the feature does nothing. A recording starts to play when the first page
     opens.
 
     Attributes:
-        jumped: callbacks for jumps of the displayed time.
+        on_jump: callbacks that are called when the displayed time jumps.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
@@ -201,7 +207,7 @@ class TimelineFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._recorded: Playback | None = None
+        self._playback: Playback | None = None
         self._timeline: Timeline | None = None
         self._problem: str = ""
         self._begun = False
@@ -210,15 +216,18 @@ class TimelineFeature(PageFeature):
         self._live: LiveHistory | None = None
         self._was_playing = False
         self._was_live = True
-        self.jumped: list[Callable[[], object]] = []
+        self.on_jump: list[Callable[[], object]] = []
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Show a recording to pages; the caller reports a read error with `failed`."""
+        """Show a recording to pages; a read error must be reported with `failed`."""
         from linkwright.bag.publishing import missing_type_findings
 
-        counts = bag.counts(_PARTS)
-        topics = [TimelineTopic(at.name, at.type_name, at.count, counts.get(at.name, [])) for at in bag.topics]
+        counts = bag.counts(_COUNT_INTERVALS)
+        topics = [
+            TimelineTopic(topic_info.name, topic_info.type_name, topic_info.count, counts.get(topic_info.name, []))
+            for topic_info in bag.topics
+        ]
         if self._live is not None:
             self._live.close()
             self._live = None
@@ -231,12 +240,12 @@ class TimelineFeature(PageFeature):
         )
         if findings := [*bag.findings, *missing_type_findings(bag)]:
             self._problem = in_one_line(findings)
-        self._recorded = playback
+        self._playback = playback
         playback.on_reset = self._reset
-        playback.changed.append(self._changed)
+        playback.changed.append(self._on_change)
         self.context.graph_changes.watch(playback.review)
         self.context.pages.publish(self._timeline)
-        self._changed()
+        self._on_change()
 
     def keep(self, most_bytes: int) -> LiveHistory:
         """Begin to store the messages of the last minutes, and return their history.
@@ -246,7 +255,7 @@ class TimelineFeature(PageFeature):
         """
         self._live = LiveHistory(self.context, most_bytes, self.failed)
         self._live.on_reset = self._reset
-        self._live.changed = self._changed
+        self._live.changed = self._on_change
         return self._live
 
     def failed(self, error: LinkwrightError) -> None:
@@ -257,7 +266,7 @@ class TimelineFeature(PageFeature):
 
     def opening(self) -> list[ServerMessage]:
         """Return the extent of the recording or the history, and the current position."""
-        playback = self._recorded
+        playback = self._playback
         if self._live is not None:
             extent = self._extent(self._live)
             self._publish_extent_later()
@@ -274,7 +283,7 @@ class TimelineFeature(PageFeature):
         """Handle a request to play, pause, move to a time, or return to the present."""
         from linkwright.bag.playback import FASTEST, SLOWEST
 
-        playback = self._recorded if self._live is None else self._live.playback
+        playback = self._playback if self._live is None else self._live.playback
         if playback is None:
             return
         self._problem = ""
@@ -289,8 +298,8 @@ class TimelineFeature(PageFeature):
                 playback.play() if playing else playback.pause()
             case SeekTime(position) if isfinite(position):
                 start = playback.start_ns
-                # Compute relative to the start: a float of seconds since the epoch is only precise to a tenth of a
-                # microsecond or so.
+                # Compute relative to the start, because a float with seconds since the epoch is precise to about 0.1
+                # us only.
                 playback.seek(start + round((position - start / NANOSECONDS_PER_SECOND) * NANOSECONDS_PER_SECOND))
             case StepTime(forward, topic):
                 playback.step(forward, topic)
@@ -299,16 +308,16 @@ class TimelineFeature(PageFeature):
                 playback.set_loop(loop)
 
     def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
-        """Return the stored messages of some topics in the seconds before the displayed time.
+        """Return the stored messages of topics for a duration before the displayed time.
 
         Args:
-            topics: the topics; the history of the last minutes only has those that the viewer is subscribed to.
-            seconds: the duration.
-            most_bytes: the maximum total size; if the messages exceed it, none are returned.
+            topics: the topics; the history of the last minutes has only topics that the viewer is subscribed to.
+            seconds: the duration, in seconds.
+            most_bytes: the maximum total size in bytes; if the messages exceed it, the list is empty.
         """
-        if self._live is None and self._recorded is None:
+        if self._live is None and self._playback is None:
             return []
-        source = self._recorded if self._live is None else self._live
+        source = self._playback if self._live is None else self._live
         assert source is not None
         return source.before(topics, round(seconds * NANOSECONDS_PER_SECOND), most_bytes)
 
@@ -320,12 +329,12 @@ class TimelineFeature(PageFeature):
             self._publish_timer.cancel()
         if self._live is not None:
             self._live.close()
-        elif self._recorded is not None:
-            self.context.graph_changes.unwatch(self._recorded.review)
-            self._recorded.close()
+        elif self._playback is not None:
+            self.context.graph_changes.unwatch(self._playback.review)
+            self._playback.close()
 
     def _reset(self) -> None:
-        """Discard the displayed and the queued messages, because the displayed time has jumped."""
+        """Discard the displayed and queued messages, because the displayed time has jumped."""
         for subscription in self.context.node.subscriptions:
             subscription.discard()
         for manager in self.managers.all():
@@ -334,10 +343,10 @@ class TimelineFeature(PageFeature):
         self._notify_jump()
 
     def _notify_jump(self) -> None:
-        for jumped in self.jumped:
+        for jumped in self.on_jump:
             jumped()
 
-    def _changed(self) -> None:
+    def _on_change(self) -> None:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -348,15 +357,15 @@ class TimelineFeature(PageFeature):
                 self._notify_jump()
         if live is not None and not live.live:
             playing = live.playback.playing
-            caught_up = live.span_ns[1] - live.playback.position_ns < _CAUGHT_UP_NS
-            if self._was_playing and not playing and caught_up:
+            has_caught_up = live.span_ns[1] - live.playback.position_ns < _CAUGHT_UP_NS
+            if self._was_playing and not playing and has_caught_up:
                 live.go_live()
             self._was_playing = playing
-        playback = self._recorded if live is None else live.playback
+        playback = self._playback if live is None else live.playback
         if playback is not None:
             self.context.pages.publish(self._playhead(playback))
             if playback.playing:
-                self._timer = self._loop.call_later(_PERIOD, self._changed)
+                self._timer = self._loop.call_later(_PLAYHEAD_PERIOD, self._on_change)
 
     def _playhead(self, playback: Playback) -> Playhead:
         position = playback.position_ns / NANOSECONDS_PER_SECOND
@@ -379,7 +388,7 @@ class TimelineFeature(PageFeature):
             self._publish_timer = self._loop.call_later(_EXTENT_PERIOD, self._publish_extent)
 
     def _publish_extent(self) -> None:
-        """Send the extent of the history to pages while any are open."""
+        """Send the extent of the history to pages, and schedule the next message, if any pages are open."""
         self._publish_timer = None
         if self._live is not None and len(self.context.pages):
             self.context.pages.publish(self._extent(self._live))

@@ -43,9 +43,9 @@ if TYPE_CHECKING:
 
 
 class ViewsFeature(PageFeature):
-    """The views of pages, which start with the file's view.
+    """The views of pages, which start with the view of the file.
 
-    The file receives the view that a page changed last.
+    The view that any page changed last is written to the file.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, RobotMeasured, SaveView, ChangeSavedView, RemoveSavedView)
@@ -60,7 +60,7 @@ class ViewsFeature(PageFeature):
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the view of the file and the saved views."""
-        return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
+        return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved_views_message(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
         """Handle a changed view of a page, or an edit of the saved views; invalid views are refused."""
@@ -85,10 +85,10 @@ class ViewsFeature(PageFeature):
             self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
             return
         manager.edited()
-        manager.publish(self._saved(manager))
+        manager.publish(self._saved_views_message(manager))
 
     @staticmethod
-    def _saved(manager: VisualizationManager) -> SavedViews:
+    def _saved_views_message(manager: VisualizationManager) -> SavedViews:
         return SavedViews([SavedView(identity, view) for identity, view in manager.config.views.saved.items()])
 
 
@@ -119,7 +119,7 @@ class ToolsFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._shelves: dict[VisualizationManager, _ToolSet] = {}
+        self._tool_sets: dict[VisualizationManager, _ToolSet] = {}
 
     def start(self) -> None:
         """Create the publishers of the shared configuration's tools."""
@@ -132,23 +132,23 @@ class ToolsFeature(PageFeature):
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Destroy the publishers of the manager's tools."""
-        shelf = self._shelves.pop(manager, None)
-        if shelf is not None:
-            self._clear(shelf)
+        tool_set = self._tool_sets.pop(manager, None)
+        if tool_set is not None:
+            self._destroy_all(tool_set)
 
     def receive(self, page: Page, message: Any) -> None:
         """Change or use a tool; messages for removed tools are ignored."""
         manager = self.managers.of(page)
-        shelf = self._tool_set(manager)
+        tool_set = self._tool_set(manager)
         if isinstance(message, SetToolProperty):
-            self._set(page, manager, message)
+            self._set_property(page, manager, message)
         elif isinstance(message, AddTool):
             self._add(manager, message)
         elif isinstance(message, RemoveTool):
-            if shelf.config.find(message.id) is not None:
-                shelf.config.remove(message.id)
-                self._withdraw(shelf, message.id)
-                self._changed(manager)
+            if tool_set.config.find(message.id) is not None:
+                tool_set.config.remove(message.id)
+                self._destroy_outputs(tool_set, message.id)
+                self._publish_tools(manager)
         elif isinstance(message, PoseChosen):
             self._publish_pose(manager, message)
         elif isinstance(message, PointChosen):
@@ -156,123 +156,125 @@ class ToolsFeature(PageFeature):
 
     def close(self) -> None:
         """Destroy all publishers."""
-        for manager in list(self._shelves):
+        for manager in list(self._tool_sets):
             self.manager_closed(manager)
 
     def _tool_set(self, manager: VisualizationManager) -> _ToolSet:
-        """Return the tools of a manager; they are created again if the configuration was replaced."""
-        shelf = self._shelves.get(manager)
-        if shelf is None or shelf.config is not manager.config.tools:
-            if shelf is not None:
-                self._clear(shelf)
-            shelf = self._shelves[manager] = _ToolSet(manager.config.tools)
-            for entry in shelf.config.entries:
-                self._try_announce(shelf, entry)
-        return shelf
+        """Return the tools of a manager; if its configuration was replaced, they are created again."""
+        tool_set = self._tool_sets.get(manager)
+        if tool_set is None or tool_set.config is not manager.config.tools:
+            if tool_set is not None:
+                self._destroy_all(tool_set)
+            tool_set = self._tool_sets[manager] = _ToolSet(manager.config.tools)
+            for entry in tool_set.config.entries:
+                self._try_create_outputs(tool_set, entry)
+        return tool_set
 
-    def _try_announce(self, shelf: _ToolSet, entry: ToolEntry) -> None:
+    def _try_create_outputs(self, tool_set: _ToolSet, entry: ToolEntry) -> None:
         try:
-            self._announce(shelf, entry)
+            self._create_outputs(tool_set, entry)
         except InvalidTopicNameError as error:
             self.context.node.get_logger().error(f"{tool_name(entry.cls)}: {error}")
 
-    def _clear(self, shelf: _ToolSet) -> None:
-        for identity in [*shelf.publishers, *shelf.goals]:
-            self._withdraw(shelf, identity)
+    def _destroy_all(self, tool_set: _ToolSet) -> None:
+        for identity in [*tool_set.publishers, *tool_set.goals]:
+            self._destroy_outputs(tool_set, identity)
 
     # --- settings ----------------------------------------------------------------------------------------------
 
-    def _changed(self, manager: VisualizationManager) -> None:
+    def _publish_tools(self, manager: VisualizationManager) -> None:
         manager.edited()
-        manager.publish(_tools_message(self._shelves[manager]))
+        manager.publish(_tools_message(self._tool_sets[manager]))
 
     def _add(self, manager: VisualizationManager, message: AddTool) -> None:
-        shelf = self._shelves[manager]
+        tool_set = self._tool_sets[manager]
         try:
-            entry = shelf.config.add(message.cls)
+            entry = tool_set.config.add(message.cls)
         except ValueError as error:
             self.context.node.get_logger().warning(str(error))
             return
-        self._announce(shelf, entry)
-        self._changed(manager)
+        self._create_outputs(tool_set, entry)
+        self._publish_tools(manager)
 
-    def _set(self, page: Page, manager: VisualizationManager, message: SetToolProperty) -> None:
-        shelf = self._shelves[manager]
-        entry = shelf.config.find(message.id.partition("/")[0])
+    def _set_property(self, page: Page, manager: VisualizationManager, message: SetToolProperty) -> None:
+        tool_set = self._tool_sets[manager]
+        entry = tool_set.config.find(message.id.partition("/")[0])
         path = entry.properties.find(message.id) if entry else None
         if entry is None or path is None:
             return
-        before = entry.properties.get(*path)
+        previous_value = entry.properties.get(*path)
         try:
             entry.properties.check(path, message.value)
-            shelf.config.write_defaults()
+            tool_set.config.write_defaults()
             value = entry.properties.set(path, message.value)
             if path[0] == _TOPIC:
-                self._announce(shelf, entry)
+                self._create_outputs(tool_set, entry)
         except (ValueError, InvalidTopicNameError) as error:
             self.context.node.get_logger().warning(f"{tool_name(entry.cls)}: {error}")
-            entry.properties.set(path, before)
-            page.send(ToolPropertyChanged(message.id, before))
+            entry.properties.set(path, previous_value)
+            page.send(ToolPropertyChanged(message.id, previous_value))
             return
         manager.edited()
         manager.publish(ToolPropertyChanged(message.id, value))
 
     # --- publishers and messages ---------------------------------------------------------------------------------
 
-    def _announce(self, shelf: _ToolSet, entry: ToolEntry) -> None:
-        """Create a tool's publisher or goal sender for its current topic, and destroy the former one."""
-        kind = TOOL_KINDS.get(entry.cls)
-        if kind is not None and kind.action is not None:
-            from linkwright.panels.goals import GoalSender  # few configurations use it
+    def _create_outputs(self, tool_set: _ToolSet, entry: ToolEntry) -> None:
+        """Create the publisher or goal sender of a tool for its current topic, and destroy the previous one."""
+        tool_kind = TOOL_KINDS.get(entry.cls)
+        if tool_kind is not None and tool_kind.action is not None:
+            from linkwright.panels.goals import GoalSender  # imported here, because few configurations use it
 
-            shelf.goals[entry.id] = GoalSender(self.context.node, *kind.action)
-        if kind is None or kind.publishes is None:
+            tool_set.goals[entry.id] = GoalSender(self.context.node, *tool_kind.action)
+        if tool_kind is None or tool_kind.publishes is None:
             return
         topic = entry.properties.text(_TOPIC).strip()
         if not topic:
-            self._withdraw(shelf, entry.id)
+            self._destroy_outputs(tool_set, entry.id)
             return
-        made: Publisher[Any] = self.context.node.create_publisher(kind.publishes, topic, qos_of(entry.properties))
-        self._withdraw(shelf, entry.id)
-        shelf.publishers[entry.id] = made
+        publisher: Publisher[Any] = self.context.node.create_publisher(
+            tool_kind.publishes, topic, qos_of(entry.properties)
+        )
+        self._destroy_outputs(tool_set, entry.id)
+        tool_set.publishers[entry.id] = publisher
 
-    def _withdraw(self, shelf: _ToolSet, identity: str) -> None:
-        publisher = shelf.publishers.pop(identity, None)
+    def _destroy_outputs(self, tool_set: _ToolSet, identity: str) -> None:
+        publisher = tool_set.publishers.pop(identity, None)
         if publisher is not None:
             self.context.node.destroy_publisher(publisher)
-        goals = shelf.goals.pop(identity, None)
-        if goals is not None:
-            goals.destroy()
+        goal_sender = tool_set.goals.pop(identity, None)
+        if goal_sender is not None:
+            goal_sender.destroy()
 
-    def _find(
+    def _find_with_publisher(
         self, manager: VisualizationManager, identity: str, classes: Collection[str]
     ) -> tuple[ToolEntry, Publisher[Any]] | None:
         """Return a tool and its publisher, or None if the tool has no publisher or another class."""
-        shelf = self._shelves[manager]
-        entry, publisher = shelf.config.find(identity), shelf.publishers.get(identity)
+        tool_set = self._tool_sets[manager]
+        entry, publisher = tool_set.config.find(identity), tool_set.publishers.get(identity)
         return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
 
-    def _publish_pose(self, manager: VisualizationManager, chosen: PoseChosen) -> None:
-        place = (chosen.x, chosen.y, 0.0, 0.0, 0.0, math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2))
-        goals = self._shelves[manager].goals.get(chosen.tool)
-        if goals is not None:
-            message, known = self._stamped(manager, _POSE, place)
-            self._log_pose("goal", message.header, _fill(message.pose, known), known)
+    def _publish_pose(self, manager: VisualizationManager, choice: PoseChosen) -> None:
+        fixed_pose = (choice.x, choice.y, 0.0, 0.0, 0.0, math.sin(choice.yaw / 2), math.cos(choice.yaw / 2))
+        goal_sender = self._tool_sets[manager].goals.get(choice.tool)
+        if goal_sender is not None:
+            message, header_pose = self._stamped_message(manager, _POSE, fixed_pose)
+            self._log_pose("goal", message.header, _fill_pose(message.pose, header_pose), header_pose)
             from linkwright.page.protocol.navigation import GoalOutcome
 
-            goals.send(message, lambda reason: manager.publish(GoalOutcome(reason, failed=True)))
+            goal_sender.send(message, lambda reason: manager.publish(GoalOutcome(reason, failed=True)))
             return
-        found = self._find(manager, chosen.tool, _POSE_TOOLS)
-        if found is None:
+        tool_and_publisher = self._find_with_publisher(manager, choice.tool, _POSE_TOOLS)
+        if tool_and_publisher is None:
             return
-        entry, publisher = found
-        message, known = self._stamped(manager, TOOL_KINDS[entry.cls].publishes, place)
+        entry, publisher = tool_and_publisher
+        message, header_pose = self._stamped_message(manager, TOOL_KINDS[entry.cls].publishes, fixed_pose)
         pose = message.pose
         if entry.cls == _INITIAL_POSE:
             for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
                 message.pose.covariance[index] = entry.properties.number(f"Covariance {axis}")
             pose = message.pose.pose
-        self._log_pose(_POSE_TOOLS[entry.cls], message.header, _fill(pose, known), known)
+        self._log_pose(_POSE_TOOLS[entry.cls], message.header, _fill_pose(pose, header_pose), header_pose)
         publisher.publish(message)
 
     def _log_pose(self, kind: str, header: Any, pose: Any, place: list[float]) -> None:
@@ -282,29 +284,33 @@ class ToolsFeature(PageFeature):
             f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(place):g}"
         )
 
-    def _publish_point(self, manager: VisualizationManager, chosen: PointChosen) -> None:
-        found = self._find(manager, chosen.tool, (_POINT_TOOL,))
-        if found is None:
+    def _publish_point(self, manager: VisualizationManager, choice: PointChosen) -> None:
+        tool_and_publisher = self._find_with_publisher(manager, choice.tool, (_POINT_TOOL,))
+        if tool_and_publisher is None:
             return
-        entry, publisher = found
-        kind = TOOL_KINDS[entry.cls].publishes
-        message, place = self._stamped(manager, kind, (chosen.x, chosen.y, chosen.z, 0.0, 0.0, 0.0, 1.0))
-        message.point.x, message.point.y, message.point.z = place[:3]
+        entry, publisher = tool_and_publisher
+        message_type = TOOL_KINDS[entry.cls].publishes
+        message, header_pose = self._stamped_message(
+            manager, message_type, (choice.x, choice.y, choice.z, 0.0, 0.0, 0.0, 1.0)
+        )
+        message.point.x, message.point.y, message.point.z = header_pose[:3]
         publisher.publish(message)
 
-    def _stamped(self, manager: VisualizationManager, kind: str | None, pose: Transform) -> tuple[Any, list[float]]:
-        """Return a message with a header, and the pose in the frame of that header.
+    def _stamped_message(
+        self, manager: VisualizationManager, kind: str | None, pose: Transform
+    ) -> tuple[Any, list[float]]:
+        """Return a message with a header, and the given pose in the frame of the header.
 
-        The given pose is in the Fixed Frame. The caller writes the returned pose to the message.
+        The given pose is in the Fixed Frame. The caller must write the returned pose to the message.
         """
         assert kind is not None
         message = get_message(kind)()
-        message.header.frame_id, place = self.context.transforms.known(manager.fixed_frame, pose)
+        message.header.frame_id, header_pose = self.context.transforms.known(manager.fixed_frame, pose)
         message.header.stamp = self.context.node.get_clock().now().to_msg()
-        return message, place.tolist()
+        return message, header_pose.tolist()
 
 
-def _fill(pose: Any, place: list[float]) -> Any:
+def _fill_pose(pose: Any, place: list[float]) -> Any:
     """Write a position and a quaternion to a geometry_msgs/msg/Pose, and return the message."""
     pose.position.x, pose.position.y, pose.position.z = place[:3]
     pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
@@ -315,11 +321,11 @@ def _angle(pose: list[float]) -> float:
     return 2 * math.atan2(pose[5], pose[6])
 
 
-def _tools_message(shelf: _ToolSet) -> Tools:
+def _tools_message(tool_set: _ToolSet) -> Tools:
     return Tools(
         [
             Tool(entry.id, entry.cls, tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())
-            for entry in shelf.config.entries
+            for entry in tool_set.config.entries
         ],
         [ToolClass(cls, kind.name) for cls, kind in TOOL_KINDS.items()],
     )

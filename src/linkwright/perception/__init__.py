@@ -1,1 +1,1 @@
-"""Filters and conversions of sensor data: scans, images and inertial measurements."""
+"""Filter and convert sensor data: scans, images and inertial measurements."""

@@ -1,4 +1,4 @@
-"""Estimation of a body's orientation from its gyroscope, accelerometer and magnetometer.
+"""Estimate a body's orientation from its gyroscope, accelerometer and magnetometer.
 
 Orientations are unit quaternions x y z w that rotate vectors from the body to the world. Sources: S. Madgwick, "An
 efficient orientation filter for inertial and inertial/magnetic sensor arrays", 2010; R. Valenti, I. Dryanovski and
@@ -28,9 +28,9 @@ from linkwright.geometry.single import (
 )
 
 GRAVITY = 9.80665
-_FREE_FALL = 1e-3
-"""m/s2, or the same fraction of any field: a smaller vector has no usable direction."""
-_NONE: Quaternion = (0.0, 0.0, 0.0, 1.0)
+_MIN_LENGTH = 1e-3
+"""The minimum length in m/s2, or share of a field, of a vector with a usable direction."""
+_IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class World(Enum):
@@ -46,27 +46,27 @@ class World(Enum):
         return -1.0 if self is World.NED else 1.0
 
 
-def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Quaternion | None:
+def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Quaternion | None:
     """Return the orientation of a body at rest.
 
     Args:
-        acceleration: the reading of the accelerometer, which points away from the earth.
+        acceleration: the reading of the accelerometer at rest, which points up.
         magnetic: the reading of the magnetometer, in any unit; None for an orientation without yaw.
         world: the axes of the world.
 
     Returns:
-        The orientation; None if the measurements have no usable direction.
+        The orientation of the body in the world; None if the readings have no usable direction.
     """
     x, y, z = (value * world.up for value in acceleration)
-    if hypot(x, y, z) < _FREE_FALL:
+    if hypot(x, y, z) < _MIN_LENGTH:
         return None
     if magnetic is None:
         return quaternion_from_rpy((atan2(y, z), atan2(-x, hypot(y, z)), 0.0))
-    up = _unit(acceleration)
+    up = _normalize(acceleration)
     east = cross(magnetic, up)
-    if hypot(*east) < _FREE_FALL * hypot(*magnetic) or not hypot(*magnetic):
+    if hypot(*east) < _MIN_LENGTH * hypot(*magnetic) or not hypot(*magnetic):
         return None
-    east = _unit(east)
+    east = _normalize(east)
     north = cross(up, east)
     axes = {
         World.ENU: (east, north, up),
@@ -79,10 +79,10 @@ def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Q
 
 @dataclass(slots=True)
 class MadgwickFilter:
-    """Integrates the gyroscope, and corrects by gradient descent towards accelerometer and magnetometer (Madgwick).
+    """Integrates the gyroscope, and corrects by gradient descent on the error of the other sensors (Madgwick).
 
     Attributes:
-        gain: the step of the gradient descent per second, in rad/s.
+        gain: the size of the correction, in rad/s.
         zeta: the rate at which the gyroscope's drift is learnt, in rad/s per second.
         world: the axes of the world.
         orientation: the orientation of the body in the world.
@@ -92,66 +92,68 @@ class MadgwickFilter:
     gain: float = 0.1
     zeta: float = 0.0
     world: World = World.ENU
-    orientation: Quaternion = _NONE
+    orientation: Quaternion = _IDENTITY
     drift: Vector3 = (0.0, 0.0, 0.0)
 
     def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None:
-        """Update the orientation by a measurement.
+        """Update the orientation with a measurement.
 
         Args:
             rates: the angular velocity, in rad/s.
             acceleration: the acceleration, in m/s2.
             magnetic: the magnetic field, in any unit; None if it is not measured.
-            seconds: the seconds since the last call.
+            seconds: the seconds since the previous measurement.
         """
-        slope = self._slope(acceleration, magnetic)
-        if self.zeta and slope is not None:
-            x, y, z, _ = quaternion_multiply(quaternion_inverse(self.orientation), slope)
-            self.drift = _sum(self.drift, (x, y, z), 2.0 * self.zeta * seconds)
-        rates = _sum(rates, self.drift, -1.0)
-        change = _scaled4(quaternion_multiply(self.orientation, (*rates, 0.0)), 0.5)
-        if slope is not None:
-            change = _sum4(change, slope, -self.gain)
-        self.orientation = normalized(*_sum4(self.orientation, change, seconds))
+        gradient = self._gradient(acceleration, magnetic)
+        if self.zeta and gradient is not None:
+            x, y, z, _ = quaternion_multiply(quaternion_inverse(self.orientation), gradient)
+            self.drift = _add_scaled(self.drift, (x, y, z), 2.0 * self.zeta * seconds)
+        rates = _add_scaled(rates, self.drift, -1.0)
+        change = _scale_quaternion(quaternion_multiply(self.orientation, (*rates, 0.0)), 0.5)
+        if gradient is not None:
+            change = _add_scaled_quaternion(change, gradient, -self.gain)
+        self.orientation = normalized(*_add_scaled_quaternion(self.orientation, change, seconds))
 
-    def _slope(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
-        """Return the direction in which the error grows.
+    def _gradient(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
+        """Return the normalised gradient of the error of the orientation.
 
-        Returns None if the error is zero or there is no reference.
+        Return None if the error is zero or the acceleration has no usable direction.
         """
-        if hypot(*acceleration) < _FREE_FALL:
+        if hypot(*acceleration) < _MIN_LENGTH:
             return None
-        slope = self._slope_of((0.0, 0.0, self.world.up), _unit(acceleration))
+        gradient = self._gradient_of((0.0, 0.0, self.world.up), _normalize(acceleration))
         if magnetic is not None and hypot(*magnetic) > 0.0:
-            seen = _unit(magnetic)
-            x, y, z = rotate(self.orientation, seen)
-            level = hypot(x, y)
-            north = (0.0, level, z) if self.world is World.ENU else (level, 0.0, z)
-            slope = _sum4(slope, self._slope_of(north, seen), 1.0)
-        length = sqrt(sum(value * value for value in slope))
-        return _scaled4(slope, 1.0 / length) if length > 1e-12 else None
+            reading = _normalize(magnetic)
+            x, y, z = rotate(self.orientation, reading)
+            horizontal = hypot(x, y)
+            north = (0.0, horizontal, z) if self.world is World.ENU else (horizontal, 0.0, z)
+            gradient = _add_scaled_quaternion(gradient, self._gradient_of(north, reading), 1.0)
+        norm = sqrt(sum(value * value for value in gradient))
+        return _scale_quaternion(gradient, 1.0 / norm) if norm > 1e-12 else None
 
-    def _slope_of(self, direction: Vector3, seen: Vector3) -> Quaternion:
-        """Return the gradient of half the squared difference between a world direction in the body frame and `seen`.
+    def _gradient_of(self, direction: Vector3, reading: Vector3) -> Quaternion:
+        """Return the gradient of half the squared difference of a world direction, in the body frame, from its reading.
 
         A small change of the orientation q by dq changes the predicted reading, q* d q, by dq* d q + q* d dq; its
         product with the difference e is that of dq with -2 d q e.
         """
         x, y, z = rotate(quaternion_inverse(self.orientation), direction)
-        difference = (x - seen[0], y - seen[1], z - seen[2], 0.0)
-        return _scaled4(quaternion_multiply(quaternion_multiply((*direction, 0.0), self.orientation), difference), -2.0)
+        difference = (x - reading[0], y - reading[1], z - reading[2], 0.0)
+        return _scale_quaternion(
+            quaternion_multiply(quaternion_multiply((*direction, 0.0), self.orientation), difference), -2.0
+        )
 
 
 @dataclass(slots=True)
 class ComplementaryFilter:
-    """Integrates the gyroscope, and corrects by a fraction of the error.
+    """Integrates the gyroscope, and corrects a fraction of the error that the other sensors show.
 
     The world axes are north, west, up.
 
     Attributes:
-        gain_acc: the fraction of the error that the accelerometer corrects.
-        gain_mag: the fraction of the error that the magnetometer corrects.
-        bias_alpha: the rate at which the gyroscope's bias is learnt at rest.
+        gain_acc: the fraction of the error that the accelerometer corrects at each measurement, 0 to 1.
+        gain_mag: the fraction of the error that the magnetometer corrects at each measurement, 0 to 1.
+        bias_alpha: the fraction of the difference by which the bias is updated at each measurement at rest, 0 to 1.
         do_bias_estimation: whether the bias is learnt.
         do_adaptive_gain: whether the accelerometer has less weight while the body accelerates.
         orientation: the orientation of the body in the world.
@@ -163,77 +165,77 @@ class ComplementaryFilter:
     bias_alpha: float = 0.01
     do_bias_estimation: bool = True
     do_adaptive_gain: bool = True
-    orientation: Quaternion = _NONE
+    orientation: Quaternion = _IDENTITY
     bias: Vector3 = (0.0, 0.0, 0.0)
     _last_rates: Vector3 = (0.0, 0.0, 0.0)
 
     def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None:
-        """Update the orientation by a measurement; see `MadgwickFilter.update`."""
-        if self.do_bias_estimation and self._rests(rates, acceleration):
-            self.bias = _sum(self.bias, _sum(rates, self.bias, -1.0), self.bias_alpha)
+        """Update the orientation with a measurement; see `MadgwickFilter.update`."""
+        if self.do_bias_estimation and self._is_at_rest(rates, acceleration):
+            self.bias = _add_scaled(self.bias, _add_scaled(rates, self.bias, -1.0), self.bias_alpha)
         self._last_rates = rates
-        turn = scaled(_sum(rates, self.bias, -1.0), seconds)
-        self.orientation = quaternion_multiply(self.orientation, _rotation(turn))
+        rotation_vector = scaled(_add_scaled(rates, self.bias, -1.0), seconds)
+        self.orientation = quaternion_multiply(self.orientation, _rotation_from_vector(rotation_vector))
         length = hypot(*acceleration)
-        if length >= _FREE_FALL:
-            up = rotate(self.orientation, _unit(acceleration))
-            gain = self.gain_acc * (_trust(length) if self.do_adaptive_gain else 1.0)
-            # Rotates the measured up direction to the true one.
-            back = quaternion_inverse(rotation_from_z(up))
-            self.orientation = quaternion_multiply(_part(back, gain), self.orientation)
+        if length >= _MIN_LENGTH:
+            up = rotate(self.orientation, _normalize(acceleration))
+            gain = self.gain_acc * (_acceleration_weight(length) if self.do_adaptive_gain else 1.0)
+            # Rotate the measured up direction to the true one.
+            correction = quaternion_inverse(rotation_from_z(up))
+            self.orientation = quaternion_multiply(_fraction_of_rotation(correction, gain), self.orientation)
         if magnetic is not None and hypot(*magnetic) > 0.0:
             x, y, _ = rotate(self.orientation, magnetic)
             if hypot(x, y) > 0.0:
                 self.orientation = quaternion_multiply(
-                    _rotation((0.0, 0.0, -self.gain_mag * atan2(y, x))), self.orientation
+                    _rotation_from_vector((0.0, 0.0, -self.gain_mag * atan2(y, x))), self.orientation
                 )
         self.orientation = normalized(*self.orientation)
 
-    def _rests(self, rates: Vector3, acceleration: Vector3) -> bool:
+    def _is_at_rest(self, rates: Vector3, acceleration: Vector3) -> bool:
         return (
             abs(hypot(*acceleration) - GRAVITY) <= 0.1
-            and all(abs(now - before) <= 0.01 for now, before in zip(rates, self._last_rates, strict=True))
+            and all(abs(rate - last_rate) <= 0.01 for rate, last_rate in zip(rates, self._last_rates, strict=True))
             and all(abs(now - bias) <= 0.2 for now, bias in zip(rates, self.bias, strict=True))
         )
 
 
-def _trust(length: float) -> float:
+def _acceleration_weight(length: float) -> float:
     """Return the weight of an acceleration: 1 if its length is within 10 % of gravity, 0 beyond 20 %."""
     error = abs(length - GRAVITY) / GRAVITY
     return min(1.0, max(0.0, 2.0 - error / 0.1))
 
 
-def _rotation(turn: Vector3) -> Quaternion:
-    """Return the rotation given by a rotation vector in rad."""
-    angle = hypot(*turn)
+def _rotation_from_vector(rotation_vector: Vector3) -> Quaternion:
+    """Return the rotation that a rotation vector in rad describes."""
+    angle = hypot(*rotation_vector)
     scale = sin(angle / 2.0) / angle if angle > 0.0 else 0.5
-    return turn[0] * scale, turn[1] * scale, turn[2] * scale, cos(angle / 2.0)
+    return rotation_vector[0] * scale, rotation_vector[1] * scale, rotation_vector[2] * scale, cos(angle / 2.0)
 
 
-def _part(rotation: Quaternion, share: float) -> Quaternion:
-    """Return a rotation by a fraction of the angle about the same axis."""
-    x, y, z, w = rotation if rotation[3] >= 0.0 else _scaled4(rotation, -1.0)
+def _fraction_of_rotation(rotation: Quaternion, fraction: float) -> Quaternion:
+    """Return a rotation about the same axis by a fraction of the angle."""
+    x, y, z, w = rotation if rotation[3] >= 0.0 else _scale_quaternion(rotation, -1.0)
     sine = hypot(x, y, z)
     if sine == 0.0:
-        return _NONE
-    angle = 2.0 * atan2(sine, w) * share
-    return _rotation((x / sine * angle, y / sine * angle, z / sine * angle))
+        return _IDENTITY
+    angle = 2.0 * atan2(sine, w) * fraction
+    return _rotation_from_vector((x / sine * angle, y / sine * angle, z / sine * angle))
 
 
-def _unit(vector: Vector3) -> Vector3:
+def _normalize(vector: Vector3) -> Vector3:
     return scaled(vector, 1.0 / hypot(*vector))
 
 
-def _sum(first: Vector3, second: Vector3, factor: float) -> Vector3:
+def _add_scaled(first: Vector3, second: Vector3, factor: float) -> Vector3:
     return first[0] + second[0] * factor, first[1] + second[1] * factor, first[2] + second[2] * factor
 
 
-def _scaled4(quaternion: Quaternion, factor: float) -> Quaternion:
+def _scale_quaternion(quaternion: Quaternion, factor: float) -> Quaternion:
     x, y, z, w = quaternion
     return x * factor, y * factor, z * factor, w * factor
 
 
-def _sum4(first: Quaternion, second: Quaternion, factor: float) -> Quaternion:
+def _add_scaled_quaternion(first: Quaternion, second: Quaternion, factor: float) -> Quaternion:
     return (
         first[0] + second[0] * factor,
         first[1] + second[1] * factor,

@@ -1,1 +1,1 @@
-"""Process-wide functions for arguments, standard streams, Ctrl-C and the event loop."""
+"""Functions for the whole process: arguments, standard streams, Ctrl-C and the event loop."""

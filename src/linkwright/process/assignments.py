@@ -1,4 +1,4 @@
-"""Command-line arguments of the form ``name:=value``, as ROS 2 commands use them."""
+"""Command-line arguments in the form ``name:=value``, which the commands of ROS 2 use."""
 
 from __future__ import annotations
 
@@ -7,44 +7,44 @@ from collections.abc import Callable, Iterable
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 
-# a string, because few commands need the compiled pattern
-_SINGLE_SIGN = r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$"
+# This is a string, because few commands need the compiled pattern.
+_SINGLE_SIGN_PATTERN = r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$"
 
 
-def _malformed(word: str, hint: Phrase) -> Diagnostic:
-    message = phrase("'{word}' is not an argument of the form name:=value", word=word)
+def _malformed_error(argument: str, hint: Phrase) -> Diagnostic:
+    message = phrase("'{word}' is not an argument of the form name:=value", word=argument)
     return Diagnostic("CLI101", message, hint=hint)
 
 
 def parse_assignments(
-    words: Iterable[str], malformed: Callable[[str, Phrase], Diagnostic] = _malformed
+    words: Iterable[str], create_error: Callable[[str, Phrase], Diagnostic] = _malformed_error
 ) -> dict[str, str]:
-    """Parse arguments of the form ``name:=value``, and return the values by name.
+    """Return the values by name of arguments in the form ``name:=value``.
 
-    If a name is repeated, its last value is used.
+    If a name is repeated, the last value counts.
 
     Args:
         words: the arguments.
-        malformed: creates the error for an argument of another form, from the argument and a hint.
+        create_error: returns the error for an argument that does not have this form, given the argument and a hint.
 
     Raises:
-        LinkwrightError: CLI101 by default, with every argument that does not have this form.
+        LinkwrightError: CLI101 by default; it lists all arguments that do not have this form.
     """
     values: dict[str, str] = {}
-    wrong = []
-    for word in words:
-        name, sign, value = word.partition(":=")
-        if sign and name and not name.startswith("-"):
+    errors = []
+    for argument in words:
+        name, separator, value = argument.partition(":=")
+        if separator and name and not name.startswith("-"):
             values[name] = value
         else:
-            wrong.append(malformed(word, _hint(word)))
-    if wrong:
-        raise LinkwrightError(*wrong)
+            errors.append(create_error(argument, _hint(argument)))
+    if errors:
+        raise LinkwrightError(*errors)
     return values
 
 
-def _hint(word: str) -> Phrase:
-    found = re.match(_SINGLE_SIGN, word, re.DOTALL)
-    if found:
-        return phrase("write {name}:={value}", name=found[1], value=found[3])
+def _hint(argument: str) -> Phrase:
+    match = re.match(_SINGLE_SIGN_PATTERN, argument, re.DOTALL)
+    if match:
+        return phrase("write {name}:={value}", name=match[1], value=match[3])
     return phrase("write arguments as name:=value")

@@ -1,8 +1,8 @@
-"""Runs a coroutine as ``asyncio.run`` does since Python 3.11, with a hook before it starts.
+"""Runs a coroutine as ``asyncio.run`` does since Python 3.11, with a callback before it starts.
 
-The hook is called after the loop is created, because a loop that is interrupted during its creation prints an error.
-Ctrl-C cancels the coroutine. If KeyboardInterrupt were raised anywhere else, it could abort an import, and on Python
-3.10 the import lock would remain locked for other threads that import the same module.
+The callback is called when the loop exists, because a loop that is interrupted while it is created prints an error.
+Ctrl-C cancels the coroutine. Elsewhere, a KeyboardInterrupt could abort an import. On Python 3.10, the import lock
+would then remain locked for other threads that import the same module.
 """
 
 from __future__ import annotations
@@ -17,44 +17,44 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 
-def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
+def run_coroutine(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], object]) -> T:
     """Run a coroutine on a new event loop, and return its result.
 
     Args:
-        make: returns the coroutine.
-        ready: called after the loop is created and before the coroutine starts; from then on KeyboardInterrupt may be
+        create: returns the coroutine.
+        on_ready: called when the loop exists, before the coroutine starts. From then on, KeyboardInterrupt may be
             raised.
 
     Raises:
-        KeyboardInterrupt: Ctrl-C was pressed, and the coroutine was cancelled.
+        KeyboardInterrupt: the user pressed Ctrl-C, which cancelled the coroutine.
     """
     if sys.version_info >= (3, 11):
         with asyncio.Runner() as runner:
             runner.get_loop()
-            ready()
-            return runner.run(make())
+            on_ready()
+            return runner.run(create())
     else:
-        return _run(make, ready)
+        return _run(create, on_ready)
 
 
-def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
-    """Run a coroutine as `asyncio.Runner` does, which Python 3.10 lacks."""
+def _run(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], object]) -> T:
+    """Run a coroutine like `asyncio.Runner`, which Python 3.10 does not have."""
     loop = asyncio.new_event_loop()
     try:
         asyncio.set_event_loop(loop)
-        ready()
-        main = loop.create_task(make())
-        interruptions = _Interruptions(loop, main)
+        on_ready()
+        task = loop.create_task(create())
+        interruptions = _Interruptions(loop, task)
         with interruptions:
             try:
-                return loop.run_until_complete(main)
+                return loop.run_until_complete(task)
             except asyncio.CancelledError:
                 if interruptions.count:
                     raise KeyboardInterrupt from None
                 raise
     finally:
         try:
-            _cancel_the_rest(loop)
+            _cancel_remaining(loop)
             loop.run_until_complete(loop.shutdown_asyncgens())
             loop.run_until_complete(loop.shutdown_default_executor())
         finally:
@@ -63,26 +63,26 @@ def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]
 
 
 class _Interruptions:
-    """A context in which the first Ctrl-C cancels a task; later ones raise KeyboardInterrupt.
+    """A context in which the first Ctrl-C cancels a task, and each later one raises KeyboardInterrupt.
 
-    The context has no effect if SIGINT has another handler, or in a thread other than the main thread.
+    The context has no effect if SIGINT has another handler, or outside of the main thread.
     """
 
-    def __init__(self, loop: asyncio.AbstractEventLoop, main: asyncio.Task[Any]) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, task: asyncio.Task[Any]) -> None:
         self.count = 0
         self._loop = loop
-        self._main = main
+        self._main = task
 
     def __enter__(self) -> None:
-        self._is_ours = (
+        self._is_installed = (
             threading.current_thread() is threading.main_thread()
             and signal.getsignal(signal.SIGINT) is signal.default_int_handler
         )
-        if self._is_ours:
+        if self._is_installed:
             signal.signal(signal.SIGINT, self._handle)
 
     def __exit__(self, *_: object) -> None:
-        if self._is_ours and signal.getsignal(signal.SIGINT) == self._handle:
+        if self._is_installed and signal.getsignal(signal.SIGINT) == self._handle:
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def _handle(self, _number: int, _frame: object) -> None:
@@ -93,12 +93,12 @@ class _Interruptions:
         self._loop.call_soon_threadsafe(lambda: None)  # wake the loop, which may be waiting only for files
 
 
-def _cancel_the_rest(loop: asyncio.AbstractEventLoop) -> None:
-    rest = asyncio.all_tasks(loop)
-    for task in rest:
+def _cancel_remaining(loop: asyncio.AbstractEventLoop) -> None:
+    remaining_tasks = asyncio.all_tasks(loop)
+    for task in remaining_tasks:
         task.cancel()
-    if rest:
-        loop.run_until_complete(asyncio.gather(*rest, return_exceptions=True))
-    for task in rest:
+    if remaining_tasks:
+        loop.run_until_complete(asyncio.gather(*remaining_tasks, return_exceptions=True))
+    for task in remaining_tasks:
         if not task.cancelled() and task.exception() is not None:
             loop.call_exception_handler({"message": "a task failed while the loop ended", "task": task})

@@ -1,6 +1,6 @@
-"""Handles Ctrl-C, including while a program is still being imported.
+"""Handles Ctrl-C, also while a program is still being imported.
 
-During the imports, no ``except KeyboardInterrupt`` is active yet. This module imports almost nothing, so that it takes
+During the imports, no ``except KeyboardInterrupt`` is active yet. This module imports very little, so that it takes
 effect early.
 """
 
@@ -28,72 +28,72 @@ if TYPE_CHECKING:
 
 
 INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C ended: 128 and the number of SIGINT, as in shells."""
+"""The exit status of a program that Ctrl-C ended: 128 plus the number of SIGINT, as in shells."""
 
-_SOON_SECONDS = 0.01
+_DELAY_SECONDS = 0.01
 
 
-def end_at_once() -> None:
-    """Make SIGINT (Ctrl-C) end the process silently, while there is nothing to clean up.
+def end_on_interrupt() -> None:
+    """Make SIGINT (Ctrl-C) end the process silently, as long as there is nothing to clean up.
 
-    This also applies if the process was started with SIGINT ignored. Scripts do so for every program that they start
-    with ``&``, and later use ``kill -INT`` to end the program. ROS's programs obey this signal as well, because
-    rclpy and rclcpp always install handlers.
+    This also applies if the process was started with SIGINT ignored. Scripts do this for every program that they start
+    with ``&``, and later end it with ``kill -INT``. The programs of ROS also end on this signal, because rclpy and
+    rclcpp always install handlers.
     """
     if _signal.getsignal(_signal.SIGINT) in (_signal.default_int_handler, _signal.SIG_IGN):
-        _signal.signal(_signal.SIGINT, _end)
+        _signal.signal(_signal.SIGINT, _handle_interrupt)
 
 
 def raise_interrupts() -> None:
     """Make Ctrl-C raise KeyboardInterrupt again, so that code can handle it."""
-    if _signal.getsignal(_signal.SIGINT) is _end:
+    if _signal.getsignal(_signal.SIGINT) is _handle_interrupt:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
-        when_lost(lambda: signal_again(_signal.SIGINT))
+        on_lost_interrupt(lambda: signal_again(_signal.SIGINT))
 
 
-def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
-    """Call a function for each KeyboardInterrupt that Python discards.
+def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
+    """Register a function that is called for each KeyboardInterrupt that Python discards.
 
     Python discards a KeyboardInterrupt, with a message, if it is raised in a destructor or in the callback of a weak
-    reference. Imports run these frequently, and no code can catch the exception.
+    reference. Both run frequently during imports, and no code can catch the exception.
 
     Args:
-        deliver: the function, which a new thread calls shortly afterwards to send the signal again.
+        deliver: the function, which a new thread calls after a short delay to send the signal again.
 
     Returns:
-        The previous ``sys.unraisablehook``.
+        The previous value of ``sys.unraisablehook``.
     """
-    before = sys.unraisablehook
+    previous_hook = sys.unraisablehook
 
     def later() -> None:
-        time.sleep(_SOON_SECONDS)
+        time.sleep(_DELAY_SECONDS)
         deliver()
 
-    def hook(dropped: Any) -> None:
-        if issubclass(dropped.exc_type, KeyboardInterrupt):
+    def hook(unraisable: Any) -> None:
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
             _thread.start_new_thread(later, ())
         else:
-            before(dropped)
+            previous_hook(unraisable)
 
     sys.unraisablehook = hook
-    return before
+    return previous_hook
 
 
-def signal_again(number: int) -> None:
-    """Send a signal to this process, so that the main thread handles it like an external signal."""
+def signal_again(signal_number: int) -> None:
+    """Send a signal to this process, so that the main thread handles it like a signal from outside."""
     if sys.platform == "win32":
-        _thread.interrupt_main(number)  # on this system, ``os.kill`` would end the process
+        _thread.interrupt_main(signal_number)  # on this system, ``os.kill`` would end the process
     else:
-        os.kill(os.getpid(), number)
+        os.kill(os.getpid(), signal_number)
 
 
 def interrupt(process: Interruptible) -> None:
-    """Request another process to end, as Ctrl-C does; on Windows, terminate the process."""
+    """Ask another process to end, as Ctrl-C does; on Windows, terminate the process."""
     if sys.platform == "win32":
         process.terminate()
     else:
         process.send_signal(_signal.SIGINT)
 
 
-def _end(_number: int, _frame: object) -> None:
+def _handle_interrupt(_number: int, _frame: object) -> None:
     os._exit(INTERRUPTED)

@@ -1,7 +1,7 @@
-"""Makes the standard streams write any text completely, in any locale.
+"""Makes the standard streams accept any text and write it completely, in any locale.
 
-Descriptions are UTF-8 and can contain names in any script, and messages can be Chinese, but Western editions of Windows
-write files and pipes in code page 1252. This module imports little, because short commands load it.
+Descriptions are UTF-8 and can contain names in any script, and messages can be in Chinese. Western editions of
+Windows, however, write files and pipes in code page 1252. This module imports little, because short commands load it.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-class _WholeWrites(io.RawIOBase):
-    """An unbuffered file that writes all given bytes, or raises OSError."""
+class _CompleteWriter(io.RawIOBase):
+    """A raw stream that writes all of the data, or raises OSError."""
 
     def __init__(self, raw: io.RawIOBase) -> None:
         self._raw = raw
@@ -32,39 +32,41 @@ class _WholeWrites(io.RawIOBase):
         return self._raw.fileno()
 
     def write(self, data: Any, /) -> int:
-        rest = memoryview(data).cast("B")
-        size = len(rest)
-        while rest:
-            taken = self._raw.write(rest)
-            if taken is None:
+        remaining = memoryview(data).cast("B")
+        size = len(remaining)
+        while remaining:
+            written_size = self._raw.write(remaining)
+            if written_size is None:
                 raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
-            rest = rest[taken:]
+            remaining = remaining[written_size:]
         return size
 
 
 def _write_completely() -> None:
-    """Make unbuffered standard output raise an error if the disk is full.
+    """Make an unbuffered standard output raise an error if the disk is full.
 
     Standard output is unbuffered with ``python -u`` or ``PYTHONUNBUFFERED``. If the disk is full, a write to such a
-    stream may write only a part of the data, and Python discards the rest.
+    stream may write only a part of the data, and Python discards the remaining part.
     """
-    out = sys.stdout
-    if isinstance(out, io.TextIOWrapper) and isinstance(out.buffer, io.FileIO):
-        sys.stdout = io.TextIOWrapper(_WholeWrites(out.buffer), out.encoding, out.errors, write_through=True)
+    stdout = sys.stdout
+    if isinstance(stdout, io.TextIOWrapper) and isinstance(stdout.buffer, io.FileIO):
+        sys.stdout = io.TextIOWrapper(
+            _CompleteWriter(stdout.buffer), stdout.encoding, stdout.errors, write_through=True
+        )
 
 
 def accept_any_text() -> None:
-    """Make the standard streams write any text, and write it completely.
+    """Make the standard streams accept any text, and write it completely.
 
-    Files and pipes use UTF-8, like description files, and like Python from 3.15 on (PEP 686). A character that a
-    terminal cannot display is written as an escape sequence, as with an encoding in ``PYTHONIOENCODING``.
+    Files and pipes use UTF-8, as description files do, and as Python does from 3.15 on (PEP 686). A character that a
+    terminal cannot display is written as an escape sequence. The encoding in ``PYTHONIOENCODING`` takes precedence.
     """
     _write_completely()
-    chosen = bool(os.environ.get("PYTHONIOENCODING"))
+    has_chosen_encoding = bool(os.environ.get("PYTHONIOENCODING"))
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if not isinstance(stream, io.TextIOWrapper) or stream.encoding.lower().replace("-", "") == "utf8":
             continue
-        if not chosen and not stream.isatty():
+        if not has_chosen_encoding and not stream.isatty():
             stream.reconfigure(encoding="utf-8", errors=stream.errors)
         elif stream is not sys.stdin:
             stream.reconfigure(errors="backslashreplace")

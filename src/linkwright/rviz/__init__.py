@@ -19,4 +19,4 @@ __getattr__ = deferred(
         "robot": ("has_visuals", "size_of"),
     },
 )
-"""Deferred, so that the server can serve the page while the rest is loaded."""
+"""Loads a name on first use, so that the server can serve the page before this package is loaded."""

@@ -23,8 +23,8 @@ from linkwright.rviz.frames.history import FrameHistory
 class PublishedTopics:
     """The topics that the nodes of a graph publish, except those of the viewer's own node.
 
-    The lookup is cached: displays without messages check every second why there are none, and a configuration can have
-    hundreds of displays.
+    The lookup is cached: each display without messages checks every second why there are none, and a configuration can
+    have hundreds of displays.
 
     Args:
         node: the viewer's node.
@@ -32,8 +32,8 @@ class PublishedTopics:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._is_current = False
-        self._watches = False
+        self._is_up_to_date = False
+        self._is_watching = False
         self._publishers: dict[str, list[tuple[str, str]]] = {}
         self._topics: dict[str, list[str]] = {}
 
@@ -49,41 +49,41 @@ class PublishedTopics:
         self._look()
         return self._publishers.get(name, [])
 
-    def of_type(self, message: str) -> list[str]:
+    def topics_of_type(self, message: str) -> list[str]:
         """Return the names of the topics that are published with a message type, sorted."""
         self._look()
         return self._topics.get(message, [])
 
     def close(self) -> None:
         """Stop watching the graph."""
-        if self._watches:
-            self._node.graph.unwatch(self._changed)
-            self._watches = False
+        if self._is_watching:
+            self._node.graph.unwatch(self._on_graph_change)
+            self._is_watching = False
 
-    def _changed(self) -> None:
-        self._is_current = False
+    def _on_graph_change(self) -> None:
+        self._is_up_to_date = False
 
     def _look(self) -> None:
-        if not self._watches:
-            self._watches = True
-            self._node.graph.watch(self._changed)
-        if self._is_current:
+        if not self._is_watching:
+            self._is_watching = True
+            self._node.graph.watch(self._on_graph_change)
+        if self._is_up_to_date:
             return
-        self._is_current = True  # set first, so that a change during the lookup triggers another lookup
+        self._is_up_to_date = True  # set first, so that a change during the lookup triggers another lookup
         publishers: dict[str, list[tuple[str, str]]] = {}
         topics: dict[str, set[str]] = {}
-        own = self._node.get_name()
+        own_name = self._node.get_name()
         for publisher in self._node.graph.publishers():
-            node = (publisher.node or UNKNOWN_NODE).name
-            if node != own:
-                publishers.setdefault(publisher.name, []).append((node, publisher.type_name))
+            node_name = (publisher.node or UNKNOWN_NODE).name
+            if node_name != own_name:
+                publishers.setdefault(publisher.name, []).append((node_name, publisher.type_name))
                 topics.setdefault(publisher.type_name, set()).add(publisher.name)
         self._publishers = publishers
         self._topics = {message: sorted(names) for message, names in topics.items()}
 
 
 _QUIET = 0.1
-"""Seconds to collect changes: a node that starts creates dozens of endpoints."""
+"""Seconds for which changes are collected before callbacks are called; a starting node creates dozens of endpoints."""
 
 
 class GraphChanges:
@@ -99,23 +99,23 @@ class GraphChanges:
         self._loop = asyncio.get_running_loop()
         self._due: asyncio.TimerHandle | None = None
 
-    def watch(self, changed: Callable[[], None]) -> None:
+    def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for changes, which is called on the event loop."""
         if not self._listeners:
-            self._graph.watch(self._changed)
-        self._listeners[changed] = None
+            self._graph.watch(self._on_graph_change)
+        self._listeners[callback] = None
 
-    def unwatch(self, changed: Callable[[], None]) -> None:
+    def unwatch(self, callback: Callable[[], None]) -> None:
         """Unregister a callback that was passed to `watch`."""
-        self._listeners.pop(changed, None)
+        self._listeners.pop(callback, None)
         if not self._listeners:
-            self._graph.unwatch(self._changed)
+            self._graph.unwatch(self._on_graph_change)
             if self._due is not None:
                 self._due.cancel()
                 self._due = None
 
-    def _changed(self) -> None:
-        with suppress(RuntimeError):  # after the loop was closed, nothing needs the change
+    def _on_graph_change(self) -> None:
+        with suppress(RuntimeError):  # the loop is closed, so that no callback can be called
             self._loop.call_soon_threadsafe(self._wait)
 
     def _wait(self) -> None:
@@ -124,20 +124,20 @@ class GraphChanges:
 
     def _notify(self) -> None:
         self._due = None
-        for changed in tuple(self._listeners):
-            if changed in self._listeners:
-                changed()
+        for callback in tuple(self._listeners):
+            if callback in self._listeners:
+                callback()
 
 
 class HeldTime:
     """Holds the viewer's clock at a past time while the history is shown.
 
     Attributes:
-        switching: whether the clock is just being held or released, in which case displays must not reset.
+        switching: whether the clock is being held or released right now; displays must not reset then.
     """
 
     def __init__(self) -> None:
-        self._held = False
+        self._is_held = False
         self.switching = False
 
     def show(self, clock: ROSClock, now_ns: int) -> bool:
@@ -145,17 +145,17 @@ class HeldTime:
 
         Return False, without holding the clock, if the clock follows simulated time.
         """
-        if clock.ros_time_is_active and not self._held:
+        if clock.ros_time_is_active and not self._is_held:
             return False
         clock.override(now_ns)
-        self._held = True
+        self._is_held = True
         self._switch(clock, held=True)
         return True
 
     def release(self, clock: ROSClock) -> None:
         """Make the clock return the current time again, if it was held."""
-        if self._held:
-            self._held = False
+        if self._is_held:
+            self._is_held = False
             self._switch(clock, held=False)
 
     def _switch(self, clock: ROSClock, *, held: bool) -> None:
@@ -173,7 +173,7 @@ class ViewerContext:
     Attributes:
         node: the viewer's node, for subscriptions and logging.
         library: reads descriptions, each of them once per process.
-        finder: finds packages.
+        finder: finds packages and the files in them.
         pages: the group of all open pages.
         transforms: the history of transforms, from which poses at the time of a message are computed.
         graph_changes: notifies callbacks when nodes or endpoints appear or disappear.
@@ -200,9 +200,9 @@ class ViewerContext:
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Log a finding in the terminal, as an error or a warning."""
-        where = f"{diagnostic.span}: " if diagnostic.span else ""
+        location = f"{diagnostic.span}: " if diagnostic.span else ""
         logger = self.node.get_logger()
         if diagnostic.severity is Severity.ERROR:  # two calls, because a logger identifies calls by line
-            logger.error(where + diagnostic.message)
+            logger.error(location + diagnostic.message)
         else:
-            logger.warning(where + diagnostic.message)
+            logger.warning(location + diagnostic.message)

@@ -22,42 +22,42 @@ def lights_of(world: World) -> list[LightScene]:
     Args:
         world: the world, with its includes resolved.
     """
-    return [*_of_world(world), *_of_links(world)]
+    return [*_world_lights(world), *_link_lights(world)]
 
 
-def _of_world(world: World) -> Iterator[LightScene]:
+def _world_lights(world: World) -> Iterator[LightScene]:
     frames = Frames(world)
     for light in world.lights:
         if light.light_on and (not light.pose.relative_to or light.pose.relative_to in frames):
             yield _light(light, None, frames.placed(light.pose))
 
 
-def _of_links(world: World) -> Iterator[LightScene]:
+def _link_lights(world: World) -> Iterator[LightScene]:
     try:
         links = list(placed_links(world))
     except FrameError:
         return
-    for placed in links:
-        for light in placed.link.lights:
+    for placed_link in links:
+        for light in placed_link.link.lights:
             if light.light_on:
-                yield _light(light, placed.name, placed.frames.in_link(light.pose, placed.link.name))
+                yield _light(light, placed_link.name, placed_link.frames.in_link(light.pose, placed_link.link.name))
 
 
 def _light(light: Light, link: str | None, pose: Transform) -> LightScene:
     x, y, z = rotate(pose[3:], light.direction)
     length = (x * x + y * y + z * z) ** 0.5
-    found = LightScene(
+    scene = LightScene(
         kind=light.type,  # type: ignore[arg-type]  # the reader accepts no other words
         link=link,
         position=list(pose[:3]),
         direction=[x / length, y / length, z / length] if length > 0.0 else list(_DOWN),
-        color=[light.intensity * part for part in light.diffuse[:3]],
+        color=[light.intensity * channel for channel in light.diffuse[:3]],
         shadows=light.cast_shadows,
     )
     if light.type != "directional":
-        fading = light.attenuation
-        found.range = fading.range
-        found.fading = [fading.constant, fading.linear, fading.quadratic]
+        attenuation = light.attenuation
+        scene.range = attenuation.range
+        scene.fading = [attenuation.constant, attenuation.linear, attenuation.quadratic]
     if light.type == "spot" and light.spot is not None:
-        found.cone = [light.spot.inner_angle, light.spot.outer_angle]
-    return found
+        scene.cone = [light.spot.inner_angle, light.spot.outer_angle]
+    return scene

@@ -9,16 +9,16 @@ from typing import Any
 from linkwright.graph.parameters.client import AsyncParameterClient
 
 _PATIENCE = 5.0
-"""Seconds for services to appear, and for an answer."""
+"""Seconds to wait for the services to appear, and for each response."""
 
-_LOOK_EVERY = 0.05
+_POLL_INTERVAL = 0.05
 
 
 class NoAnswerError(Exception):
-    """Raised when a node did not respond in time; the message names the request."""
+    """Raised when a node does not respond in time; the message names the node."""
 
 
-async def services_ready(client: AsyncParameterClient) -> None:
+async def wait_for_services(client: AsyncParameterClient) -> None:
     """Wait until a node's parameter services are available.
 
     Raises:
@@ -29,7 +29,7 @@ async def services_ready(client: AsyncParameterClient) -> None:
     while not client.services_are_ready():
         if loop.time() > deadline:
             raise NoAnswerError(f"node '{client.remote_node_name}' does not offer its parameters")
-        await asyncio.sleep(_LOOK_EVERY)
+        await asyncio.sleep(_POLL_INTERVAL)
 
 
 async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:

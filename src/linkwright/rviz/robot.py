@@ -19,8 +19,8 @@ import numpy as np
 from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.geometry.arrays import Array, quaternion_from_matrix
-from linkwright.geometry.shapes import Bounds, Placement, bounds_of, placement, union
-from linkwright.geometry.single import quaternion_of
+from linkwright.geometry.shapes import Bounds, Placement, placement, shape_bounds, union
+from linkwright.geometry.single import pose_quaternion
 from linkwright.graph import DurabilityPolicy, MessageInfo
 from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.introspection.graph_queries import UNKNOWN_NODE
@@ -39,41 +39,41 @@ from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, M
 from linkwright.xacro.faults import origin_of
 from linkwright.xmltree import Element
 
-_APART = 1e-6
-"""Frames closer than this are at one place, m."""
+_MIN_DISTANCE = 1e-6
+"""Frames that are closer than this have the same position, in m."""
 
 
 def size_of(robot: Robot) -> ModelSize | None:
     """Return the size of a robot whose joints are at zero, or None if it has no extent.
 
-    The size is computed from the frames of the links, and from visuals and collisions with simple shapes. A page that
-    has read the meshes knows the exact size, but axes are drawn before that.
+    The size is computed from the frames of the links, and from visuals and collisions with simple shapes. A page knows
+    the exact size once it has read the meshes, but draws axes earlier.
     """
     tree = KinematicTree(robot)
-    frames = dict(zip(tree.link_names, map(_placement, tree.forward({})), strict=True))
+    frames = dict(zip(tree.link_names, map(_placement_from_matrix, tree.forward({})), strict=True))
     boxes = [Bounds(frame.position, frame.position) for frame in frames.values()]
-    boxes += [box.moved(frames[name]) for name in frames for box in _simple_shapes(robot, name)]
+    boxes += [box.moved(frames[name]) for name in frames for box in _simple_shape_bounds(robot, name)]
     bounds = union(boxes)
-    if bounds is None or not isfinite(bounds.diagonal) or bounds.diagonal < _APART:
+    if bounds is None or not isfinite(bounds.diagonal) or bounds.diagonal < _MIN_DISTANCE:
         return None
-    steps = [
+    distances = [
         dist(frames[joint.child].position, frames[joint.parent].position)
         for joint in robot.joints.values()
         if joint.child in frames and joint.parent in frames
     ]
-    apart = [step for step in steps if step > _APART]
-    return ModelSize(bounds.diagonal, float(np.median(apart)) if apart else bounds.diagonal)
+    nonzero_distances = [distance for distance in distances if distance > _MIN_DISTANCE]
+    return ModelSize(bounds.diagonal, float(np.median(nonzero_distances)) if nonzero_distances else bounds.diagonal)
 
 
-def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:
+def _simple_shape_bounds(robot: Robot, link: str) -> Iterator[Bounds]:
     """Yield the bounding boxes of a link's shapes other than meshes, in the link's frame."""
-    parts: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)
-    for part in parts:
-        if not isinstance(part.geometry, Mesh):
-            yield bounds_of(part.geometry).moved(placement(part.origin))
+    shapes: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)
+    for shape in shapes:
+        if not isinstance(shape.geometry, Mesh):
+            yield shape_bounds(shape.geometry).moved(placement(shape.origin))
 
 
-def _placement(matrix: Array) -> Placement:
+def _placement_from_matrix(matrix: Array) -> Placement:
     (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = matrix.tolist()
     return Placement(((a, b, c), (d, e, f), (g, h, i)), (x, y, z))
 
@@ -127,10 +127,10 @@ class DescriptionSource:
         self._on_text = on_text
         self._on_refusal = on_refusal
         self._subscriptions: list[Any] = []
-        self._reading: asyncio.Task[None] | None = None
-        self._heard: dict[bytes, EndpointInfo | None] = {}
+        self._reading_task: asyncio.Task[None] | None = None
+        self._publishers: dict[bytes, EndpointInfo | None] = {}
         self.publisher: bytes | None = None
-        """The GID of the publisher of the last description; None before, and for files."""
+        """The GID of the publisher of the last description; None before the first one and for a file."""
 
     def follow(self) -> Phrase | None:
         """Subscribe to the topic or start reading the file that the properties select.
@@ -148,20 +148,20 @@ class DescriptionSource:
             with suppress(ValueError):  # the node may already have been destroyed
                 self._context.node.destroy_subscription(subscription)
         self._subscriptions.clear()
-        self._heard.clear()
+        self._publishers.clear()
         self.publisher = None
-        if self._reading is not None:
-            self._reading.cancel()
-            self._reading = None
+        if self._reading_task is not None:
+            self._reading_task.cancel()
+            self._reading_task = None
 
     def _subscribe(self, topic: str) -> Phrase | None:
         if not topic:
             return phrase("Error subscribing: Empty topic name")
-        asked = qos_of(self._properties, TOPIC)
-        # The file's durability is also used, for publishers that do not offer transient local.
-        profiles = [qos_of(self._properties, TOPIC, lasting=True)]
-        if asked.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
-            profiles.append(asked)
+        requested_qos = qos_of(self._properties, TOPIC)
+        # A second subscription uses the durability of the file, for publishers that do not offer transient local.
+        profiles = [qos_of(self._properties, TOPIC, transient_local=True)]
+        if requested_qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
+            profiles.append(requested_qos)
         try:
             for profile in profiles:
                 self._subscriptions.append(
@@ -176,9 +176,9 @@ class DescriptionSource:
 
         The keys are GIDs; a value consists of the node's name and, if known, its host.
         """
-        if not self._heard:
+        if not self._publishers:
             return {}
-        gids = set(map(self.current, self._heard))
+        gids = set(map(self.current, self._publishers))
         return {
             endpoint.gid: _node_text(endpoint)
             for endpoint in self._context.node.graph.endpoints()
@@ -186,35 +186,40 @@ class DescriptionSource:
         }
 
     def current(self, gid: bytes) -> bytes:
-        """Return the current GID of a publisher that had a GID before.
+        """Return the current GID of a publisher, given a GID that it has or had.
 
         The GIDs of this process's publishers change when the process joins a network.
         """
-        known = self._heard.get(gid)
-        if known is None or not known.local:
+        previous = self._publishers.get(gid)
+        if previous is None or not previous.local:
             return gid
-        now = (
+        candidates = (
             endpoint
             for endpoint in self._context.node.graph.endpoints()
-            if endpoint.local and endpoint.kind is known.kind
+            if endpoint.local and endpoint.kind is previous.kind
         )
         return next(
-            (endpoint.gid for endpoint in now if (endpoint.node, endpoint.name) == (known.node, known.name)), gid
+            (
+                endpoint.gid
+                for endpoint in candidates
+                if (endpoint.node, endpoint.name) == (previous.node, previous.name)
+            ),
+            gid,
         )
 
     def _received(self, message: String, info: MessageInfo) -> None:
         self.publisher = info.publisher_gid
-        if self.publisher not in self._heard:
+        if self.publisher not in self._publishers:
             endpoints = self._context.node.graph.endpoints()
-            self._heard[self.publisher] = next(
+            self._publishers[self.publisher] = next(
                 (endpoint for endpoint in endpoints if endpoint.gid == self.publisher), None
             )
         self._on_text(message.data)
 
     def _read_file(self, address: str) -> Phrase | None:
         if not address:
-            return phrase("No description file is named")
-        self._reading = asyncio.get_running_loop().create_task(self._read(address))
+            return phrase("No Description File is set")
+        self._reading_task = asyncio.get_running_loop().create_task(self._read(address))
         return None
 
     async def _read(self, address: str) -> None:
@@ -246,9 +251,9 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     axes = properties.principal().axes if edges else np.eye(3)
     return LinkInertia(
         mass=float(properties.mass),
-        center=[float(part) for part in properties.center],
+        center=[float(coordinate) for coordinate in properties.center],
         box=edges,
-        quaternion=[float(part) for part in quaternion_from_matrix(axes)],
+        quaternion=[float(component) for component in quaternion_from_matrix(axes)],
     )
 
 
@@ -298,12 +303,12 @@ def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
 class SceneBuilder:
     """Converts a robot to the page's form.
 
-    A visual has the colour of its own material, even if a link has several visuals, which RViz handles incorrectly. A
+    Each visual has the colour of its own material; RViz handles links with several visuals incorrectly. A
     collision has the colour of the link's first visual, as in RViz.
 
     Attributes:
-        index: the files found during the conversion, for `MeshFolders`.
-        problems: the problems with files by link, with RViz's texts.
+        index: finds mesh and texture files, and collects them for `MeshFolders`.
+        problems: the problems with mesh and texture files by link name, with the texts of RViz.
     """
 
     def __init__(self, index: MeshIndex) -> None:
@@ -324,40 +329,45 @@ class SceneBuilder:
                 parent=joint.parent,
                 child=joint.child,
                 position=list(joint.origin.xyz),
-                quaternion=list(quaternion_of(joint.origin)),
+                quaternion=list(pose_quaternion(joint.origin)),
                 axis=list(joint.axis),
-                lower=_finite(joint.limit.lower) if joint.limit else None,
-                upper=_finite(joint.limit.upper) if joint.limit else None,
+                lower=_finite_or_none(joint.limit.lower) if joint.limit else None,
+                upper=_finite_or_none(joint.limit.upper) if joint.limit else None,
             )
             for joint in robot.joints.values()
         ]
 
     def _link(self, link: Link, prefix: str, parent_joint: str | None) -> LinkScene:
-        first = link.visuals[0].material if link.visuals else None
+        first_material = link.visuals[0].material if link.visuals else None
         return LinkScene(
             name=link.name,
             frame=frame_of(link.name, prefix),
             parent_joint=parent_joint,
             visuals=self._shapes(link, link.visuals),
-            collisions=self._shapes(link, link.collisions, first),
+            collisions=self._shapes(link, link.collisions, first_material),
             place=place_of(link.element),
             inertia=link_inertia(link.inertial),
         )
 
-    def _shapes(self, link: Link, parts: Sequence[Visual | Collision], material: Material | None = None) -> list[Shape]:
-        shapes = (self._shape(link, part, part.material if isinstance(part, Visual) else material) for part in parts)
+    def _shapes(
+        self, link: Link, elements: Sequence[Visual | Collision], material: Material | None = None
+    ) -> list[Shape]:
+        shapes = (
+            self._shape(link, element, element.material if isinstance(element, Visual) else material)
+            for element in elements
+        )
         return [shape for shape in shapes if shape is not None]
 
-    def _shape(self, link: Link, part: Visual | Collision, material: Material | None) -> Shape | None:
-        geometry = part.geometry
+    def _shape(self, link: Link, element: Visual | Collision, material: Material | None) -> Shape | None:
+        geometry = element.geometry
         shape = Shape(
             kind="mesh",
             size=[],
-            position=list(part.origin.xyz),
-            quaternion=list(quaternion_of(part.origin)),
+            position=list(element.origin.xyz),
+            quaternion=list(pose_quaternion(element.origin)),
             color=list(material.rgba) if material and material.rgba else None,
             texture=self._texture(link, material),
-            name=part.name,
+            name=element.name,
         )
         if isinstance(geometry, Box):
             shape.kind, shape.size = "box", list(geometry.size)
@@ -368,13 +378,13 @@ class SceneBuilder:
         elif isinstance(geometry, Sphere):
             shape.kind, shape.size = "sphere", [geometry.radius]
         else:
-            return self._mesh(link, part, geometry, shape)
+            return self._mesh(link, element, geometry, shape)
         return shape
 
-    def _mesh(self, link: Link, part: Visual | Collision, mesh: Mesh, shape: Shape) -> Shape | None:
-        located = self.index.locate(mesh.filename, folder_of(part.element), MESH_TYPES)
+    def _mesh(self, link: Link, element: Visual | Collision, mesh: Mesh, shape: Shape) -> Shape | None:
+        located = self.index.locate(mesh.filename, folder_of(element.element), MESH_TYPES)
         if located.url is None:
-            self._problem(
+            self._add_problem(
                 link,
                 phrase("Could not load mesh resource '{name}': {reason}", name=mesh.filename, reason=located.problem),
             )
@@ -389,16 +399,16 @@ class SceneBuilder:
             return None
         located = self.index.locate(material.texture, folder_of(material.element), IMAGE_TYPES)
         if located.url is None:
-            self._problem(
+            self._add_problem(
                 link, phrase("Could not load texture '{name}': {reason}", name=material.texture, reason=located.problem)
             )
         return located.url
 
-    def _problem(self, link: Link, text: Phrase) -> None:
+    def _add_problem(self, link: Link, text: Phrase) -> None:
         problems = self.problems.setdefault(link.name, [])
         if text not in problems:
             problems.append(text)
 
 
-def _finite(number: float) -> float | None:
+def _finite_or_none(number: float) -> float | None:
     return number if math.isfinite(number) else None

@@ -14,13 +14,13 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.sensors import Lidar, Sensor
 from linkwright.sdf.worlds import World
 
-_MOST_ROWS = 16
-_MOST_RAYS = 720
-"""The largest number of rays of a lidar that pages draw."""
-_FARTHEST = 10_000.0
-"""The largest far distance of a camera that is drawn, in m."""
-_ENDLESS = 30.0
-"""The length of a lidar's rays that are drawn if it has no range, in m."""
+_MAX_ROWS = 16
+_MAX_RAYS = 720
+"""The largest number of rays that a page draws for one lidar."""
+_MAX_FAR = 10_000.0
+"""The largest distance of the far plane that a page draws for a camera, in m."""
+_DEFAULT_RAY_LENGTH = 30.0
+"""The length of the drawn rays of a lidar that has no finite maximum range, in m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class ShownLidar:
     Attributes:
         scene: the description of the lidar for pages.
         measured: the number of rows and of columns that the lidar measures.
-        every: the step between drawn rows, and between drawn columns.
+        every: the step between drawn rows, and the step between drawn columns.
     """
 
     scene: LidarScene
@@ -50,51 +50,51 @@ def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
     cameras: list[CameraScene] = []
     try:
         links = list(placed_links(world))
-        for placed in links:
-            for sensor in placed.link.sensors:
-                pose = placed.frames.in_link(sensor.pose, placed.link.name)
+        for placed_link in links:
+            for sensor in placed_link.link.sensors:
+                pose = placed_link.frames.in_link(sensor.pose, placed_link.link.name)
                 if sensor.lidar is not None:
-                    lidars.append(_lidar(placed, sensor, sensor.lidar, pose))
-                cameras.extend(_camera(placed, sensor, camera, pose) for camera in sensor.cameras)
+                    lidars.append(_shown_lidar(placed_link, sensor, sensor.lidar, pose))
+                cameras.extend(_camera_scene(placed_link, sensor, camera, pose) for camera in sensor.cameras)
     except FrameError:
         return [], []
     return lidars, cameras
 
 
-def _lidar(placed: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Transform) -> ShownLidar:
-    across, up = lidar.horizontal, lidar.vertical
-    row_step = ceil(up.count / _MOST_ROWS)
-    rows = ceil(up.count / row_step)
-    column_step = ceil(rows * across.count / _MOST_RAYS)
-    columns = ceil(across.count / column_step)
+def _shown_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Transform) -> ShownLidar:
+    horizontal, vertical = lidar.horizontal, lidar.vertical
+    row_step = ceil(vertical.count / _MAX_ROWS)
+    rows = ceil(vertical.count / row_step)
+    column_step = ceil(rows * horizontal.count / _MAX_RAYS)
+    columns = ceil(horizontal.count / column_step)
     nearest = max(lidar.range.min, 0.0)
     scene = LidarScene(
-        name=f"{placed.name}{SEPARATOR}{sensor.name}",
-        link=placed.name,
+        name=f"{placed_link.name}{SEPARATOR}{sensor.name}",
+        link=placed_link.name,
         position=list(pose[:3]),
         quaternion=list(pose[3:]),
         visualized=sensor.visualize,
-        horizontal=RayAngles(across.min_angle, across.step * column_step, columns),
-        vertical=RayAngles(up.min_angle, up.step * row_step, rows),
+        horizontal=RayAngles(horizontal.min_angle, horizontal.step * column_step, columns),
+        vertical=RayAngles(vertical.min_angle, vertical.step * row_step, rows),
         nearest=nearest,
-        farthest=lidar.range.max if nearest < lidar.range.max < float("inf") else nearest + _ENDLESS,
+        farthest=lidar.range.max if nearest < lidar.range.max < float("inf") else nearest + _DEFAULT_RAY_LENGTH,
     )
-    return ShownLidar(scene, (up.count, across.count), (row_step, column_step))
+    return ShownLidar(scene, (vertical.count, horizontal.count), (row_step, column_step))
 
 
-def _camera(placed: PlacedLink, sensor: Sensor, camera: Camera, pose: Transform) -> CameraScene:
+def _camera_scene(placed_link: PlacedLink, sensor: Sensor, camera: Camera, pose: Transform) -> CameraScene:
     optics = optics_of(camera)
-    place = compose(pose, transform_of(camera.pose.pose))
+    camera_pose = compose(pose, transform_of(camera.pose.pose))
     return CameraScene(
-        name=SEPARATOR.join(filter(None, (placed.name, sensor.name, camera.name))),
-        link=placed.name,
-        position=list(place[:3]),
-        quaternion=list(place[3:]),
+        name=SEPARATOR.join(filter(None, (placed_link.name, sensor.name, camera.name))),
+        link=placed_link.name,
+        position=list(camera_pose[:3]),
+        quaternion=list(camera_pose[3:]),
         visualized=sensor.visualize,
         left=optics.cx / optics.fx,
         right=(optics.width - optics.cx) / optics.fx,
         up=optics.cy / optics.fy,
         down=(optics.height - optics.cy) / optics.fy,
         near=optics.near,
-        far=min(optics.far, _FARTHEST),
+        far=min(optics.far, _MAX_FAR),
     )

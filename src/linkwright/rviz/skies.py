@@ -7,17 +7,17 @@ from math import isfinite
 from linkwright.page.protocol.worlds import FogScene
 from linkwright.sdf.skies import Fog, Sky
 
-_TWILIGHT = 1.0
-"""Hours between bright and dark."""
+_TWILIGHT_HOURS = 1.0
+"""The duration of dawn and of dusk, in hours."""
 
 
 def daylight(sky: Sky | None) -> float | None:
     """Return the brightness of a sky, from 0 at night to 1, or None if there is no sky."""
     if sky is None:
         return None
-    time = sky.time % 24.0
-    risen, left = (time - sky.sunrise) / _TWILIGHT, (sky.sunset - time) / _TWILIGHT
-    return max(0.0, min(1.0, risen + 0.5, left + 0.5))
+    hour = sky.time % 24.0
+    hours_since_sunrise, hours_to_sunset = (hour - sky.sunrise) / _TWILIGHT_HOURS, (sky.sunset - hour) / _TWILIGHT_HOURS
+    return max(0.0, min(1.0, hours_since_sunrise + 0.5, hours_to_sunset + 0.5))
 
 
 def fog_of(fog: Fog | None) -> FogScene | None:

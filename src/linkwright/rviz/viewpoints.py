@@ -10,9 +10,9 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
 
-_FEWEST_JOINTS = 2
-"""A model without sensors and plugins that has so many moving joints is a robot, not a door."""
-_POSE_NUMBERS = 6
+_MIN_MOVING_JOINTS = 2
+"""A model with at least this many moving joints is a robot; a model with fewer joints can be a door."""
+_POSE_LENGTH = 6
 
 
 def camera_of(world: World) -> Transform | None:
@@ -33,23 +33,25 @@ def camera_of(world: World) -> Transform | None:
 def robots_of(world: World) -> list[str]:
     """Return the names of the models that count as robots.
 
-    Such models are not static, and have sensors, plugins or several moving joints.
+    These models are not static, and have sensors, plugins or at least two moving joints.
     """
     return [model.name for model in world.models if not model.static and _is_robot(model)]
 
 
 def _pose(element: Element) -> Transform | None:
     try:
-        numbers = [float(word) for word in element.text().split()]
+        numbers = [float(token) for token in element.text().split()]
     except ValueError:
         return None
-    if len(numbers) != _POSE_NUMBERS or not all(map(isfinite, numbers)):
+    if len(numbers) != _POSE_LENGTH or not all(map(isfinite, numbers)):
         return None
     x, y, z, roll, pitch, yaw = numbers
     return transform_of(Pose((x, y, z), (roll, pitch, yaw)))
 
 
 def _is_robot(model: Model) -> bool:
-    moving = sum(joint.type != "fixed" for joint in model.joints)
-    senses = any(link.sensors for link in model.links)
-    return bool(model.plugins) or senses or moving >= _FEWEST_JOINTS or any(map(_is_robot, model.models))
+    moving_joints = sum(joint.type != "fixed" for joint in model.joints)
+    has_sensors = any(link.sensors for link in model.links)
+    return (
+        bool(model.plugins) or has_sensors or moving_joints >= _MIN_MOVING_JOINTS or any(map(_is_robot, model.models))
+    )

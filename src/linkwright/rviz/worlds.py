@@ -32,14 +32,14 @@ from linkwright.sdf.shapes import (
 from linkwright.sdf.shapes import Shape as SdfShape
 from linkwright.sdf.worlds import World
 
-_UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
-"""The colour of shapes without a material, which are grey in Gazebo."""
-_MOST_HEIGHTS = 257
+_DEFAULT_COLOR = [0.7, 0.7, 0.7, 1.0]
+"""The colour of shapes without a material: grey, as in Gazebo."""
+_MAX_HEIGHTS = 257
 """The largest number of heights along a side of a heightmap."""
-_COLLISION = [1.0, 0.55, 0.1, 0.6]
+_COLLISION_COLOR = [1.0, 0.55, 0.1, 0.6]
 
 _PoseInLink = Callable[[RawPose], Transform]
-"""Returns the pose of a link's part in the link's frame."""
+"""Converts the pose of a visual or collision to the frame of its link."""
 
 
 @dataclass(slots=True)
@@ -49,7 +49,7 @@ class WorldContent:
     Attributes:
         links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
         poses: the initial pose of each link in the world.
-        problems: the problems with files by link.
+        problems: the problems with mesh and texture files, by link name.
     """
 
     links: list[LinkScene] = field(default_factory=list)
@@ -78,45 +78,45 @@ class _Builder:
     def build(self, world: World) -> WorldContent:
         frames = Frames(world)
         for model in world.models:
-            inside = frames.inside(model.name)
-            for placed in links_of(model, inside, frames.pose(model.name), model.name):
-                self._link(placed)
+            model_frames = frames.inside(model.name)
+            for placed_link in links_of(model, model_frames, frames.pose(model.name), model.name):
+                self._link(placed_link)
         return self._made
 
-    def _link(self, placed: PlacedLink) -> None:
-        link, frames, made = placed.link, placed.frames, self._made
+    def _link(self, placed_link: PlacedLink) -> None:
+        link, frames, content = placed_link.link, placed_link.frames, self._made
 
         def pose(raw: RawPose) -> Transform:
             return frames.in_link(raw, link.name)
 
-        made.poses.append(placed.pose)
-        made.links.append(
+        content.poses.append(placed_link.pose)
+        content.links.append(
             LinkScene(
-                name=placed.name,
-                frame=placed.name,
+                name=placed_link.name,
+                frame=placed_link.name,
                 parent_joint=None,
-                visuals=list(self._shapes(placed.name, link.visuals, pose)),
-                collisions=list(self._shapes(placed.name, link.collisions, pose)),
+                visuals=list(self._shapes(placed_link.name, link.visuals, pose)),
+                collisions=list(self._shapes(placed_link.name, link.collisions, pose)),
             )
         )
 
-    def _shapes(self, link: str, parts: Sequence[Visual | Collision], place: _PoseInLink) -> Iterator[Shape]:
-        for part in parts:
-            shape = self._shape(link, part, place(part.pose))
+    def _shapes(self, link: str, elements: Sequence[Visual | Collision], place: _PoseInLink) -> Iterator[Shape]:
+        for element in elements:
+            shape = self._shape(link, element, place(element.pose))
             if shape is not None:
                 yield shape
 
-    def _shape(self, link: str, part: Visual | Collision, pose: Transform) -> Shape | None:
-        shape = Shape(kind="mesh", size=[], position=[], quaternion=[], name=part.name)
-        if isinstance(part, Visual):
-            self._paint(link, shape, part)
+    def _shape(self, link: str, element: Visual | Collision, pose: Transform) -> Shape | None:
+        shape = Shape(kind="mesh", size=[], position=[], quaternion=[], name=element.name)
+        if isinstance(element, Visual):
+            self._set_material(link, shape, element)
         else:
-            shape.color, shape.repaints = list(_COLLISION), True
-        pose = compose(pose, self._form(link, shape, part.geometry) or (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+            shape.color, shape.repaints = list(_COLLISION_COLOR), True
+        pose = compose(pose, self._set_geometry(link, shape, element.geometry) or (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
         shape.position, shape.quaternion = list(pose[:3]), list(pose[3:])
         return shape if shape.size else None
 
-    def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
+    def _set_geometry(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
         """Set the kind and the size of a shape, and return the shape's pose in the geometry's frame.
 
         None means the identity.
@@ -138,23 +138,23 @@ class _Builder:
                 shape.kind, shape.size = "plane", list(geometry.size)
                 return (0.0, 0.0, 0.0, *rotation_from_z(geometry.normal))
             case Polyline():
-                self._polygons(shape, (geometry,))
+                self._set_polygons(shape, (geometry,))
             case tuple():
-                self._polygons(shape, geometry)
+                self._set_polygons(shape, geometry)
             case Heightmap():
-                self._terrain(link, shape, geometry)
+                self._set_terrain(link, shape, geometry)
             case Mesh():
-                self._mesh(link, shape, geometry)
+                self._set_mesh(link, shape, geometry)
             case Image() | Empty():
                 pass
         return None
 
-    def _polygons(self, shape: Shape, polygons: Sequence[Polyline]) -> None:
+    def _set_polygons(self, shape: Shape, polygons: Sequence[Polyline]) -> None:
         shape.kind, shape.size = "polyline", [polygons[0].height]
         shape.outlines = [[number for point in polygon.points for number in point] for polygon in polygons]
 
-    def _mesh(self, link: str, shape: Shape, mesh: Mesh) -> None:
-        shape.url = self._located(link, mesh.uri, MESH_TYPES)
+    def _set_mesh(self, link: str, shape: Shape, mesh: Mesh) -> None:
+        shape.url = self._url_of(link, mesh.uri, MESH_TYPES)
         if shape.url is None:
             return
         shape.size = list(mesh.scale)
@@ -162,7 +162,7 @@ class _Builder:
         if mesh.submesh is not None:
             shape.submesh = Submesh(mesh.submesh.name, mesh.submesh.center)
 
-    def _terrain(self, link: str, shape: Shape, terrain: Heightmap) -> None:
+    def _set_terrain(self, link: str, shape: Shape, terrain: Heightmap) -> None:
         heights = self._heights(link, terrain.uri)
         if heights is None:
             return
@@ -171,48 +171,46 @@ class _Builder:
         shape.kind = "heightmap"
         shape.size = [*terrain.size, *terrain.position, texture.size if texture else 1.0]
         if texture is not None and texture.diffuse:
-            shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
+            shape.texture = self._url_of(link, texture.diffuse, IMAGE_TYPES)
 
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
         """Return the heights of a heightmap, read as in the simulation, or None if it cannot be read.
 
         The image is decoded here, because browsers decode neither TIFF nor 16-bit grey.
         """
-        if self._located(link, uri, IMAGE_TYPES) is None:
+        if self._url_of(link, uri, IMAGE_TYPES) is None:
             return None
         try:
             values = read_heights(self._index.finder.resolve(uri)).values
         except LinkwrightError as error:
-            self._problem(link, error.diagnostics[0].message)
+            self._add_problem(link, error.diagnostics[0].message)
             return None
-        rows, columns = (
-            np.linspace(0, size - 1, min(size, _MOST_HEIGHTS)).round().astype(int) for size in values.shape
-        )
-        drawn: NDArray[np.float32] = values[np.ix_(rows, columns)].astype(np.float32)
-        return drawn
+        rows, columns = (np.linspace(0, size - 1, min(size, _MAX_HEIGHTS)).round().astype(int) for size in values.shape)
+        samples: NDArray[np.float32] = values[np.ix_(rows, columns)].astype(np.float32)
+        return samples
 
-    def _paint(self, link: str, shape: Shape, visual: Visual) -> None:
+    def _set_material(self, link: str, shape: Shape, visual: Visual) -> None:
         material = visual.material
         color, image = _look(material) if material else (None, "")
         shape.repaints = color is not None or image != ""
         if color is None:
-            color = _UNCOLOURED
+            color = _DEFAULT_COLOR
         red, green, blue, alpha = color
         shape.color = [red, green, blue, alpha * (1.0 - visual.transparency)]
         if image:
-            shape.texture = self._located(link, image, IMAGE_TYPES)
+            shape.texture = self._url_of(link, image, IMAGE_TYPES)
         workflow = material.pbr.metal if material and material.pbr else None
         if workflow and _has_surface(workflow):
-            urls = [self._located(link, file, IMAGE_TYPES) if file else None for file in _maps(workflow)]
+            urls = [self._url_of(link, file, IMAGE_TYPES) if file else None for file in _maps(workflow)]
             shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
 
-    def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:
+    def _url_of(self, link: str, uri: str, types: dict[str, str]) -> str | None:
         located = self._index.locate(uri, None, types)
         if located.url is None:
-            self._problem(link, f"Could not load '{uri}': {located.problem}")
+            self._add_problem(link, f"Could not load '{uri}': {located.problem}")
         return located.url
 
-    def _problem(self, link: str, text: str) -> None:
+    def _add_problem(self, link: str, text: str) -> None:
         problems = self._made.problems.setdefault(link, [])
         if text not in problems:
             problems.append(text)
@@ -220,24 +218,24 @@ class _Builder:
 
 def _maps(workflow: Workflow) -> tuple[str, ...]:
     """Return the image files of a material except the colour image, in the order of `Surface`."""
-    reflecting = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
-    return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
+    surface_maps = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
+    return (*surface_maps, workflow.emissive_map, workflow.ambient_occlusion_map)
 
 
 def _has_surface(workflow: Workflow) -> bool:
     """Return whether a material sets more than a colour image: other images, roughness or metalness."""
-    usual = Workflow()
-    return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
+    default = Workflow()
+    return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (default.roughness, default.metalness)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Return the colour of a material or None, and its colour image or an empty string.
+    """Return the colour of a material, or None, and the address of its colour image, or an empty string.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """
-    named = gazebo_look(material.script.name) if material.script else None
-    if named is not None:
-        material = with_look(material, named)
+    gazebo_material = gazebo_look(material.script.name) if material.script else None
+    if gazebo_material is not None:
+        material = with_look(material, gazebo_material)
     workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
     image = workflow.albedo_map if workflow else ""
     return material.diffuse or material.ambient, image

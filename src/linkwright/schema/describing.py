@@ -8,25 +8,25 @@ from linkwright.schema.rules import AttributeRule, ElementRule, Version
 
 def describe_element(rule: ElementRule) -> Phrase:
     """Return a description of an element in Markdown: its meaning, attributes and children."""
-    tag = joined([f"`<{rule.tag}>`", *_since(rule.since)])
-    head = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
+    tag = joined([f"`<{rule.tag}>`", *_version_facts(rule.since)])
+    heading = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
     lines = [phrase("- {line}", line=describe_attribute(attribute)) for attribute in rule.attributes]
     if rule.text is not None:
         meaning, facts = term(rule.text.meaning), joined(_facts(rule.text))
         lines.append(phrase("- the text inside: {meaning} ({facts})", meaning=meaning, facts=facts))
-    listed = [] if rule.choice else [child for child in rule.children if child.is_value]
-    lines += [phrase("- {line}", line=_describe_value(child)) for child in listed]
-    parts = (child for child in rule.children if child not in listed)
-    inner = [_with_count(child.tag, many=child.many, required=child.required) for child in parts]
-    inner += [_with_count(rule.tag, many=True, required=False)] if rule.nests else []
-    if inner:
-        several = joined(inner)
+    value_children = [] if rule.choice else [child for child in rule.children if child.is_value]
+    lines += [phrase("- {line}", line=_describe_value(child)) for child in value_children]
+    other_children = (child for child in rule.children if child not in value_children)
+    child_texts = [_with_count(child.tag, many=child.many, required=child.required) for child in other_children]
+    child_texts += [_with_count(rule.tag, many=True, required=False)] if rule.nests else []
+    if child_texts:
+        elements = joined(child_texts)
         lines.append(
-            phrase("- contains one of {elements}", elements=several)
+            phrase("- contains one of {elements}", elements=elements)
             if rule.choice
-            else phrase("- contains {elements}", elements=several)
+            else phrase("- contains {elements}", elements=elements)
         )
-    return joined([head, "", *lines], "\n") if lines else head
+    return joined([heading, "", *lines], "\n") if lines else heading
 
 
 def describe_attribute(attribute: AttributeRule) -> Phrase:
@@ -54,17 +54,17 @@ def _facts(attribute: AttributeRule) -> list[Phrase]:
     facts = [phrase("{type} in {unit}", type=kind, unit=term(attribute.unit)) if attribute.unit else kind]
     if attribute.required:
         facts.append(
-            phrase("required before version {version}", version=_shown(attribute.until))
+            phrase("required before version {version}", version=_version_text(attribute.until))
             if attribute.until
             else phrase("required")
         )
     elif attribute.default:
         facts.append(phrase("{default} when absent", default=f"`{attribute.default}`"))
-    return [*facts, *_since(attribute.since)]
+    return [*facts, *_version_facts(attribute.since)]
 
 
-def _since(version: Version) -> list[Phrase]:
-    return [phrase("since version {version}", version=_shown(version))] if version > (1, 0) else []
+def _version_facts(version: Version) -> list[Phrase]:
+    return [phrase("since version {version}", version=_version_text(version))] if version > (1, 0) else []
 
 
 def _with_count(tag: str, *, many: bool, required: bool) -> Phrase:
@@ -74,5 +74,5 @@ def _with_count(tag: str, *, many: bool, required: bool) -> Phrase:
     return phrase("{name} (required)", name=name) if required else Phrase(name)
 
 
-def _shown(version: Version) -> str:
+def _version_text(version: Version) -> str:
     return ".".join(map(str, version))

@@ -46,7 +46,7 @@ from linkwright.loading.lean_typing import Any, Final, Protocol
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.xmltree import Element
 
-_REMEMBERED = 4096
+_MAX_CACHED = 4096
 """The memory of a kind of element is cleared after this many different elements."""
 
 
@@ -75,15 +75,15 @@ def flat_source(rule: ElementRule, version: Version) -> str:
         elif not attribute.is_required(version):
             value += f" if {attribute.name!r} in given else attribute{index}_absent"
         values.append(value if rule.is_inline else f"{attribute.target}={value}")
-    made = f"({', '.join(values)},)" if rule.is_inline else f"make({', '.join(values)})"
-    lines += ["try:", f"    value = {made}", "except (KeyError, ValueError):"]
+    construction = f"({', '.join(values)},)" if rule.is_inline else f"make({', '.join(values)})"
+    lines += ["try:", f"    value = {construction}", "except (KeyError, ValueError):"]
     lines.append("    return explain(element, owner, report)")
     if rule.check is not None:
         lines.append("value = check(value, element, owner, report)")
     if is_cached(rule):
-        lines += ["if report.count == before:", f"    if len(memory) >= {_REMEMBERED}:", "        memory.clear()"]
+        lines += ["if report.count == before:", f"    if len(memory) >= {_MAX_CACHED}:", "        memory.clear()"]
         lines.append("    memory[key or (*given, *given.values())] = value")
-    return _function([*lines, "return value"], "key=()")
+    return _function_source([*lines, "return value"], "key=()")
 
 
 def nested_source(rule: ElementRule, version: Version) -> str:
@@ -92,7 +92,7 @@ def nested_source(rule: ElementRule, version: Version) -> str:
     children = [(f"child{index}", child) for index, child in enumerate(rule.children) if child.since <= version]
     lines = ["given = element.attributes"]
     for name, attribute in attributes:
-        lines += _attribute(name, attribute, version)
+        lines += _attribute_lines(name, attribute, version)
     if rule.owns:
         lines.append("owner = element")
     lines += [f"{name} = {'[]' if child.many else 'None'}" for name, child in children]
@@ -100,30 +100,30 @@ def nested_source(rule: ElementRule, version: Version) -> str:
     lines += ["for child in element.children:", "    if not isinstance(child, Element):", "        continue"]
     lines.append("    tag, inner = child.tag, child.attributes")
     for name, child in children:
-        lines += [f"    {line}" for line in _child(name, child)]
+        lines += [f"    {line}" for line in _child_lines(name, child)]
     if rule.nests:
         lines += [f"    if tag == {rule.tag!r}:", "        nested.append(read(child, owner, report))"]
     for name, child in children:
         if child.required:
             lines += [f"if {name} is None:", f"    report.missing_child(element, rule, {name}_rule, owner)"]
             lines.append(f"    {name} = UNREADABLE")
-    lines += _unreadable(rule, [name for name, _ in attributes], children)
+    lines += _unreadable_lines(rule, [name for name, _ in attributes], children)
     fields = [f"{attribute.target}={name}" for name, attribute in attributes]
     fields += [field for name, child in children for field in _fields(name, child)]
     fields += [f"{rule.target}=tuple(nested)"] if rule.nests else []
     fields += ["element=element"] if rule.located else []
     lines.append(f"value = make({', '.join(fields)})")
     lines.append("return value" if rule.check is None else "return check(value, element, owner, report)")
-    return _function(lines)
+    return _function_source(lines)
 
 
-def _function(lines: list[str], *more: str) -> str:
-    return f"def read({', '.join(('element', 'owner', 'report', *more))}):\n" + "".join(
+def _function_source(lines: list[str], *extra_arguments: str) -> str:
+    return f"def read({', '.join(('element', 'owner', 'report', *extra_arguments))}):\n" + "".join(
         f"    {line}\n" for line in lines
     )
 
 
-def _attribute(name: str, attribute: AttributeRule, version: Version) -> Iterator[str]:
+def _attribute_lines(name: str, attribute: AttributeRule, version: Version) -> Iterator[str]:
     statement = f"{name} = read_value(element, rule, {name}_rule, version, owner, report)"
     if attribute.is_required(version) and attribute.since <= version:
         yield "try:"
@@ -134,7 +134,7 @@ def _attribute(name: str, attribute: AttributeRule, version: Version) -> Iterato
         yield f"{name} = {statement[len(name) + 3 :]} if {attribute.name!r} in given else {name}_absent"
 
 
-def _child(name: str, child: ElementRule) -> Iterator[str]:
+def _child_lines(name: str, child: ElementRule) -> Iterator[str]:
     read = f"{name}_read(child, owner, report)"
     if is_cached(child):
         read = f"{name}_memory.get(key := (*inner, *inner.values())) or {name}_read(child, owner, report, key)"
@@ -147,7 +147,9 @@ def _child(name: str, child: ElementRule) -> Iterator[str]:
     yield "    continue"
 
 
-def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[str, ElementRule]]) -> Iterator[str]:
+def _unreadable_lines(
+    rule: ElementRule, attributes: list[str], children: list[tuple[str, ElementRule]]
+) -> Iterator[str]:
     """Yield the lines of generated code that handle unreadable parts of an element."""
     singles = [*attributes, *(name for name, child in children if not child.many)]
     if rule.keeps:
@@ -165,8 +167,8 @@ def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[s
 def _fields(name: str, child: ElementRule) -> Iterator[str]:
     """Yield the keyword arguments in the generated code for a child."""
     if child.is_inline:
-        for place, attribute in enumerate(child.values):
-            yield f"{attribute.target}=({name}_absent if {name} is None else {name})[{place}]"
+        for index, attribute in enumerate(child.values):
+            yield f"{attribute.target}=({name}_absent if {name} is None else {name})[{index}]"
     elif child.many:
         yield f"{child.target}=tuple({name})"
     else:
@@ -174,13 +176,13 @@ def _fields(name: str, child: ElementRule) -> Iterator[str]:
 
 
 UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})()
-"""The value of something unreadable, whose mistake has been reported."""
+"""The value of an unreadable attribute or element, whose error has been reported."""
 
 
 class Report(Protocol):
     """The receiver of a reader's findings, which formulates messages for one XML language.
 
-    `owner` is the link or joint that contains an element, by which messages describe the element's location.
+    `owner` is the link or joint that contains an element; messages use it to describe the element's location.
 
     Attributes:
         count: the number of findings.
@@ -194,7 +196,7 @@ class Report(Protocol):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report a malformed value, and return the value to use instead, or `UNREADABLE`.
 
-        The value is that of an attribute or the text inside the element.
+        The malformed value is an attribute's value, or the text inside the element.
         """
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -204,14 +206,14 @@ class Report(Protocol):
         """Report that a required child is missing."""
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """Report that an element has none of the children of which it must have one."""
+        """Report that an element has none of the alternative children, one of which is required."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
         """Report a child that is not among the allowed ones in this version of the language."""
 
 
 Read = Callable[[Element, Element, Report], Any]
-"""From an element, its owner and a report to an object or `UNREADABLE`."""
+"""A function that returns the object of an element, given its owner and a report, or `UNREADABLE`."""
 
 
 _Memory = dict[tuple[str, ...], Any]
@@ -256,11 +258,11 @@ def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
     make, check = rule.make, rule.check
 
     def explain(element: Element, owner: Element, report: Report) -> Any:
-        found = [_read_value(element, rule, value, version, owner, report) for value in values]
-        if any(item is UNREADABLE for item in found):
+        results = [_read_value(element, rule, value, version, owner, report) for value in values]
+        if any(item is UNREADABLE for item in results):
             return UNREADABLE
-        fields = zip((value.target for value in values), found, strict=True)
-        value = tuple(found) if make is None else make(**dict(fields))
+        fields = zip((value.target for value in values), results, strict=True)
+        value = tuple(results) if make is None else make(**dict(fields))
         return value if check is None else check(value, element, owner, report)
 
     if rule.text is not None:
@@ -268,7 +270,7 @@ def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
     memory: _Memory = {}
     _memories.append(memory)
     scope = {**_scope(rule, version), "explain": explain, "memory": memory}
-    return ElementReader(_compiled(flat_source(rule, version), rule, scope), memory)
+    return ElementReader(_compile_reader(flat_source(rule, version), rule, scope), memory)
 
 
 def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
@@ -279,13 +281,13 @@ def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
     def read(element: Element, owner: Element, report: Report) -> Any:
         for child in element.children:
             if isinstance(child, Element):
-                chosen = table.get(child.tag)
-                if chosen is None:
+                child_rule = table.get(child.tag)
+                if child_rule is None:
                     report.unknown_choice(child, rule, owner)
                     return UNREADABLE
-                read_chosen, memory = reader_of(chosen, version)
-                given = child.attributes
-                value = memory.get((*given, *given.values())) or read_chosen(child, owner, report)
+                read_child, memory = reader_of(child_rule, version)
+                attributes = child.attributes
+                value = memory.get((*attributes, *attributes.values())) or read_child(child, owner, report)
                 return value if check is None or value is UNREADABLE else check(value, child, owner, report)
         report.empty_choice(element, rule, owner)
         return UNREADABLE
@@ -301,7 +303,7 @@ def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
             scope[f"child{index}_rule"], scope[f"child{index}_absent"] = child, child.default
             scope[f"child{index}_read"] = _lazy_reader(f"child{index}", child, version, scope)
             scope[f"child{index}_memory"] = {}
-    return ElementReader(_compiled(nested_source(rule, version), rule, scope), {})
+    return ElementReader(_compile_reader(nested_source(rule, version), rule, scope), {})
 
 
 def _lazy_reader(name: str, rule: ElementRule, version: Version, scope: dict[str, Any]) -> Read:
@@ -335,7 +337,7 @@ def _scope(rule: ElementRule, version: Version) -> dict[str, Any]:
     return scope
 
 
-def _compiled(source: str, rule: ElementRule, scope: dict[str, Any]) -> Read:
+def _compile_reader(source: str, rule: ElementRule, scope: dict[str, Any]) -> Read:
     exec(compile(source, f"<reader of {rule.tag}>", "exec"), scope)  # noqa: S102 - made of rules, of no text from files
     read: Read = scope["read"]
     return read

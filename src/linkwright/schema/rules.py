@@ -95,14 +95,14 @@ class ElementRule:
         text: the rule of the text inside, for an element whose value is its text.
         choice: whether the first child selects one of several kinds, so that its object is the object of this element.
         make: the function that creates the object from keyword arguments: the fields of attributes and children. The
-            object must not be false. None if the values are fields of the parent's object, as for ``<mass
-            value="1"/>``.
+            object must not be false. None if the values are fields of the parent's object, as for
+            ``<mass value="1"/>``.
         located: whether `make` takes the element as the argument ``element``.
         field: the field of the parent's object; by default, the field with the name of the tag.
         get: the function that returns the value to write from the parent's object, if this is not simply the field.
         default: the default of an absent element: an object, or the tuple of values for the fields of the parent's
             object.
-        owns: whether messages about the inside of the element name this element, as for the colour of a material.
+        owns: whether messages about the contents of the element name this element, as for the colour of a material.
         keeps: whether an element with unreadable parts still results in an object, with defaults for these parts. An
             unreadable part that may occur many times is `UNREADABLE`.
         nests: whether the element may contain elements of its own kind.
@@ -133,8 +133,8 @@ class ElementRule:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "attribute_rules", {rule.name: rule for rule in self.attributes})
-        own = {self.tag: self} if self.nests else {}
-        object.__setattr__(self, "child_rules", {rule.tag: rule for rule in self.children} | own)
+        own_rule = {self.tag: self} if self.nests else {}
+        object.__setattr__(self, "child_rules", {rule.tag: rule for rule in self.children} | own_rule)
 
     @property
     def target(self) -> str:

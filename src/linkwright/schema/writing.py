@@ -9,13 +9,13 @@ from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element, Text
 
 Completion = Callable[[Element, ElementRule, Any], None]
-"""Adds to the element of an object what its rule does not read."""
+"""A function that extends the element of an object by content that its rule does not read."""
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
     """Return an object as an element, which reads back as an equal object.
 
-    Default values are omitted, except those that are usually written.
+    Default values are omitted, except values that are usually written.
 
     Args:
         rule: the rule of the element.
@@ -23,16 +23,16 @@ def write_element(rule: ElementRule, instance: Any, complete: Completion | None 
         complete: a function that is called for each object with its own element, with this element and its rule.
     """
     if rule.choice:
-        chosen = next(child for child in rule.children if type(instance) is child.make)
+        child_rule = next(child for child in rule.children if type(instance) is child.make)
         element = Element(rule.tag)
-        element.children.append(write_element(chosen, instance, complete))
+        element.children.append(write_element(child_rule, instance, complete))
         return element
     texts = {attribute.name: text for attribute in rule.attributes if (text := _text(attribute, instance)) is not None}
     element = Element(rule.tag, texts)
-    if rule.text is not None and (inside := _text(rule.text, instance)) is not None:
-        element.children.append(Text(inside))
+    if rule.text is not None and (inner_text := _text(rule.text, instance)) is not None:
+        element.children.append(Text(inner_text))
     for child in rule.children:
-        element.children += _inner(child, instance, complete)
+        element.children += _child_elements(child, instance, complete)
     if rule.nests:
         element.children += (write_element(rule, item, complete) for item in rule.value_in(instance))
     if complete is not None and not rule.is_inline:
@@ -40,14 +40,14 @@ def write_element(rule: ElementRule, instance: Any, complete: Completion | None 
     return element
 
 
-def _inner(rule: ElementRule, instance: Any, complete: Completion | None) -> Iterator[Element]:
+def _child_elements(rule: ElementRule, instance: Any, complete: Completion | None) -> Iterator[Element]:
     if rule.is_inline:
         element = write_element(rule, instance)
         if element.attributes or element.children or rule.required:
             yield element
         return
-    inner = rule.value_in(instance)
-    for item in inner if rule.many else (inner,):
+    value = rule.value_in(instance)
+    for item in value if rule.many else (value,):
         if item is not None and (item != rule.default or (rule.located and item is not rule.default)):
             yield write_element(rule, item, complete)
 
@@ -56,7 +56,7 @@ def _text(attribute: AttributeRule, instance: Any) -> str | None:
     value = attribute.value_in(instance)
     if value is None:
         return None
-    optional = attribute.default is not None and not (attribute.required or attribute.usual)
-    if optional and value == attribute.absent_value((1, 0)):
+    is_optional = attribute.default is not None and not (attribute.required or attribute.usual)
+    if is_optional and value == attribute.absent_value((1, 0)):
         return None
     return attribute.type.write(value)

@@ -26,9 +26,9 @@ class Skin:
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """An animation of an actor's limbs.
+    """An animation of an actor's body.
 
-    With `interpolate_x`, the speed of the animation follows the speed of the actor.
+    With `interpolate_x`, the speed of the animation follows the walking speed of the actor.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Animation:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """A pose of the actor, and its time in seconds."""
+    """A pose of the actor, and the time in seconds at which it is reached."""
 
     time: float = 0.0
     pose: RawPose = AT_ORIGIN
@@ -47,9 +47,9 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """A path through waypoints, with the name of an animation as its `type`.
+    """A path through waypoints; `type` is the name of the animation that is played on it.
 
-    The path is round for a tension of 0, and straight for 1.
+    A tension of 0 gives a round path, and a tension of 1 gives straight lines.
     """
 
     id: int = 0
@@ -62,7 +62,7 @@ class Trajectory:
 class Script:
     """The timing of an actor's walk, and its paths.
 
-    The walk begins after `delay_start` seconds.
+    The walk begins `delay_start` seconds after the start of the simulation.
     """
 
     loop: bool = True
@@ -73,7 +73,7 @@ class Script:
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """A figure that walks along a path, without contacts."""
+    """A figure that walks along a path and does not collide with anything."""
 
     name: str
     pose: RawPose = AT_ORIGIN

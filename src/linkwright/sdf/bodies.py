@@ -18,7 +18,7 @@ from linkwright.urdf.model import Joint, Link
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A link of a body, and its pose.
+    """A link of a body, and the link's pose in the body.
 
     Attributes:
         link: the link.
@@ -36,10 +36,10 @@ class Body:
     """Links connected by fixed joints.
 
     Attributes:
-        parts: the link that names the body, then its descendants.
+        parts: the link that names the body, then the links that are attached to it by fixed joints.
         joint: the joint that connects the body to its parent; None for the root.
-        parent: the name of the parent body; ``world``, or empty for the root.
-        pose: the pose of the joint in the parent body.
+        parent: the name of the parent body: ``world`` if it is the world, and empty for the root.
+        pose: the pose of the connecting joint in the frame of the parent body.
         children: the child bodies.
     """
 
@@ -55,43 +55,43 @@ class Body:
         return self.parts[0].link.name
 
 
-def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
+def rigid_bodies(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
     """Return the bodies of a robot, parents before children.
 
     Children are ordered by joint name, as in gz.
 
     Args:
         robot: the robot; a root link called ``world`` represents the world.
-        is_lumped: whether the child of a joint becomes a part of its parent's body.
+        is_lumped: returns whether a fixed joint merges its child link into the body of its parent.
     """
-    below: dict[str, list[Joint]] = defaultdict(list)
+    child_joints: dict[str, list[Joint]] = defaultdict(list)
     for joint in robot.joints.values():
-        below[joint.parent].append(joint)
+        child_joints[joint.parent].append(joint)
     root = Body([Part(robot.links[robot.root])])
-    places: dict[str, tuple[Body, Part]] = {robot.root: (root, root.parts[0])}
+    bodies_by_link: dict[str, tuple[Body, Part]] = {robot.root: (root, root.parts[0])}
     bodies = [] if robot.root == WORLD else [root]
-    waiting = _by_name(below[robot.root])
-    while waiting:
-        joint = waiting.pop()
+    pending = _in_reverse_order(child_joints[robot.root])
+    while pending:
+        joint = pending.pop()
         link = robot.links[joint.child]
-        body, above = places[joint.parent]
+        body, parent_link = bodies_by_link[joint.parent]
         origin = joint.origin
-        if above.joint is not None:
-            origin = pose_of(compose(above.pose, transform_of(origin)))
+        if parent_link.joint is not None:
+            origin = pose_of(compose(parent_link.pose, transform_of(origin)))
         if body.name != WORLD and is_lumped(joint):
             part = Part(link, transform_of(origin), joint)
             body.parts.append(part)
         else:
             part = Part(link)
-            inner = Body([part], joint, body.name, origin)
-            body.children.append(inner)
-            bodies.append(inner)
-            body = inner
-        places[link.name] = body, part
-        waiting += _by_name(below[link.name])
+            child_body = Body([part], joint, body.name, origin)
+            body.children.append(child_body)
+            bodies.append(child_body)
+            body = child_body
+        bodies_by_link[link.name] = body, part
+        pending += _in_reverse_order(child_joints[link.name])
     return bodies
 
 
-def _by_name(joints: list[Joint]) -> list[Joint]:
-    """Return joints in reverse order of their names, because the caller pops them from the end."""
+def _in_reverse_order(joints: list[Joint]) -> list[Joint]:
+    """Return joints sorted by name in reverse, because the caller pops them from the end."""
     return sorted(joints, key=lambda joint: joint.name, reverse=True)

@@ -33,7 +33,7 @@ class Clip:
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """The coefficients of Brown's lens distortion; `center` is in fractions of the image size."""
+    """The coefficients of Brown's lens distortion; `center` is a fraction of the image size in x and y."""
 
     k1: float = 0.0
     k2: float = 0.0
@@ -56,24 +56,24 @@ class Intrinsics:
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A camera, which looks along x of its frame, with z up.
+    """A camera, which looks along the x axis of its frame; the z axis points up.
 
     Attributes:
-        name: the name, which distinguishes the cameras of a sensor with several.
+        name: the name, which distinguishes several cameras of a sensor.
         pose: the pose in the frame of the sensor.
         horizontal_fov: the horizontal field of view, in radians.
         image: the size and format of the image.
-        clip: the minimum and maximum visible distances.
-        noise: the noise on each colour value, in the range from 0 to 1.
-        distortion: the distortion of the lens; None if there is none.
-        intrinsics: the intrinsics, which override the field of view; None if there are none.
-        depth_clip: the range of a depth camera; None for the same as `clip`.
+        clip: the minimum and the maximum distance at which the camera sees objects.
+        noise: the noise on each colour value; colour values are from 0 to 1.
+        distortion: the distortion of the lens; None for a lens without distortion.
+        intrinsics: the intrinsics, which override the field of view; None to compute them from it.
+        depth_clip: the range of a depth camera; None to use `clip`.
         segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
         box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.
         camera_info_topic: the topic of the camera info; empty for the default topic.
         optical_frame_id: the frame of the images; empty for the frame of the sensor.
         triggered: whether the camera renders images only on request.
-        trigger_topic: the topic of these requests.
+        trigger_topic: the topic on which images are requested if `triggered` is set.
         visibility_mask: a bit mask; the camera sees visuals whose flags have a bit in common with it.
     """
 
@@ -95,7 +95,7 @@ class Camera:
     visibility_mask: int = 0xFFFFFFFF
 
 
-_CLIP_PARTS = (
+_CLIP_VALUES = (
     value("near", NUMBER, "the nearest", "m", default="0.1"),
     value("far", NUMBER, "the farthest", "m", default="100"),
 )
@@ -111,9 +111,9 @@ class _DepthCamera:
     clip: Clip | None
 
 
-def _camera_of(lens: _Lens | None, depth_camera: _DepthCamera | None, **parts: Any) -> Camera:
+def _create_camera(lens: _Lens | None, depth_camera: _DepthCamera | None, **values: Any) -> Camera:
     return Camera(
-        intrinsics=lens.intrinsics if lens else None, depth_clip=depth_camera.clip if depth_camera else None, **parts
+        intrinsics=lens.intrinsics if lens else None, depth_clip=depth_camera.clip if depth_camera else None, **values
     )
 
 
@@ -133,7 +133,7 @@ CAMERA = ElementRule(
             value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
             default=ImageFormat(),
         ),
-        object_rule(Clip, "clip", "the distances that it sees", *_CLIP_PARTS, default=Clip()),
+        object_rule(Clip, "clip", "the distances that it sees", *_CLIP_VALUES, default=Clip()),
         noise_rule(),
         object_rule(
             Distortion,
@@ -166,7 +166,7 @@ CAMERA = ElementRule(
             _DepthCamera,
             "depth_camera",
             "the range of a depth camera",
-            object_rule(Clip, "clip", "the distances that it measures", *_CLIP_PARTS),
+            object_rule(Clip, "clip", "the distances that it measures", *_CLIP_VALUES),
             get=lambda camera: _DepthCamera(camera.depth_clip) if camera.depth_clip else None,
         ),
         value("segmentation_type", TEXT, "semantic, instance or panoptic", default="semantic"),
@@ -178,7 +178,7 @@ CAMERA = ElementRule(
         value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
     ),
     many=True,
-    make=_camera_of,
+    make=_create_camera,
     keeps=True,
     field="cameras",
 )

@@ -1,4 +1,4 @@
-"""Compares parts of models for equal content, regardless of how and where they were written."""
+"""Comparison of models and their elements by content, regardless of how and where they were written."""
 
 from __future__ import annotations
 
@@ -12,41 +12,43 @@ from linkwright.sdf.shapes import Heightmap, Mesh
 from linkwright.xmltree import Element
 
 
-def alike(one: Any, other: Any) -> bool:
-    """Return whether two parsed parts of a file, or tuples of parts, have equal content.
+def alike(first: Any, second: Any) -> bool:
+    """Return whether two parsed elements of files, or tuples of elements, have equal content.
 
-    Comments, whitespace and positions in the text are ignored. Parameters of plugins are compared in their elements.
-    The folders of files are compared where parts name meshes by relative paths.
+    Comments, whitespace and positions in the text are ignored. The parameters of plugins are compared as XML elements.
+    For meshes with relative paths, the folders of the files must also be equal.
     """
-    if one is other:
+    if first is second:
         return True
-    if type(one) is not type(other):
+    if type(first) is not type(second):
         return False
-    if isinstance(one, tuple):
-        return len(one) == len(other) and all(map(alike, one, other))
-    if not is_dataclass(one):
-        return bool(one == other or (one != one and other != other))
-    if isinstance(one, Plugin) and not _same_elements(one.element, other.element):
+    if isinstance(first, tuple):
+        return len(first) == len(second) and all(map(alike, first, second))
+    if not is_dataclass(first):
+        return bool(first == second or (first != first and second != second))
+    if isinstance(first, Plugin) and not _same_elements(first.element, second.element):
         return False
-    if isinstance(one, Visual | Collision) and _folder(one) != _folder(other):
+    if isinstance(first, Visual | Collision) and _folder(first) != _folder(second):
         return False
-    return all(alike(getattr(one, field.name), getattr(other, field.name)) for field in fields(one) if field.compare)
+    return all(
+        alike(getattr(first, field.name), getattr(second, field.name)) for field in fields(first) if field.compare
+    )
 
 
-def _same_elements(one: Element | None, other: Element | None) -> bool:
-    if one is None or other is None:
-        return one is other
-    return _content(one) == _content(other)
+def _same_elements(first: Element | None, second: Element | None) -> bool:
+    if first is None or second is None:
+        return first is second
+    return _content(first) == _content(second)
 
 
 def _content(element: Element) -> tuple[object, ...]:
-    inside = tuple(map(_content, element.elements()))
-    return element.tag, element.attributes, element.text().split(), inside
+    children = tuple(map(_content, element.elements()))
+    return element.tag, element.attributes, element.text().split(), children
 
 
-def _folder(part: Visual | Collision) -> Path | None:
-    """Return the folder to which a part's mesh path is relative; None if there is no such path."""
-    shape, element = part.geometry, part.element
+def _folder(shape_element: Visual | Collision) -> Path | None:
+    """Return the folder to which the path of an element's mesh is relative; None if the path is not relative."""
+    shape, element = shape_element.geometry, shape_element.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
         return None
     return Path(element.source.name).absolute().parent

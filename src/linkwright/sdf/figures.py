@@ -1,4 +1,4 @@
-"""Actors and roads as models for display, without contacts."""
+"""Builds display models of actors and roads, which have no collisions."""
 
 from __future__ import annotations
 
@@ -14,29 +14,32 @@ from linkwright.sdf.poses import RawPose
 from linkwright.sdf.shapes import Mesh
 from linkwright.sdf.worlds import Road
 
-_SKIN = "skin"
-"""The link that the skin of a figure is on."""
-_THICKNESS = 0.01
+_SKIN_NAME = "skin"
+"""The name of the link that shows the skin, and the prefix of its visuals."""
+_ROAD_THICKNESS = 0.01
 """The thickness of a road, in m."""
 _ASPHALT = Material(ambient=(0.2, 0.2, 0.2, 1.0), diffuse=(0.25, 0.25, 0.25, 1.0))
 
 
 _SKIN_COLOR = Material(ambient=(0.5, 0.4, 0.35, 1.0), diffuse=(0.75, 0.6, 0.5, 1.0))
 _CLOTHES = Material(ambient=(0.15, 0.2, 0.35, 1.0), diffuse=(0.25, 0.35, 0.6, 1.0))
-_PERSON: tuple[tuple[Capsule | Sphere, Vector3, Material], ...] = (
+_PERSON_SHAPES: tuple[tuple[Capsule | Sphere, Vector3, Material], ...] = (
     (Capsule(0.1, 0.7), (0.0, 0.1, -0.55), _CLOTHES),
     (Capsule(0.1, 0.7), (0.0, -0.1, -0.55), _CLOTHES),
     (Capsule(0.18, 0.3), (0.0, 0.0, 0.2), _CLOTHES),
     (Sphere(0.13), (0.0, 0.0, 0.64), _SKIN_COLOR),
 )
-"""Legs, trunk and head of a person of 1.8 m, from the hips, which are 1 m above the feet: sizes and places in m."""
+"""Shape, position and material of the legs, trunk and head of a person 1.8 m tall.
+
+Lengths are in m, and positions are relative to the hips, which are 1 m above the feet.
+"""
 
 
 def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     """Return the model of an actor: the shapes of its links, and its skin.
 
     Args:
-        actor: the parsed actor.
+        actor: the actor to display.
         hips: the position of the skeleton's first joint in the mesh of the skin, in metres of the mesh; Gazebo puts
             this joint at the pose of the actor. None if the skin does not exist: a plain figure of a person's size
             replaces the skin.
@@ -44,31 +47,31 @@ def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
     if actor.skin is not None and hips is None:
         visuals = tuple(
-            Visual(f"{_SKIN}{number}", shape, RawPose(Pose(place)), material, element=actor.element)
-            for number, (shape, place, material) in enumerate(_PERSON)
+            Visual(f"{_SKIN_NAME}{number}", shape, RawPose(Pose(position)), material, element=actor.element)
+            for number, (shape, position, material) in enumerate(_PERSON_SHAPES)
         )
-        links.append(Link(_SKIN, visuals=visuals, element=actor.element))
+        links.append(Link(_SKIN_NAME, visuals=visuals, element=actor.element))
     elif actor.skin is not None and hips is not None:
         scale = actor.skin.scale
         x, y, z = (-scale * hip for hip in hips)
         mesh = Mesh(actor.skin.filename, (scale, scale, scale))
-        visual = Visual(_SKIN, mesh, RawPose(Pose((x, y, z))), element=actor.element)
-        links.append(Link(_SKIN, visuals=(visual,), element=actor.element))
+        visual = Visual(_SKIN_NAME, mesh, RawPose(Pose((x, y, z))), element=actor.element)
+        links.append(Link(_SKIN_NAME, visuals=(visual,), element=actor.element))
     return Model(actor.name, static=True, links=tuple(links), element=actor.element)
 
 
 def road_model(road: Road) -> Model:
-    """Return the model of a road: a strip along its points, whose top is at the height of the points."""
+    """Return the model of a road: a strip through its points, with its top surface at their height."""
     visuals: list[Visual] = []
     for start, end in zip(road.points, road.points[1:], strict=False):
         (x, y, z), (dx, dy, dz) = start, (end[0] - start[0], end[1] - start[1], end[2] - start[2])
         length = hypot(dx, dy, dz)
         if not length or not road.width > 0:
             continue
-        middle = (x + dx / 2, y + dy / 2, z + dz / 2 - _THICKNESS / 2)
+        middle = (x + dx / 2, y + dy / 2, z + dz / 2 - _ROAD_THICKNESS / 2)
         pose = RawPose(Pose(middle, (0.0, -atan2(dz, hypot(dx, dy)), atan2(dy, dx))))
-        visuals.append(Visual(f"part{len(visuals)}", Box((length, road.width, _THICKNESS)), pose, _ASPHALT))
-        bend = RawPose(Pose((end[0], end[1], end[2] - _THICKNESS / 2)))
-        visuals.append(Visual(f"part{len(visuals)}", Cylinder(road.width / 2, _THICKNESS), bend, _ASPHALT))
+        visuals.append(Visual(f"part{len(visuals)}", Box((length, road.width, _ROAD_THICKNESS)), pose, _ASPHALT))
+        joint_pose = RawPose(Pose((end[0], end[1], end[2] - _ROAD_THICKNESS / 2)))
+        visuals.append(Visual(f"part{len(visuals)}", Cylinder(road.width / 2, _ROAD_THICKNESS), joint_pose, _ASPHALT))
     link = Link("link", visuals=tuple(visuals[:-1]), element=road.element)
     return Model(road.name or "road", static=True, links=(link,), element=road.element)

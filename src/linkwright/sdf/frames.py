@@ -1,4 +1,4 @@
-"""Computes poses of frames in models and worlds, by SDF's "pose frame semantics".
+"""Computes poses of frames in models and worlds, according to SDF's "pose frame semantics".
 
 Source: the proposal "Pose Frame Semantics" of SDFormat, for SDF 1.7 and later. Poses in older files, which do not name
 frames, have the same result. A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the
@@ -17,10 +17,10 @@ from linkwright.geometry.single import (
     Vector3,
     compose,
     invert,
+    pose_quaternion,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
-    quaternion_of,
     rotate,
     rpy_from_quaternion,
 )
@@ -33,26 +33,26 @@ from linkwright.sdf.worlds import World
 Owner = Model | World
 Framed = Link | Joint | Frame | Model
 
-_NO_ANGLE = 1e-12
-"""Half an angle in radians that is none."""
+_ANGLE_TOLERANCE = 1e-12
+"""Rotation differences below this, in half radians, are rounding errors."""
 
 
 class FrameError(Exception):
     """Raised when a pose cannot be computed.
 
     Attributes:
-        name: the frame that does not exist, or one frame of a cycle.
-        circle: the frames of the cycle, in order; empty for a frame that does not exist.
+        name: the missing frame, or one frame of a cycle.
+        cycle: the frames of the cycle, in order; empty for a frame that does not exist.
     """
 
-    def __init__(self, name: str, circle: Sequence[str] = ()) -> None:
+    def __init__(self, name: str, cycle: Sequence[str] = ()) -> None:
         super().__init__(name)
         self.name = name
-        self.circle = tuple(circle)
+        self.cycle = tuple(cycle)
 
 
 class Frames:
-    """The frames of a model or world, by their names.
+    """Finds frames of a model or world by name, and computes their poses.
 
     Args:
         owner: the model or world, with its includes resolved.
@@ -60,12 +60,12 @@ class Frames:
 
     def __init__(self, owner: Owner) -> None:
         self.owner = owner
-        named: dict[str, Framed] = {}
+        elements_by_name: dict[str, Framed] = {}
         links = owner.links if isinstance(owner, Model) else ()
-        parts: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
-        for part in parts:
-            named.setdefault(part.name, part)
-        self.named = named
+        elements: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
+        for element in elements:
+            elements_by_name.setdefault(element.name, element)
+        self.named = elements_by_name
         self._roots = frozenset({"", MODEL} if isinstance(owner, Model) else {"", WORLD})
         self._inner: dict[str, Frames] = {}
         self._poses: dict[str, Transform] = {}
@@ -94,36 +94,37 @@ class Frames:
         """Return the pose of a frame in the model or world.
 
         Raises:
-            FrameError: the frame does not exist, or is indirectly defined relative to itself.
+            FrameError: the frame does not exist, or its pose depends on itself.
         """
-        pending: dict[str, None] = {}  # frames from the requested one to one with a known pose
+        pending: dict[str, None] = {}  # The chain from the requested frame to one with a computed pose.
         while name not in self._roots and name not in self._poses:
             if name in pending:
-                circle = list(pending)
-                raise FrameError(name, [*circle[circle.index(name) :], name])
+                pending_names = list(pending)
+                raise FrameError(name, [*pending_names[pending_names.index(name) :], name])
             pending[name] = None
             name = self._base(name)
-        found = self._poses.get(name, IDENTITY)
-        for item in reversed(pending):
-            found = self._poses[item] = compose(found, self._in_base(item))
-        return found
+        pose = self._poses.get(name, IDENTITY)
+        for pending_name in reversed(pending):
+            pose = self._poses[pending_name] = compose(pose, self._in_base(pending_name))
+        return pose
 
-    def placed(self, pose: RawPose, absent: str = "") -> Transform:
+    def placed(self, pose: RawPose, default_frame: str = "") -> Transform:
         """Return a written pose as a transform in the model or world.
 
         Args:
             pose: the pose as written.
-            absent: the frame to which a pose is relative that does not name a frame; the model or world if empty.
+            default_frame: the frame for a pose that does not name one; empty for the model or world.
 
         Raises:
             FrameError: as for `pose`.
         """
-        return compose(self.pose(pose.relative_to or absent), transform_of(pose.pose))
+        return compose(self.pose(pose.relative_to or default_frame), transform_of(pose.pose))
 
     def in_link(self, pose: RawPose, link: str) -> Transform:
         """Return the pose of a part of a link in the frame of the link.
 
-        As in libsdformat, a pose relative to an unknown frame is treated as relative to the link; `check` reports it.
+        As in libsdformat, a pose relative to a frame that does not exist is treated as relative to the link; `check`
+        reports the missing frame.
 
         Raises:
             FrameError: the link cannot be placed.
@@ -140,37 +141,37 @@ class Frames:
         """
         if not axis.expressed_in:
             return axis.xyz
-        in_owner = rotate(self.pose(axis.expressed_in)[3:], axis.xyz)
-        return rotate(invert(self.pose(joint.name))[3:], in_owner)
+        owner_direction = rotate(self.pose(axis.expressed_in)[3:], axis.xyz)
+        return rotate(invert(self.pose(joint.name))[3:], owner_direction)
 
     def link(self, name: str) -> str:
         """Return the name of the link to which a frame is attached.
 
-        The name is relative to this model or world; ``world`` is returned for a frame fixed to the world.
+        The name is relative to this model or world. For a frame that is fixed to the world, return ``world``.
 
         Raises:
-            FrameError: the frame does not exist, is indirectly attached to itself, or the model has no link.
+            FrameError: the frame does not exist, its attachment leads back to itself, or the model has no link.
         """
-        seen: dict[str, None] = {}
+        visited_names: dict[str, None] = {}
         while True:
-            if name in seen:
-                raise FrameError(name, [*list(seen)[list(seen).index(name) :], name])
-            seen[name] = None
+            if name in visited_names:
+                raise FrameError(name, [*list(visited_names)[list(visited_names).index(name) :], name])
+            visited_names[name] = None
             if name == WORLD or (name == "" and isinstance(self.owner, World)):
                 return WORLD
             if name in ("", MODEL):
                 return self._canonical_link()
-            found = self.named.get(name)
+            element = self.named.get(name)
             head, colon, tail = name.partition(SEPARATOR)
-            if found is None and colon:
+            if element is None and colon:
                 return f"{head}{SEPARATOR}{self.inside(head).link(tail)}"
-            if found is None:
+            if element is None:
                 raise FrameError(name)
-            if isinstance(found, Link):
+            if isinstance(element, Link):
                 return name
-            if isinstance(found, Model):
+            if isinstance(element, Model):
                 return f"{name}{SEPARATOR}{self.inside(name).link(MODEL)}"
-            name = found.attached_to if isinstance(found, Frame) else found.child
+            name = element.attached_to if isinstance(element, Frame) else element.child
 
     def _canonical_link(self) -> str:
         """Return the name of the canonical link: the link that the model declares, or else its first link.
@@ -184,8 +185,8 @@ class Frames:
             return self.link(model.canonical_link)
         if model.links:
             return model.links[0].name
-        for inner in model.models:
-            return f"{inner.name}{SEPARATOR}{self.inside(inner.name).link(MODEL)}"
+        for nested_model in model.models:
+            return f"{nested_model.name}{SEPARATOR}{self.inside(nested_model.name).link(MODEL)}"
         raise FrameError(MODEL)
 
     def _base(self, name: str) -> str:
@@ -194,24 +195,26 @@ class Frames:
         Raises:
             FrameError: the frame does not exist.
         """
-        found = self.named.get(name)
+        element = self.named.get(name)
         head, colon, _ = name.partition(SEPARATOR)
-        if found is None and colon:
+        if element is None and colon:
             return head
-        if found is None:
+        if element is None:
             raise FrameError(name)
-        absent = found.attached_to if isinstance(found, Frame) else found.child if isinstance(found, Joint) else ""
-        return found.pose.relative_to or absent
+        default_frame = (
+            element.attached_to if isinstance(element, Frame) else element.child if isinstance(element, Joint) else ""
+        )
+        return element.pose.relative_to or default_frame
 
     def _in_base(self, name: str) -> Transform:
         """Return the pose of a frame in the frame that `_base` returns."""
-        found = self.named.get(name)
-        if found is None:
+        element = self.named.get(name)
+        if element is None:
             head, _, tail = name.partition(SEPARATOR)
             return self.inside(head).pose(tail)
-        pose = transform_of(found.pose.pose)
-        if isinstance(found, Model) and found.placement_frame:
-            return compose(pose, invert(self.inside(name).pose(found.placement_frame)))
+        pose = transform_of(element.pose.pose)
+        if isinstance(element, Model) and element.placement_frame:
+            return compose(pose, invert(self.inside(name).pose(element.placement_frame)))
         return pose
 
 
@@ -221,11 +224,11 @@ class PlacedLink:
 
     Attributes:
         name: the name with the enclosing models: ``robot::arm::tip``.
-        link: the parsed link.
+        link: the link as the file describes it.
         model: the model that directly contains the link.
-        frames: the frames of that model.
+        frames: the frames of `model`.
         pose: the pose of the link's frame in the world.
-        static: whether that model, or a model that encloses it, never moves.
+        static: whether `model`, or a model that encloses it, never moves.
     """
 
     name: str
@@ -262,26 +265,26 @@ def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static
     """
     static = static or model.static
     for link in model.links:
-        place = compose(pose, frames.pose(link.name))
-        yield PlacedLink(f"{name}{SEPARATOR}{link.name}", link, model, frames, place, static)
-    for inner in model.models:
-        place = compose(pose, frames.pose(inner.name))
-        path = f"{name}{SEPARATOR}{inner.name}"
-        yield from links_of(inner, frames.inside(inner.name), place, path, static=static)
+        link_pose = compose(pose, frames.pose(link.name))
+        yield PlacedLink(f"{name}{SEPARATOR}{link.name}", link, model, frames, link_pose, static)
+    for nested_model in model.models:
+        link_pose = compose(pose, frames.pose(nested_model.name))
+        path = f"{name}{SEPARATOR}{nested_model.name}"
+        yield from links_of(nested_model, frames.inside(nested_model.name), link_pose, path, static=static)
 
 
 def transform_of(pose: Pose) -> Transform:
-    """Return a pose as a transform."""
-    return (*pose.xyz, *quaternion_of(pose))
+    """Return a pose as x, y, z in m and a quaternion x, y, z, w."""
+    return (*pose.xyz, *pose_quaternion(pose))
 
 
 def pose_of(transform: Transform) -> Pose:
-    """Return a transform as a pose with angles.
+    """Return a transform as a pose with roll, pitch and yaw.
 
-    The pose also has the quaternion if the angles do not represent the rotation exactly.
+    If these angles do not represent the rotation exactly, the pose also contains the quaternion.
     """
     rotation = transform[3:]
     rpy = rpy_from_quaternion(rotation)
     difference = quaternion_multiply(quaternion_from_rpy(rpy), quaternion_inverse(rotation))
-    exact = max(map(abs, difference[:3])) < _NO_ANGLE
-    return Pose(transform[:3], rpy, None if exact else rotation)
+    is_exact = max(map(abs, difference[:3])) < _ANGLE_TOLERANCE
+    return Pose(transform[:3], rpy, None if is_exact else rotation)

@@ -12,7 +12,7 @@ from typing import TypeVar
 from linkwright.diagnostics import Diagnostic, phrase, quoted_names
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf import shapes
-from linkwright.sdf.bodies import Body, Part, bodies_of
+from linkwright.sdf.bodies import Body, Part, rigid_bodies
 from linkwright.sdf.frames import pose_of, transform_of
 from linkwright.sdf.gazebo import Extensions, LinkExtension
 from linkwright.sdf.joints import Axis, AxisLimit, AxisMimic, Joint
@@ -30,13 +30,13 @@ from linkwright.urdf.bodies import Bodies
 
 _Posed = TypeVar("_Posed", Sensor, Light)
 
-_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
-"""URDF joint types and their SDF types; the child link of any other joint moves freely."""
-_LUMP = "_fixed_joint_lump__"
-_FRAME = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
-"""The mass of a link that has none and is fixed to one that has: without ``<inertial>`` SDF has 1 kg."""
-_BRIGHTER = 1.25
-"""A colour of URDF becomes brighter by this: gz's renderer shows colours darker than RViz does."""
+_SDF_JOINT_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
+"""The SDF joint type for each URDF type; other joints are left out, so that their child links move freely."""
+_LUMP_SEPARATOR = "_fixed_joint_lump__"
+_TINY_INERTIAL = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
+"""The mass properties of a massless link that is fixed to links with mass; without them, SDF assumes 1 kg."""
+_BRIGHTNESS_FACTOR = 1.25
+"""The factor that brightens URDF colours, because gz renders them darker than RViz does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Conversion:
 
     Attributes:
         model: the robot as an SDF model.
-        diagnostics: errors in the robot's ``<gazebo>`` elements, and parts that SDF cannot express.
+        diagnostics: errors in the robot's ``<gazebo>`` elements, and warnings about elements that SDF cannot express.
     """
 
     model: Model
@@ -58,9 +58,9 @@ def model_from_robot(robot: Robot, *, lump_fixed_joints: bool) -> Conversion:
     A root link called ``world`` represents the world. The addresses of meshes are not changed.
 
     Args:
-        robot: the robot.
-        lump_fixed_joints: whether links that fixed joints connect are merged into one link, which is the default in gz.
-            The original links then become frames, and links without a mass are left out. Otherwise all links and fixed
+        robot: the robot to convert.
+        lump_fixed_joints: whether to merge links that are connected by fixed joints, which is the default in gz. If
+            True, merged links become frames, and links without a mass are left out. If False, all links and fixed
             joints are kept.
     """
     report = SdfReport()
@@ -74,30 +74,30 @@ class _Converter:
         self._robot = robot
         self._extensions = extensions
         self._report = report
-        self._lumps = lump_fixed_joints
-        self._rigid = Bodies(robot)
+        self._is_lumping = lump_fixed_joints
+        self._rigid_bodies = Bodies(robot)
 
     def model(self) -> Model:
-        bodies = bodies_of(self._robot, self._is_lumped)
-        if self._lumps:
+        bodies = rigid_bodies(self._robot, self._is_lumped)
+        if self._is_lumping:
             bodies = self._remove_massless(bodies)
         parts = [part for body in bodies for part in body.parts]
         extensions = {part.link.name: self._extensions.link(part.link) for part in parts}
         joints = [self._joint(body, body.joint) for body in bodies if body.joint is not None]
         self._report_default_mass(bodies)
-        known = self._extensions.model(self._robot)
+        model_extension = self._extensions.model(self._robot)
         return replace(
-            known,
+            model_extension,
             name=self._robot.name,
-            links=(*(self._link(body, extensions) for body in bodies), *known.links),
-            joints=(*(joint for joint in joints if joint is not None), *known.joints),
-            frames=(*(frame for body in bodies for frame in self._frames(body)), *known.frames),
+            links=(*(self._link(body, extensions) for body in bodies), *model_extension.links),
+            joints=(*(joint for joint in joints if joint is not None), *model_extension.joints),
+            frames=(*(frame for body in bodies for frame in self._frames(body)), *model_extension.frames),
             element=self._robot.element,
         )
 
     def _is_lumped(self, joint: urdf.Joint) -> bool:
         return (
-            self._lumps
+            self._is_lumping
             and joint.type == "fixed"
             and not self._extensions.stays_fixed(joint)
             and not self._extensions.becomes_revolute(joint)
@@ -106,16 +106,16 @@ class _Converter:
     def _remove_massless(self, bodies: list[Body]) -> list[Body]:
         """Return the bodies that have mass; as in gz, descendants of massless bodies are also left out."""
         left_out: set[str] = set()
-        kept = []
+        bodies_with_mass = []
         for body in bodies:
             if body.parent in left_out:
                 left_out.add(body.name)
             elif sum(part.link.inertial.mass for part in body.parts if part.link.inertial) > 0:
-                kept.append(body)
+                bodies_with_mass.append(body)
             else:
                 left_out.add(body.name)
                 self._report_massless(body)
-        return kept
+        return bodies_with_mass
 
     def _report_massless(self, body: Body) -> None:
         element = body.parts[0].link.element
@@ -128,76 +128,88 @@ class _Converter:
 
     def _report_default_mass(self, bodies: list[Body]) -> None:
         """Report links without mass that can move: SDF gives them 1 kg, whereas gz leaves them out."""
-        if self._lumps:
+        if self._is_lumping:
             return
         links = [body.parts[0].link for body in bodies if body.joint is None or body.joint.type != "fixed"]
-        without = [link for link in links if link.inertial is None and self._tiny_inertial(link) is None]
-        element = next((link.element for link in without if link.element is not None), None)
+        massless_links = [link for link in links if link.inertial is None and self._inertial_for_massless(link) is None]
+        element = next((link.element for link in massless_links if link.element is not None), None)
         if element is not None:
             message = phrase(
-                "links without a mass get SDF's default of 1 kg, but gz leaves them out: {names}",
-                names=quoted_names(link.name for link in without),
+                "links without a mass have SDF's default mass of 1 kg, but gz leaves them out: {names}",
+                names=quoted_names(link.name for link in massless_links),
             )
-            hint = phrase("give each link an <inertial>: `linkwright inertia` computes them")
+            hint = phrase("give each link an <inertial>, which `linkwright inertia` computes")
             self._report.warning("SDF172", message, element, hint=hint)
 
     def _link(self, body: Body, extensions: dict[str, LinkExtension]) -> Link:
         extension = extensions[body.name].link
         link = body.parts[0].link
-        others = [extensions[part.link.name].link for part in body.parts[1:]]
-        poses = [part.pose for part in body.parts[1:]]
-        sensors = [_moved(sensor, pose) for other, pose in zip(others, poses, strict=True) for sensor in other.sensors]
-        lights = [_moved(light, pose) for other, pose in zip(others, poses, strict=True) for light in other.lights]
+        merged_extensions = [extensions[part.link.name].link for part in body.parts[1:]]
+        merged_poses = [part.pose for part in body.parts[1:]]
+        sensors = [
+            _in_body_frame(sensor, pose)
+            for other, pose in zip(merged_extensions, merged_poses, strict=True)
+            for sensor in other.sensors
+        ]
+        lights = [
+            _in_body_frame(light, pose)
+            for other, pose in zip(merged_extensions, merged_poses, strict=True)
+            for light in other.lights
+        ]
         return replace(
             extension,
             pose=self._pose(body),
-            inertial=_inertial(body.parts) or self._tiny_inertial(link),
+            inertial=_inertial(body.parts) or self._inertial_for_massless(link),
             visuals=(*_visuals(body, extensions), *extension.visuals),
             collisions=(*_collisions(body, extensions), *extension.collisions),
             sensors=(*extension.sensors, *sensors),
             lights=(*extension.lights, *lights),
-            gravity=extension.gravity and all(other.gravity for other in others),
+            gravity=extension.gravity and all(other.gravity for other in merged_extensions),
             self_collide=next(
-                (link.self_collide for link in (extension, *others) if link.self_collide is not None), None
+                (link.self_collide for link in (extension, *merged_extensions) if link.self_collide is not None), None
             ),
             element=link.element,
         )
 
-    def _tiny_inertial(self, link: urdf.Link) -> Inertial | None:
-        """Return a tiny inertial for a massless link that is fixed to links with mass; otherwise None.
+    def _inertial_for_massless(self, link: urdf.Link) -> Inertial | None:
+        """Return a tiny inertial if links are not lumped and the link is fixed to links with mass.
 
-        None is also returned if links are lumped.
+        Otherwise return None.
         """
-        rigid = self._rigid.of(link.name)
-        return _FRAME if not self._lumps and rigid is not None and self._rigid.mass(rigid) > 0 else None
+        rigid_body = self._rigid_bodies.of(link.name)
+        return (
+            _TINY_INERTIAL
+            if not self._is_lumping and rigid_body is not None and self._rigid_bodies.mass(rigid_body) > 0
+            else None
+        )
 
     def _pose(self, body: Body) -> RawPose:
-        """Return the pose of a body's link: zero relative to its joint, or the pose in the parent link."""
+        """Return the pose of a body's link: zero in the frame of its joint, or its pose in the parent link."""
         if body.joint is None:
             return RawPose()
-        if body.joint.type in _TYPES and body.joint.name not in self._robot.links:
+        if body.joint.type in _SDF_JOINT_TYPES and body.joint.name not in self._robot.links:
             return RawPose(relative_to=body.joint.name)
         return _pose_in_parent(body)
 
     def _joint(self, body: Body, joint: urdf.Joint) -> Joint | None:
-        if joint.type not in _TYPES:
+        if joint.type not in _SDF_JOINT_TYPES:
             if joint.type == "planar" and joint.element is not None:
                 message = phrase(
-                    "joint '{name}' is planar, which SDF does not support: it is left out", name=joint.name
+                    "joint '{name}' is left out, because SDF does not support planar joints", name=joint.name
                 )
                 hint = phrase("use two prismatic joints and a continuous joint instead")
                 self._report.warning("SDF171", message, joint.element, hint=hint)
             return None
         extension = self._extensions.joint(joint, self._robot)
-        kind, axis = _TYPES[joint.type], None
+        kind, axis = _SDF_JOINT_TYPES[joint.type], None
         if kind != "fixed":
             axis = _axis(joint, extension.axis or Axis())
-        elif self._lumps and self._extensions.becomes_revolute(joint):
+        elif self._is_lumping and self._extensions.becomes_revolute(joint):
             kind, axis = "revolute", Axis(limit=AxisLimit(0.0, 0.0))
         if joint.name in self._robot.links and joint.element is not None:
-            message = phrase("joint '{name}' has the name of a link, which SDF does not allow", name=joint.name)
+            message = phrase("joint '{name}' has the same name as a link, which SDF does not allow", name=joint.name)
             self._report.warning(
-                "SDF171", message, joint.element, "name", hint=phrase("give each of them its own name")
+                "SDF171", message, joint.element, "name", hint=phrase("give each of them a different name")
             )
         return replace(
             extension,
@@ -225,7 +237,7 @@ class _Converter:
         for sensor in self._extensions.joint(joint, self._robot).sensors:
             if sensor.element is not None:
                 message = phrase(
-                    "sensor '{name}' is left out: the links of joint '{joint}' are merged",
+                    "sensor '{name}' is left out, because the links of joint '{joint}' are merged",
                     name=sensor.name,
                     joint=joint.name,
                 )
@@ -240,15 +252,18 @@ def _pose_in_parent(body: Body) -> RawPose:
     return RawPose(body.pose, MODEL if body.parent == WORLD else body.parent)
 
 
-def _moved(posed: _Posed, pose: Transform) -> _Posed:
-    """Return a sensor or light of a link, with its pose in the frame of the link's body."""
+def _in_body_frame(posed: _Posed, pose: Transform) -> _Posed:
+    """Return a sensor or light with its pose converted from its link to the body that contains the link.
+
+    A pose relative to a named frame is not changed.
+    """
     if posed.pose.relative_to:
         return posed
     return replace(posed, pose=RawPose(pose_of(compose(pose, transform_of(posed.pose.pose)))))
 
 
-def _placed(pose: Pose, part: Part) -> RawPose:
-    """Return a pose in the frame of a body, given in the frame of one of the body's parts."""
+def _pose_in_body(pose: Pose, part: Part) -> RawPose:
+    """Convert a pose from the frame of a part to the frame of the body that contains it."""
     return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
 
 
@@ -265,40 +280,40 @@ def _inertial(parts: Sequence[Part]) -> Inertial | None:
 
 
 def _visuals(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Visual]:
-    shown = ((part, visual) for part in body.parts for visual in part.link.visuals)
-    for count, (part, visual) in enumerate(shown):
+    visuals = ((part, visual) for part in body.parts for visual in part.link.visuals)
+    for index, (part, visual) in enumerate(visuals):
         extension = extensions[part.link.name].visual
         yield replace(
             extension,
-            name=_name_of_shape(body, part, visual.name, "visual", count),
+            name=_shape_name(body, part, visual.name, "visual", index),
             geometry=_shape(visual.geometry),
-            pose=_placed(visual.origin, part),
+            pose=_pose_in_body(visual.origin, part),
             material=_material(visual.material, extension.material),
             element=visual.element,
         )
 
 
 def _collisions(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Collision]:
-    solid = ((part, collision) for part in body.parts for collision in part.link.collisions)
-    for count, (part, collision) in enumerate(solid):
+    collisions = ((part, collision) for part in body.parts for collision in part.link.collisions)
+    for index, (part, collision) in enumerate(collisions):
         yield replace(
             extensions[part.link.name].collision,
-            name=_name_of_shape(body, part, collision.name, "collision", count),
+            name=_shape_name(body, part, collision.name, "collision", index),
             geometry=_shape(collision.geometry),
-            pose=_placed(collision.origin, part),
+            pose=_pose_in_body(collision.origin, part),
             element=collision.element,
         )
 
 
-def _name_of_shape(body: Body, part: Part, own: str, kind: str, count: int) -> str:
+def _shape_name(body: Body, part: Part, shape_name: str, kind: str, count: int) -> str:
     """Return the name of a visual or collision, as libsdformat forms it.
 
     Examples are ``wheel_visual``, ``wheel_visual_1`` and ``base_fixed_joint_lump__camera_visual_2``.
     """
-    name = f"{own or part.link.name}_{kind}"
+    name = f"{shape_name or part.link.name}_{kind}"
     if count:
         name = f"{name}_{count}"
-    return name if name.startswith(body.name) else f"{body.name}{_LUMP}{name}"
+    return name if name.startswith(body.name) else f"{body.name}{_LUMP_SEPARATOR}{name}"
 
 
 def _shape(geometry: urdf.Geometry) -> shapes.Shape:
@@ -307,7 +322,7 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
     return geometry
 
 
-def _material(written: urdf.Material | None, extension: Material | None) -> Material | None:
+def _material(urdf_material: urdf.Material | None, extension: Material | None) -> Material | None:
     """Return the material of a visual, or None if there is none.
 
     The colours and scripts of ``<gazebo>`` take precedence over the URDF material.
@@ -318,20 +333,20 @@ def _material(written: urdf.Material | None, extension: Material | None) -> Mate
         and (look := gazebo_look(extension.script.name)) is not None
     ):
         return with_look(extension, look)
-    if written is None or (extension is not None and (extension.diffuse or extension.ambient)):
+    if urdf_material is None or (extension is not None and (extension.diffuse or extension.ambient)):
         return extension
-    found = extension or Material()
-    if written.rgba is not None:
-        red, green, blue, alpha = written.rgba
-        color = (_brighten(red), _brighten(green), _brighten(blue), alpha)
-        found = replace(found, ambient=color, diffuse=color)
-    if written.texture is not None and found.pbr is None:
-        found = replace(found, pbr=Pbr(metal=Workflow(albedo_map=written.texture)))
-    return found
+    sdf_material = extension or Material()
+    if urdf_material.rgba is not None:
+        red, green, blue, alpha = urdf_material.rgba
+        color = (_brightened(red), _brightened(green), _brightened(blue), alpha)
+        sdf_material = replace(sdf_material, ambient=color, diffuse=color)
+    if urdf_material.texture is not None and sdf_material.pbr is None:
+        sdf_material = replace(sdf_material, pbr=Pbr(metal=Workflow(albedo_map=urdf_material.texture)))
+    return sdf_material
 
 
-def _brighten(part: float) -> float:
-    return min(max(part * _BRIGHTER, 0.0), 1.0)
+def _brightened(component: float) -> float:
+    return min(max(component * _BRIGHTNESS_FACTOR, 0.0), 1.0)
 
 
 def _axis(joint: urdf.Joint, extension: Axis) -> Axis:

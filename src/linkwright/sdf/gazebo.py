@@ -1,8 +1,8 @@
-"""The element ``<gazebo>`` in a URDF, which only simulators read.
+"""Reads the ``<gazebo>`` elements of a URDF, which are meant for simulators.
 
-Most of its content is SDF for the link, joint or model to which it refers. Some of its tags are older than SDF and
-represent SDF elements (``mu1``, ``turnGravityOff``). Both are combined into one SDF element, which the SDF tables read,
-so that errors are reported at their positions in the URDF.
+Most of their content is SDF for the link, joint or model that the attribute ``reference`` names. Some tags, such as
+``mu1`` and ``turnGravityOff``, are older than SDF and represent SDF elements. Both are combined into one SDF element
+that keeps the positions in the URDF, so that the SDF reader reports errors there.
 
 Source: libsdformat's parser of URDF. That parser finds the shapes of a link by names derived from the link, and
 therefore skips shapes with other names; here the settings apply to all shapes of the link.
@@ -25,16 +25,16 @@ from linkwright.urdf import Robot
 from linkwright.urdf import model as urdf
 from linkwright.xmltree import Element, Text
 
-_Words = Mapping[str, tuple[str, ...]]
-"""A word of ``<gazebo>``: the SDF elements that it represents."""
+_PathsByTag = Mapping[str, tuple[str, ...]]
+"""Maps an old tag in ``<gazebo>`` to the paths of the SDF elements that it represents."""
 
-_MODEL_WORDS: _Words = {"static": ("static",)}
-_LINK_WORDS: _Words = {
+_MODEL_TAGS: _PathsByTag = {"static": ("static",)}
+_LINK_TAGS: _PathsByTag = {
     "turnGravityOff": ("gravity",),
     "selfCollide": ("self_collide",),
     "dampingFactor": ("velocity_decay/linear", "velocity_decay/angular"),
 }
-_COLLISION_WORDS: _Words = {
+_COLLISION_TAGS: _PathsByTag = {
     "mu1": ("surface/friction/ode/mu",),
     "mu2": ("surface/friction/ode/mu2",),
     "fdir1": ("surface/friction/ode/fdir1",),
@@ -45,28 +45,28 @@ _COLLISION_WORDS: _Words = {
     "laserRetro": ("laser_retro",),
     "maxContacts": ("max_contacts",),
 }
-_VISUAL_WORDS: _Words = {"material": ("material/script/name",)}
-_JOINT_WORDS: _Words = {
+_VISUAL_TAGS: _PathsByTag = {"material": ("material/script/name",)}
+_JOINT_TAGS: _PathsByTag = {
     "springReference": ("axis/dynamics/spring_reference",),
     "springStiffness": ("axis/dynamics/spring_stiffness",),
     "provideFeedback": ("physics/provide_feedback",),
 }
-_KEPT_FIXED = "preserveFixedJoint"
-_MADE_REVOLUTE = "disableFixedJointLumping"
-_OTHER_WORDS = frozenset(
+_KEEP_FIXED_TAG = "preserveFixedJoint"
+_MAKE_REVOLUTE_TAG = "disableFixedJointLumping"
+_OTHER_TAGS = frozenset(
     {
-        _KEPT_FIXED,
-        _MADE_REVOLUTE,
+        _KEEP_FIXED_TAG,
+        _MAKE_REVOLUTE_TAG,
         *("canonicalBody", "cfmDamping", "fudgeFactor", "implicitSpringDamper", "stopCfm", "stopErp"),
     }
 )
-"""Words of ``<gazebo>`` without a place in SDF, or in the part of SDF that is read."""
-_WORDS = frozenset({*_MODEL_WORDS, *_LINK_WORDS, *_COLLISION_WORDS, *_VISUAL_WORDS, *_JOINT_WORDS, *_OTHER_WORDS})
-_SHAPES = frozenset({"collision", "visual"})
-_NEGATED = frozenset({"turnGravityOff"})
-_TRUE, _FALSE = frozenset({"true", "yes", "1"}), frozenset({"false", "no", "0"})
-_MATERIALS = "file://media/materials/scripts/gazebo.material"
-"""The scripts of Gazebo's own materials."""
+"""Old tags in ``<gazebo>`` without an equivalent in SDF, or in the part of SDF that Linkwright reads."""
+_OLD_TAGS = frozenset({*_MODEL_TAGS, *_LINK_TAGS, *_COLLISION_TAGS, *_VISUAL_TAGS, *_JOINT_TAGS, *_OTHER_TAGS})
+_SHAPE_TAGS = frozenset({"collision", "visual"})
+_NEGATED_TAGS = frozenset({"turnGravityOff"})
+_TRUE_VALUES, _FALSE_VALUES = frozenset({"true", "yes", "1"}), frozenset({"false", "no", "0"})
+_MATERIALS_URI = "file://media/materials/scripts/gazebo.material"
+"""The address of the script that defines Gazebo's built-in materials."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,10 +85,10 @@ class LinkExtension:
 
 
 class Extensions:
-    """The ``<gazebo>`` elements of a robot, by their ``reference``.
+    """Finds and parses the ``<gazebo>`` elements of a robot by their ``reference``.
 
     Args:
-        robot: the robot.
+        robot: the robot with the ``<gazebo>`` elements.
         report: receives the errors in these elements.
     """
 
@@ -100,84 +100,92 @@ class Extensions:
                 self._by_name[element.attributes.get("reference", "")].append(element)
 
     def model(self, robot: Robot) -> Model:
-        """Return an SDF model with the settings of the whole robot.
+        """Return an SDF model from the ``<gazebo>`` elements that apply to the whole robot.
 
-        These are plugins, and links and joints that URDF cannot express.
+        It contains plugins, and links and joints that URDF cannot express.
         """
-        whole = _like(robot.element, "model", robot.name)
+        model_element = _element_at(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):
-            whole.children += _sdf_children(gazebo)
-            self._add_words(whole, gazebo, _MODEL_WORDS, MODEL)
-        model: Model = read_element(whole, MODEL, self._report)
+            model_element.children += _sdf_children(gazebo)
+            self._add_old_tags(model_element, gazebo, _MODEL_TAGS, MODEL)
+        model: Model = read_element(model_element, MODEL, self._report)
         return model
 
     def link(self, link: urdf.Link) -> LinkExtension:
         """Return the settings of a link, its visuals and its collisions."""
-        whole = _like(link.element, "link", link.name)
-        visual, collision = _like(link.element, "visual", link.name), _like(link.element, "collision", link.name)
+        link_element = _element_at(link.element, "link", link.name)
+        visual, collision = (
+            _element_at(link.element, "visual", link.name),
+            _element_at(link.element, "collision", link.name),
+        )
         for gazebo in self._by_name.get(link.name, ()):
-            whole.children += _sdf_children(gazebo)
-            for shape, words, rule in ((visual, _VISUAL_WORDS, VISUAL), (collision, _COLLISION_WORDS, COLLISION)):
+            link_element.children += _sdf_children(gazebo)
+            for shape, paths_by_tag, rule in ((visual, _VISUAL_TAGS, VISUAL), (collision, _COLLISION_TAGS, COLLISION)):
                 for element in gazebo.elements(shape.tag):
-                    _merge(shape, element)
-                self._add_words(shape, gazebo, words, rule)
-            self._add_words(whole, gazebo, _LINK_WORDS, LINK)
+                    _merge_shape_settings(shape, element)
+                self._add_old_tags(shape, gazebo, paths_by_tag, rule)
+            self._add_old_tags(link_element, gazebo, _LINK_TAGS, LINK)
         return LinkExtension(
-            read_element(whole, LINK, self._report),
+            read_element(link_element, LINK, self._report),
             read_element(visual, VISUAL, self._report),
             read_element(collision, COLLISION, self._report),
         )
 
     def joint(self, joint: urdf.Joint, robot: Robot) -> Joint:
-        """Return an SDF joint with the settings of a joint: sensors, a spring, and force feedback."""
-        whole = _like(joint.element, "joint", joint.name)
-        whole.attributes["type"] = "fixed"
-        _put(whole, "parent", joint.parent, whole)
-        _put(whole, "child", joint.child, whole)
+        """Return an SDF joint with the sensors, spring and force feedback of a joint."""
+        joint_element = _element_at(joint.element, "joint", joint.name)
+        joint_element.attributes["type"] = "fixed"
+        _put(joint_element, "parent", joint.parent, joint_element)
+        _put(joint_element, "child", joint.child, joint_element)
         for gazebo in self._by_name.get(joint.name, ()):
             if joint.name not in robot.links:
-                whole.children += map(_copied, _sdf_children(gazebo))
-            self._add_words(whole, gazebo, _JOINT_WORDS, JOINT)
-        found: Joint = read_element(whole, JOINT, self._report)
-        return found
+                joint_element.children += map(_copied_element, _sdf_children(gazebo))
+            self._add_old_tags(joint_element, gazebo, _JOINT_TAGS, JOINT)
+        sdf_joint: Joint = read_element(joint_element, JOINT, self._report)
+        return sdf_joint
 
     def stays_fixed(self, joint: urdf.Joint) -> bool:
-        """Return whether the links of a fixed joint are not merged (``preserveFixedJoint``)."""
-        return self._is_true(joint, _KEPT_FIXED)
+        """Return whether ``preserveFixedJoint`` prevents merging the links of a fixed joint."""
+        return self._is_true(joint, _KEEP_FIXED_TAG)
 
     def becomes_revolute(self, joint: urdf.Joint) -> bool:
-        """Return whether a fixed joint becomes a revolute joint that cannot move.
+        """Return whether ``disableFixedJointLumping`` makes a fixed joint a revolute joint that cannot move.
 
-        This is requested by ``disableFixedJointLumping``.
+        ``preserveFixedJoint`` takes precedence.
         """
-        return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
+        return self._is_true(joint, _MAKE_REVOLUTE_TAG) and not self.stays_fixed(joint)
 
-    def _is_true(self, joint: urdf.Joint, word: str) -> bool:
-        elements = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(word))
-        return any(_tag_value(element).casefold() in _TRUE for element in elements)
+    def _is_true(self, joint: urdf.Joint, tag: str) -> bool:
+        elements = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(tag))
+        return any(_tag_value(element).casefold() in _TRUE_VALUES for element in elements)
 
-    def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
+    def _add_old_tags(self, sdf_element: Element, gazebo: Element, words: _PathsByTag, rule: ElementRule) -> None:
         """Add the SDF elements for the old tags in `gazebo` to an element.
 
         If a tag occurs several times, its last value applies.
         """
-        for word in gazebo.elements():
-            for path in words.get(word.tag, ()):
-                place, text = _rule_at(rule, path), _tag_value(word)
-                assert place.text is not None
-                if place.text.type is TRUTH:
-                    text = _truth(word.tag, text)
+        for old_element in gazebo.elements():
+            for path in words.get(old_element.tag, ()):
+                value_rule, text = _rule_at(rule, path), _tag_value(old_element)
+                assert value_rule.text is not None
+                if value_rule.text.type is TRUTH:
+                    text = _boolean_text(old_element.tag, text)
                 try:
-                    place.text.type.read(text)
+                    value_rule.text.type.read(text)
                 except ValueError:
-                    self._report.malformed(_with_text(word, text), replace(place, tag=word.tag), place.text, whole)
+                    self._report.malformed(
+                        _with_text(old_element, text),
+                        replace(value_rule, tag=old_element.tag),
+                        value_rule.text,
+                        sdf_element,
+                    )
                     continue
-                _put(whole, path, text, word)
-                if word.tag == "material":
-                    _put(whole, "material/script/uri", _MATERIALS, word)
+                _put(sdf_element, path, text, old_element)
+                if old_element.tag == "material":
+                    _put(sdf_element, "material/script/uri", _MATERIALS_URI, old_element)
 
 
-def _like(element: Element | None, tag: str, name: str) -> Element:
+def _element_at(element: Element | None, tag: str, name: str) -> Element:
     """Return a new SDF element with the source position of a URDF element."""
     if element is None:
         return Element(tag, {"name": name})
@@ -185,58 +193,58 @@ def _like(element: Element | None, tag: str, name: str) -> Element:
 
 
 def _sdf_children(gazebo: Element) -> Iterator[Element]:
-    """Yield the child elements that are already SDF."""
-    return (element for element in gazebo.elements() if element.tag not in _WORDS and element.tag not in _SHAPES)
+    """Yield the SDF child elements of ``<gazebo>``, without old tags, visuals and collisions."""
+    return (element for element in gazebo.elements() if element.tag not in _OLD_TAGS and element.tag not in _SHAPE_TAGS)
 
 
-def _merge(shape: Element, given: Element) -> None:
-    """Add settings to those for all shapes of a link; a later surface or material replaces earlier ones."""
-    for element in given.elements():
+def _merge_shape_settings(shape: Element, settings: Element) -> None:
+    """Add settings to the element for all shapes of a link; a surface or material replaces an earlier one."""
+    for element in settings.elements():
         if element.tag in ("surface", "material"):
             shape.children = [other for other in shape.elements() if other.tag != element.tag]
-        shape.children.append(_copied(element))
+        shape.children.append(_copied_element(element))
 
 
-def _copied(element: Element) -> Element:
+def _copied_element(element: Element) -> Element:
     copy = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
-    copy.children = [_copied(child) if isinstance(child, Element) else child for child in element.children]
+    copy.children = [_copied_element(child) if isinstance(child, Element) else child for child in element.children]
     return copy
 
 
-def _put(whole: Element, path: str, text: str, place: Element) -> None:
-    """Set the text of a descendant at a path of tags, creating missing elements.
+def _put(ancestor: Element, path: str, text: str, place: Element) -> None:
+    """Set the text of the descendant at a path of tags, and create missing elements on this path.
 
     New elements have the source position of `place`.
     """
     for tag in path.split("/"):
-        inner = whole.first(tag)
-        if inner is None:
-            inner = Element(tag, None, place.source, place.offset, place.origin)
-            whole.children.append(inner)
-        whole = inner
-    whole.children[:] = [Text(text)]
+        child = ancestor.first(tag)
+        if child is None:
+            child = Element(tag, None, place.source, place.offset, place.origin)
+            ancestor.children.append(child)
+        ancestor = child
+    ancestor.children[:] = [Text(text)]
 
 
-def _with_text(word: Element, text: str) -> Element:
-    element = Element(word.tag, None, word.source, word.offset, word.origin)
+def _with_text(old_element: Element, text: str) -> Element:
+    element = Element(old_element.tag, None, old_element.source, old_element.offset, old_element.origin)
     element.children.append(Text(text))
     return element
 
 
-def _tag_value(word: Element) -> str:
+def _tag_value(old_element: Element) -> str:
     """Return the value of an old tag, from its attribute ``value`` or its text."""
-    return word.attributes.get("value", word.text()).strip()
+    return old_element.attributes.get("value", old_element.text()).strip()
 
 
-def _truth(word: str, text: str) -> str:
+def _boolean_text(tag: str, text: str) -> str:
     """Return the value of an old boolean tag as ``true`` or ``false``, as the SDF element requires.
 
     Any other text becomes ``false``.
     """
-    folded = text.casefold()
-    if word in _NEGATED:
-        return "true" if folded in _FALSE else "false"
-    return "true" if folded in _TRUE else "false"
+    folded_text = text.casefold()
+    if tag in _NEGATED_TAGS:
+        return "true" if folded_text in _FALSE_VALUES else "false"
+    return "true" if folded_text in _TRUE_VALUES else "false"
 
 
 def _rule_at(rule: ElementRule, path: str) -> ElementRule:

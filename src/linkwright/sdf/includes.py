@@ -19,10 +19,10 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import Sdf, World
 from linkwright.xmltree.reader import read_bytes
 
-_DEEPEST = 64
-"""Models that include models that include models ...; files go no deeper."""
+_MAX_DEPTH = 64
+"""The maximum depth of nested includes."""
 _MOST = 100_000
-"""The greatest number of models from a file: where models include others twice each, few lines make more."""
+"""The maximum number of included models: a few lines can create billions if each model includes another twice."""
 
 Entity = Model | Light | Actor
 
@@ -34,9 +34,9 @@ class Included:
     Attributes:
         sdf: the file with its includes replaced by the included models; an include that cannot be resolved remains.
         diagnostics: errors in the included files, and includes of missing files.
-        files: the files that were read, each once.
-        entities: the entities that the includes of worlds name, by the ``id()`` of the include's element; None for a
-            missing entity.
+        files: the files that were read, in order, as keys.
+        entities: the entity for each include of a world, by the ``id()`` of the include's element; None if it could
+            not be loaded.
     """
 
     sdf: Sdf
@@ -46,12 +46,12 @@ class Included:
 
 
 def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
-    """Replace the includes of a file by the models, lights and actors that they name.
+    """Replace the includes of a file with the models, lights and actors that they name.
 
     Args:
-        sdf: the parsed file.
-        path: the path of the file.
-        finder: finds models.
+        sdf: the content of the file.
+        path: the path of the file; relative addresses start from its folder.
+        finder: finds the files of included models.
     """
     resolver = _Resolver(finder)
     worlds = tuple(resolver.world(world, path) for world in sdf.worlds)
@@ -65,7 +65,7 @@ class _Named(Protocol):
 
 
 def _names(*groups: Iterable[_Named]) -> set[str]:
-    return {named.name for group in groups for named in group}
+    return {entity.name for group in groups for entity in group}
 
 
 class _Resolver:
@@ -79,10 +79,10 @@ class _Resolver:
 
     def world(self, world: World, path: Path) -> World:
         models = [self.model(model, path, ()) for model in world.models]
-        lights, actors, left = list(world.lights), list(world.actors), []
+        lights, actors, unresolved_includes = list(world.lights), list(world.actors), []
         names = _names(models, world.frames, world.joints)
         for include in world.includes:
-            entity = self.entities[id(include.element)] = self._included(include, path, ())
+            entity = self.entities[id(include.element)] = self._load_entity(include, path, ())
             self._check_name(entity, include, names)
             if isinstance(entity, Model):
                 models.append(entity)
@@ -91,7 +91,7 @@ class _Resolver:
             elif isinstance(entity, Actor):
                 actors.append(entity)
             else:
-                left.append(include)
+                unresolved_includes.append(include)
         populations = [
             replace(population, models=tuple(self.model(model, path, ()) for model in population.models[:1]))
             for population in world.populations
@@ -101,55 +101,55 @@ class _Resolver:
             models=tuple(models),
             lights=tuple(lights),
             actors=tuple(actors),
-            includes=tuple(left),
+            includes=tuple(unresolved_includes),
             populations=tuple(populations),
         )
 
     def model(self, model: Model, path: Path, chain: tuple[Path, ...]) -> Model:
         if not (model.models or model.includes):
             return model
-        inner = [self.model(nested, path, chain) for nested in model.models]
-        parts: list[tuple[Include, Model]] = []
-        left = []
-        names = _names(model.links, model.joints, model.frames, inner)
+        nested_models = [self.model(nested, path, chain) for nested in model.models]
+        merged_models: list[tuple[Include, Model]] = []
+        unresolved_includes = []
+        names = _names(model.links, model.joints, model.frames, nested_models)
         for include in model.includes:
-            entity = self._included(include, path, chain)
+            entity = self._load_entity(include, path, chain)
             if not include.merge:
                 self._check_name(entity, include, names)
             if not isinstance(entity, Model):
-                left.append(include)
+                unresolved_includes.append(include)
             elif include.merge:
-                parts.append((include, entity))
+                merged_models.append((include, entity))
             else:
-                inner.append(entity)
-        whole = replace(model, models=tuple(inner), includes=tuple(left))
-        for include, part in parts:
-            whole = self._merged(whole, part, include)
-        return whole
+                nested_models.append(entity)
+        resolved_model = replace(model, models=tuple(nested_models), includes=tuple(unresolved_includes))
+        for include, merged_model in merged_models:
+            resolved_model = self._merge_model(resolved_model, merged_model, include)
+        return resolved_model
 
-    def _merged(self, whole: Model, part: Model, include: Include) -> Model:
+    def _merge_model(self, enclosing_model: Model, included_model: Model, include: Include) -> Model:
         try:
-            return merged(whole, part)
+            return merged(enclosing_model, included_model)
         except FrameError as error:
             message = phrase(
-                "'{attribute}' names '{name}', which does not exist", attribute="placement_frame", name=error.name
+                "'{attribute}' refers to '{name}', which does not exist", attribute="placement_frame", name=error.name
             )
             self._report("SDF141", message, include, None, Severity.ERROR)
-            return merged(whole, replace(part, placement_frame=""))
+            return merged(enclosing_model, replace(included_model, placement_frame=""))
 
-    def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Entity | None:
-        """Return the included model, light or actor, with the changes of the include.
+    def _load_entity(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Entity | None:
+        """Return the included model, light or actor, with the changes that the include makes.
 
-        If it is missing, report this and return None.
+        If it cannot be loaded, report this and return None.
         """
         if not include.uri:
-            return None  # The reader has reported it.
-        found = self._finder.model(include.uri, path.parent)
-        if isinstance(found, Missing):
-            message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)
-            self._report("SDF160", message, include, found.hint, found.severity)
+            return None  # The reader has reported the missing address.
+        model_path = self._finder.model(include.uri, path.parent)
+        if isinstance(model_path, Missing):
+            message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=model_path.reason)
+            self._report("SDF160", message, include, model_path.hint, model_path.severity)
             return None
-        if found in chain or found == path or len(chain) >= _DEEPEST:
+        if model_path in chain or model_path == path or len(chain) >= _MAX_DEPTH:
             self._report("SDF161", phrase("'{uri}' includes itself", uri=include.uri), include, None)
             return None
         self._count += 1
@@ -157,21 +157,26 @@ class _Resolver:
             if self._count == _MOST + 1:
                 self._report("SDF161", phrase("more than {count} models are included", count=_MOST), include, None)
             return None
-        reading = self._read(found, include)
+        reading = self._read(model_path, include)
         if reading is None or reading.sdf is None:
             return None
         sdf = reading.sdf
         if sdf.models:
-            model = self.model(sdf.models[0], found, (*chain, path))
+            model = self.model(sdf.models[0], model_path, (*chain, path))
             return _apply_include(model, include)
         if sdf.lights or sdf.actors:
             entity: Light | Actor = sdf.lights[0] if sdf.lights else sdf.actors[0]
             return replace(entity, name=include.name or entity.name, pose=include.pose or entity.pose)
-        self._report("SDF160", phrase("'{uri}' is left out: there is no model in it", uri=include.uri), include, None)
+        self._report(
+            "SDF160",
+            phrase(("'{uri}' is left out because it does not contain a model"), uri=include.uri),
+            include,
+            None,
+        )
         return None
 
     def _check_name(self, entity: Entity | None, include: Include, names: set[str]) -> None:
-        """Add the name of an included model to `names`, and report it if the name is already used."""
+        """Report an included model whose name is in `names`, and add its name to them."""
         if not isinstance(entity, Model):
             return
         if entity.name in names:
@@ -183,21 +188,21 @@ class _Resolver:
     def _read(self, path: Path, include: Include) -> Reading | None:
         """Read an included file, or return the cached result; None if the file cannot be read.
 
-        The findings are added once, with a note that names the include.
+        Findings in the file are reported once, with a note at the position of the include.
         """
         if path in self._readings:
             return self._readings[path]
         self.files[path] = None
-        found: tuple[Diagnostic, ...]
+        diagnostics: tuple[Diagnostic, ...]
         reading = None
         try:
-            document, found = parse_as_gazebo(read_bytes(path), str(path))
+            document, diagnostics = parse_as_gazebo(read_bytes(path), str(path))
             reading = read(document)
-            found = (*found, *reading.diagnostics)
+            diagnostics = (*diagnostics, *reading.diagnostics)
         except LinkwrightError as error:
-            found = error.diagnostics
+            diagnostics = error.diagnostics
         note = Note(phrase("included here"), include.element.span() if include.element else None)
-        self.diagnostics += [diagnostic.with_changes(notes=(*diagnostic.notes, note)) for diagnostic in found]
+        self.diagnostics += [diagnostic.with_changes(notes=(*diagnostic.notes, note)) for diagnostic in diagnostics]
         self._readings[path] = reading
         return reading
 
@@ -211,14 +216,14 @@ class _Resolver:
     ) -> None:
         element = include.element
         uri = None if element is None else element.first("uri")
-        place = uri or element
-        span = None if place is None else place.span()
-        source = None if place is None else place.source
+        located_element = uri or element
+        span = None if located_element is None else located_element.span()
+        source = None if located_element is None else located_element.source
         self.diagnostics.append(Diagnostic(code, message, span, severity, hint=hint, source=source))
 
 
 def _apply_include(model: Model, include: Include) -> Model:
-    """Return a model with the changes of its include."""
+    """Return a model with the name, pose and other settings that its include overrides."""
     return replace(
         model,
         name=include.name or model.name,

@@ -51,7 +51,7 @@ class AxisLimit:
 class AxisDynamics:
     """The damping of an axis in N m s/rad or N s/m, its friction in N m or N, and its spring.
 
-    The spring pulls the joint towards a position in rad or m.
+    The spring, with a stiffness in N m/rad or N/m, pulls the joint towards `spring_reference` in rad or m.
     """
 
     damping: float = 0.0
@@ -62,7 +62,7 @@ class AxisDynamics:
 
 @dataclass(frozen=True, slots=True)
 class AxisMimic:
-    """A mimic relation (SDF 1.11), in rad or m.
+    """A relation that makes an axis follow another joint (SDF 1.11); positions are in rad or m.
 
     The position is multiplier * (position of `joint` - reference) + offset.
     """
@@ -81,7 +81,7 @@ class Axis:
     Attributes:
         xyz: the direction of the axis in the frame `expressed_in`.
         expressed_in: the name of a frame; empty for the frame of the joint.
-        initial_position: the initial position in rad or m, before SDF 1.9.
+        initial_position: the initial position in rad or m, which SDF had before 1.9.
     """
 
     xyz: Vector3 = (0.0, 0.0, 1.0)
@@ -98,15 +98,15 @@ class Joint:
 
     Attributes:
         type: one of `JOINT_TYPES`.
-        parent: a link or frame; ``world`` for the world.
-        child: a link or frame.
-        pose: the pose of the joint; by default in the frame of its child.
+        parent: the name of the parent link or frame; ``world`` for the world.
+        child: the name of the child link or frame.
+        pose: the pose of the joint, in the frame of its child unless it names another frame.
         axis: the first axis; None for a joint without axes.
         axis2: the second axis; None if the joint type has fewer than two axes.
         thread_pitch: for a screw joint, in metres per revolution (``screw_thread_pitch``); None if not given.
         gearbox_ratio: for a gearbox, the revolutions of the child, in the opposite direction, per revolution of the
             parent.
-        gearbox_reference_body: for a gearbox, the link relative to which both rotate.
+        gearbox_reference_body: for a gearbox, the link relative to which parent and child rotate.
         sensors: the force-torque sensors of the joint.
     """
 
@@ -131,26 +131,26 @@ class _Physics:
     ode: _Physics | None = None
 
 
-def _axis(xyz: tuple[Vector3, str] | None, use_parent_model_frame: bool, **parts: Any) -> Axis:
+def _axis(xyz: tuple[Vector3, str] | None, use_parent_model_frame: bool, **options: Any) -> Axis:
     direction, expressed_in = xyz or ((0.0, 0.0, 1.0), "")
-    return Axis(direction, expressed_in or (MODEL if use_parent_model_frame else ""), **parts)
+    return Axis(direction, expressed_in or (MODEL if use_parent_model_frame else ""), **options)
 
 
-def _direction(axis: Vector3, expressed_in: str) -> tuple[Vector3, str]:
+def _direction_with_frame(axis: Vector3, expressed_in: str) -> tuple[Vector3, str]:
     return axis, expressed_in
 
 
-def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
+def _limit(lower: float, upper: float, effort: float, velocity: float, **stop_parameters: float) -> AxisLimit:
     """Return axis limits in which unlimited values are infinite.
 
-    Unlimited are values of 1e16 and more, and negative efforts and velocities.
+    Positions of at least 1e16, and negative efforts and velocities, mean that there is no limit.
     """
     return AxisLimit(
         -inf if lower <= -1e16 else lower,
         inf if upper >= 1e16 else upper,
         inf if effort < 0 else effort,
         inf if velocity < 0 else velocity,
-        **rest,
+        **stop_parameters,
     )
 
 
@@ -160,8 +160,10 @@ def _joint(
     if screw_thread_pitch is None and thread_pitch is not None:
         # The older tag <thread_pitch> is in revolutions per metre, with the opposite sign.
         screw_thread_pitch = -6.283185307179586 / thread_pitch if thread_pitch else None
-    measured = physics is not None and (physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback))
-    return Joint(thread_pitch=screw_thread_pitch, provide_feedback=measured, **parts)
+    is_force_measured = physics is not None and (
+        physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback)
+    )
+    return Joint(thread_pitch=screw_thread_pitch, provide_feedback=is_force_measured, **parts)
 
 
 def _axis_rule(tag: str, meaning: str) -> ElementRule:
@@ -186,7 +188,7 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
                 field="axis",
                 get=lambda axis: axis.xyz,
             ),
-            make=_direction,
+            make=_direction_with_frame,
             get=lambda axis: axis,
         ),
         value(

@@ -16,7 +16,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Attenuation:
-    """The attenuation of light: 1 / (constant + linear d + quadratic d^2) at a distance of d metres.
+    """The decrease of light with distance: the factor 1 / (constant + linear d + quadratic d^2) at d metres.
 
     Beyond `range`, in metres, there is no light.
     """
@@ -31,7 +31,7 @@ class Attenuation:
 class Spot:
     """The cone of a spot light, with angles in radians.
 
-    The light is full within the inner angle, and does not reach beyond the outer angle.
+    The light has full intensity within the inner angle, and does not reach beyond the outer angle.
     """
 
     inner_angle: float = 0.0
@@ -45,14 +45,14 @@ class Light:
 
     Attributes:
         type: ``point``, ``directional`` or ``spot``.
-        pose: the pose of the light.
+        pose: the pose in the frame of the light's world or link, unless it names another frame.
         diffuse: the colour of the light.
         specular: the colour of highlights.
         direction: the direction of the rays in the light's own frame, for spot and directional lights.
         attenuation: the decrease of the light with distance.
         spot: the cone of a spot light; None for other types.
         cast_shadows: whether lit objects cast shadows.
-        intensity: a factor for the colour.
+        intensity: the factor by which the colour is multiplied.
         light_on: whether the light is switched on.
     """
 

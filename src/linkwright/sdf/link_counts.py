@@ -8,30 +8,30 @@ from __future__ import annotations
 from contextlib import suppress
 from xml.parsers import expat
 
-_SHORTEST = len('<link name="l"/>')
-_AROUND = frozenset({"sdf", "gazebo", "world", "model"})
-_COUNTED = frozenset({"link", "include"})
-"""Elements that count, and elements that contain them, except states and plugins. An included model has a link."""
+_MIN_LINK_LENGTH = len('<link name="l"/>')
+_CONTAINER_TAGS = frozenset({"sdf", "gazebo", "world", "model"})
+_COUNTED_TAGS = frozenset({"link", "include"})
+"""Elements to count, if they are only inside container elements; an include counts as one link."""
 
 
-def has_more_links(data: bytes | str, most: int) -> bool:
-    """Return whether the first world in a text has more than `most` links and includes.
+def has_more_links(data: bytes | str, limit: int) -> bool:
+    """Return whether the first world of a file has more than `limit` links and includes.
 
     Parsing stops as soon as the number is exceeded.
 
     Args:
-        data: the text; errors in its syntax are not reported here.
-        most: the maximum number.
+        data: the content of the file; syntax errors are not reported here.
+        limit: the maximum number of links and includes.
     """
-    if len(data) <= most * _SHORTEST:
+    if len(data) <= limit * _MIN_LINK_LENGTH:
         return False
     parser = expat.ParserCreate()
-    counter = _Counter(most)
+    counter = _Counter(limit)
     parser.StartElementHandler, parser.EndElementHandler = counter.begin, counter.end
     parser.EntityDeclHandler = counter.stop
     with suppress(expat.ExpatError, _DoneError, LookupError, ValueError):
         parser.Parse(data, True)
-    return counter.count > most
+    return counter.count > limit
 
 
 class _DoneError(Exception):
@@ -39,23 +39,23 @@ class _DoneError(Exception):
 
 
 class _Counter:
-    def __init__(self, most: int) -> None:
+    def __init__(self, limit: int) -> None:
         self.count = 0
-        self._most = most
-        self._inside = 0
+        self._limit = limit
+        self._skipped_depth = 0
 
     def begin(self, name: str, _attributes: dict[str, str]) -> None:
-        if name in _COUNTED and not self._inside:
+        if name in _COUNTED_TAGS and not self._skipped_depth:
             self.count += 1
-            if self.count > self._most:
+            if self.count > self._limit:
                 raise _DoneError
-        self._inside += name not in _AROUND
+        self._skipped_depth += name not in _CONTAINER_TAGS
 
     def end(self, name: str) -> None:
-        self._inside -= name not in _AROUND
-        if name == "world" and not self._inside:
+        self._skipped_depth -= name not in _CONTAINER_TAGS
+        if name == "world" and not self._skipped_depth:
             raise _DoneError
 
-    def stop(self, *_declared: object) -> None:
+    def stop(self, *_arguments: object) -> None:
         """Stop counting at an entity declaration, because an entity may contain any text."""
         raise _DoneError

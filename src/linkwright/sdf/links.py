@@ -21,7 +21,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """The inertia tensor about the centre of mass in the axes of the inertial frame, in kg m2."""
+    """The inertia tensor about the centre of mass, along the axes of the inertial frame, in kg m2."""
 
     ixx: float = 1.0
     iyy: float = 1.0
@@ -58,7 +58,7 @@ class Visual:
     Attributes:
         transparency: the transparency, from 0 for opaque to 1 for invisible.
         laser_retro: the intensity with which the visual reflects a laser; None if not specified.
-        visibility_flags: the bits that the visibility masks of cameras select.
+        visibility_flags: bits that a camera compares with its visibility mask to decide whether to show the visual.
     """
 
     name: str
@@ -75,10 +75,10 @@ class Visual:
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """A shape of a link that has contacts.
+    """A shape of a link that collides with other shapes.
 
     Attributes:
-        density: the density in kg/m3, for links whose mass is computed; None for the density of water.
+        density: the density in kg/m3 from which the mass of the link may be computed; None for the density of water.
         laser_retro: the intensity with which the collision reflects a laser; None if not specified.
         max_contacts: the maximum number of contact points with another shape.
     """
@@ -107,7 +107,7 @@ class Link:
 
     Attributes:
         pose: the pose of the link in the frame of its model.
-        inertial: the mass properties; None if not given, which means 1 kg and 1 kg m2.
+        inertial: the mass properties; None if not specified, which means 1 kg and 1 kg m2.
         gravity: whether gravity acts on the link.
         enable_wind: whether wind acts on the link.
         self_collide: whether the link collides with other links of its model; None for the setting of the model.

@@ -1,4 +1,4 @@
-"""A text that lists the contents of a world."""
+"""Lists the contents of an SDF file as text."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from linkwright.sdf.worlds import Sdf, World
 
 
 def list_contents(sdf: Sdf) -> str:
-    """Return a list of models, lights and actors, one per line, indented by two spaces per level."""
+    """Return the worlds, models, lights and actors of a file, one per line, indented by two spaces per level."""
     lines: list[str] = []
     for world in sdf.worlds:
-        lines += [_line(0, phrase("world {name}", name=world.name)), *_world(world)]
+        lines += [_line(0, phrase("world {name}", name=world.name)), *_world_lines(world)]
     for model in sdf.models:
-        lines += _model(model, 0)
-    return "".join(f"{line}\n" for line in (*lines, *_others(sdf, 0)))
+        lines += _model_lines(model, 0)
+    return "".join(f"{line}\n" for line in (*lines, *_actor_and_light_lines(sdf, 0)))
 
 
-def _world(world: World) -> Iterator[str]:
+def _world_lines(world: World) -> Iterator[str]:
     for model in world.models:
-        yield from _model(model, 1)
-    yield from _others(world, 1)
+        yield from _model_lines(model, 1)
+    yield from _actor_and_light_lines(world, 1)
     yield from (_line(1, phrase("{uri}: not found", uri=include.uri)) for include in world.includes)
 
 
-def _others(owner: Sdf | World, level: int) -> Iterator[str]:
+def _actor_and_light_lines(owner: Sdf | World, level: int) -> Iterator[str]:
     yield from (_line(level, phrase("actor {name}", name=actor.name)) for actor in owner.actors)
     for light in owner.lights:
         yield _line(level, phrase("light {name}: {kind}", name=light.name, kind=term(light.type)))
 
 
-def _model(model: Model, level: int) -> Iterator[str]:
+def _model_lines(model: Model, level: int) -> Iterator[str]:
     sensors = sum(len(link.sensors) for link in model.links)
-    parts = joined(
+    counts = joined(
         [
             counted("{count} link", "{count} links", len(model.links)),
             *([counted("{count} joint", "{count} joints", len(model.joints))] if model.joints else []),
@@ -44,11 +44,11 @@ def _model(model: Model, level: int) -> Iterator[str]:
         ]
     )
     if model.static:
-        yield _line(level, phrase("static model {name}: {parts}", name=model.name, parts=parts))
+        yield _line(level, phrase("static model {name}: {parts}", name=model.name, parts=counts))
     else:
-        yield _line(level, phrase("model {name}: {parts}", name=model.name, parts=parts))
-    for inner in model.models:
-        yield from _model(inner, level + 1)
+        yield _line(level, phrase("model {name}: {parts}", name=model.name, parts=counts))
+    for nested_model in model.models:
+        yield from _model_lines(nested_model, level + 1)
     yield from (_line(level + 1, phrase("{uri}: not found", uri=include.uri)) for include in model.includes)
 
 

@@ -17,23 +17,27 @@ from linkwright.urdf import model as urdf
 
 
 def lump_inertials(parts: Sequence[Part]) -> Inertial | None:
-    """Return the combined mass properties of a body's parts, or None if no part has any.
+    """Return the combined mass properties of a body's parts, or None if no part has a mass.
 
-    The axes of the inertia tensor are the axes of the first part's mass properties, or of the body if the first part
-    has none. Source of the axes: libsdformat's parser of URDF.
+    The axes of the inertia tensor are those of the first part's inertial frame, or of the body if the first part has no
+    mass. Source of these axes: libsdformat's URDF parser.
     """
-    bodies = [_mass_properties(part.link.inertial).moved(pose_of(part.pose)) for part in parts if part.link.inertial]
-    if not bodies:
+    part_properties = [
+        _mass_properties(part.link.inertial).moved(pose_of(part.pose)) for part in parts if part.link.inertial
+    ]
+    if not part_properties:
         return None
-    whole = combine(bodies)
-    first = parts[0].link.inertial
-    axes = Pose(rpy=first.origin.rpy, quaternion=first.origin.quaternion) if first else Pose()
-    turn = np.array(rotation(axes))
-    tensor = turn.T @ whole.inertia @ turn
-    ixx, iyy, izz, ixy, ixz, iyz = (float(tensor[place]) for place in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
-    x, y, z = map(float, whole.center)
+    combined = combine(part_properties)
+    first_inertial = parts[0].link.inertial
+    axes = (
+        Pose(rpy=first_inertial.origin.rpy, quaternion=first_inertial.origin.quaternion) if first_inertial else Pose()
+    )
+    rotation_matrix = np.array(rotation(axes))
+    tensor = rotation_matrix.T @ combined.inertia @ rotation_matrix
+    ixx, iyy, izz, ixy, ixz, iyz = (float(tensor[index]) for index in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+    x, y, z = map(float, combined.center)
     return Inertial(
-        float(whole.mass), RawPose(Pose((x, y, z), axes.rpy, axes.quaternion)), Inertia(ixx, iyy, izz, ixy, ixz, iyz)
+        float(combined.mass), RawPose(Pose((x, y, z), axes.rpy, axes.quaternion)), Inertia(ixx, iyy, izz, ixy, ixz, iyz)
     )
 
 

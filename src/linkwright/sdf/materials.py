@@ -13,10 +13,7 @@ from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, object_rule
 
 @dataclass(frozen=True, slots=True)
 class MaterialScript:
-    """A material that a script of the renderer defines, and the URIs of scripts and folders.
-
-    An example of a name is ``Gazebo/Grey``.
-    """
+    """A material that a script defines, such as ``Gazebo/Grey``, and the URIs of scripts and their folders."""
 
     uris: tuple[str, ...] = ()
     name: str = ""
@@ -24,10 +21,12 @@ class MaterialScript:
 
 @dataclass(frozen=True, slots=True)
 class Workflow:
-    """The images, and the roughness and metalness from 0 to 1, of a physically based material.
+    """The images and factors of a physically based material; images that are not used are empty.
 
     Attributes:
-        metalness: the metalness; None in the other workflow (specular and glossiness).
+        roughness: the roughness, from 0 for a mirror to 1 for a dull surface.
+        metalness: the metalness, from 0 to 1; not used in the specular workflow.
+        glossiness: the glossiness, from 0 for a dull surface to 1 for a mirror; only used in the specular workflow.
     """
 
     albedo_map: str = ""
@@ -47,7 +46,7 @@ class Workflow:
 
 @dataclass(frozen=True, slots=True)
 class Pbr:
-    """The workflows of a physically based material, from which a renderer chooses one."""
+    """A physically based material, described for one or two workflows; the renderer chooses between them."""
 
     metal: Workflow | None = None
     specular: Workflow | None = None
@@ -66,16 +65,16 @@ class Material:
     """The material of a visual; missing colours and images are None.
 
     Attributes:
-        ambient: the colour in the shade.
-        diffuse: the colour in the light.
+        ambient: the colour under ambient light.
+        diffuse: the colour under direct light.
         specular: the colour of highlights.
         emissive: the colour of emitted light.
         shininess: the specular exponent; higher values make highlights narrower.
         lighting: whether lights affect the material.
         double_sided: whether the surface is also visible from inside.
-        render_order: of overlapping surfaces, the one with the highest order is drawn on top.
-        script: a material of a script, which overrides the colours in Gazebo classic.
-        pbr: a physically based surface, which overrides everything else in gz-sim.
+        render_order: the drawing order of overlapping surfaces; the highest is drawn on top.
+        script: a material from a script, which overrides the colours in Gazebo classic.
+        pbr: a physically based material, which overrides everything else in gz-sim.
     """
 
     ambient: Color | None = None
@@ -91,17 +90,17 @@ class Material:
     pbr: Pbr | None = None
 
 
-def _map(tag: str, meaning: str) -> ElementRule:
+def _image_rule(tag: str, meaning: str) -> ElementRule:
     return value(tag, TEXT, meaning, default="")
 
 
-_MAPS = (
-    _map("albedo_map", "the image of the colour"),
-    _map("normal_map", "the image of the normals"),
-    _map("emissive_map", "the image of the emitted colour"),
-    _map("ambient_occlusion_map", "the image of the ambient occlusion"),
-    _map("environment_map", "the image of its reflections"),
-    _map("light_map", "the image of the light on it"),
+_COMMON_IMAGE_RULES = (
+    _image_rule("albedo_map", "the image of the colour"),
+    _image_rule("normal_map", "the image of the normals"),
+    _image_rule("emissive_map", "the image of the emitted colour"),
+    _image_rule("ambient_occlusion_map", "the image of the ambient occlusion"),
+    _image_rule("environment_map", "the image of its reflections"),
+    _image_rule("light_map", "the image of the light on it"),
 )
 
 MATERIAL = object_rule(
@@ -139,9 +138,9 @@ MATERIAL = object_rule(
             Workflow,
             "metal",
             "a surface by roughness and metalness",
-            *_MAPS,
-            _map("roughness_map", "the image of the roughness"),
-            _map("metalness_map", "the image of the metalness"),
+            *_COMMON_IMAGE_RULES,
+            _image_rule("roughness_map", "the image of the roughness"),
+            _image_rule("metalness_map", "the image of the metalness"),
             value("roughness", NUMBER, "from 0, a mirror, to 1, dull", default="0.5"),
             value("metalness", NUMBER, "from 0, none, to 1, metal", default="0.5"),
         ),
@@ -149,9 +148,9 @@ MATERIAL = object_rule(
             Workflow,
             "specular",
             "a surface by shine and glossiness",
-            *_MAPS,
-            _map("specular_map", "the image of the specular colour"),
-            _map("glossiness_map", "the image of the glossiness"),
+            *_COMMON_IMAGE_RULES,
+            _image_rule("specular_map", "the image of the specular colour"),
+            _image_rule("glossiness_map", "the image of the glossiness"),
             value("glossiness", NUMBER, "from 0, dull, to 1, a mirror", default="0"),
         ),
     ),

@@ -1,4 +1,4 @@
-"""Merged includes, ``<include merge="true">``, whose parts become parts of a model (SDF 1.9).
+"""Merges models from ``<include merge="true">`` into the models that include them (SDF 1.9).
 
 Source: the proposal "Merge include" of SDFormat and libsdformat's frame ``_merged__NAME__model__``.
 """
@@ -18,37 +18,46 @@ from linkwright.sdf.poses import MODEL, RawPose
 _Posed = TypeVar("_Posed", Link, Frame, Model)
 
 
-def merged(whole: Model, part: Model) -> Model:
-    """Return the model `whole` with the parts of the model `part` added.
+def merged(enclosing_model: Model, included_model: Model) -> Model:
+    """Return the model `enclosing_model` with the links, joints and other contents of the model `included_model`.
 
-    The added parts are placed in a new frame, which has the pose of `part`.
+    A new frame with the pose of `included_model` replaces its model frame.
 
     Raises:
-        FrameError: the placement frame of `part` does not exist.
+        FrameError: the placement frame of `included_model` does not exist.
     """
-    frame = f"_merged__{part.name}__model__"
-    pose = part.pose
-    if part.placement_frame:
-        inside = Frames(part).pose(part.placement_frame)
-        pose = RawPose(pose_of(compose(transform_of(pose.pose), invert(inside))), pose.relative_to)
-    anchor = part.canonical_link or (part.links[0].name if part.links else "")
+    frame_name = f"_merged__{included_model.name}__model__"
+    pose = included_model.pose
+    if included_model.placement_frame:
+        placement_transform = Frames(included_model).pose(included_model.placement_frame)
+        pose = RawPose(pose_of(compose(transform_of(pose.pose), invert(placement_transform))), pose.relative_to)
+    anchor_link = included_model.canonical_link or (included_model.links[0].name if included_model.links else "")
     pose = RawPose(pose.pose, pose.relative_to or MODEL)
-    frames = (Frame(frame, anchor, pose), *(_attached(_moved(other, frame), frame) for other in part.frames))
+    frames = (
+        Frame(frame_name, anchor_link, pose),
+        *(
+            _with_attachment(_with_pose_in_frame(nested_frame, frame_name), frame_name)
+            for nested_frame in included_model.frames
+        ),
+    )
     return replace(
-        whole,
-        links=(*whole.links, *(_moved(link, frame) for link in part.links)),
-        joints=(*whole.joints, *(_connected(joint, frame) for joint in part.joints)),
-        frames=(*whole.frames, *frames),
-        models=(*whole.models, *(_moved(model, frame) for model in part.models)),
-        plugins=(*whole.plugins, *part.plugins),
-        includes=(*whole.includes, *part.includes),  # those that cannot be resolved
+        enclosing_model,
+        links=(*enclosing_model.links, *(_with_pose_in_frame(link, frame_name) for link in included_model.links)),
+        joints=(
+            *enclosing_model.joints,
+            *(_with_frame_references(joint, frame_name) for joint in included_model.joints),
+        ),
+        frames=(*enclosing_model.frames, *frames),
+        models=(*enclosing_model.models, *(_with_pose_in_frame(model, frame_name) for model in included_model.models)),
+        plugins=(*enclosing_model.plugins, *included_model.plugins),
+        includes=(*enclosing_model.includes, *included_model.includes),  # those that cannot be resolved
     )
 
 
-def _moved(posed: _Posed, frame: str) -> _Posed:
-    """Return a part whose pose is relative to `frame` instead of its model's frame.
+def _with_pose_in_frame(posed: _Posed, frame: str) -> _Posed:
+    """Return an element with its pose relative to `frame` if it was relative to its model's frame.
 
-    A pose that is relative to another frame remains.
+    A pose that is relative to another frame is not changed.
     """
     pose = posed.pose
     is_attached = isinstance(posed, Frame) and posed.attached_to != ""
@@ -57,11 +66,11 @@ def _moved(posed: _Posed, frame: str) -> _Posed:
     return posed
 
 
-def _attached(attached: Frame, frame: str) -> Frame:
-    return replace(attached, attached_to=frame) if attached.attached_to in ("", MODEL) else attached
+def _with_attachment(nested_frame: Frame, frame: str) -> Frame:
+    return replace(nested_frame, attached_to=frame) if nested_frame.attached_to in ("", MODEL) else nested_frame
 
 
-def _connected(joint: Joint, frame: str) -> Joint:
+def _with_frame_references(joint: Joint, frame: str) -> Joint:
     """Return a joint in which references to the model's frame refer to `frame` instead.
 
     A pose without such a reference remains relative to the joint's child.
@@ -72,12 +81,12 @@ def _connected(joint: Joint, frame: str) -> Joint:
         parent=frame if joint.parent == MODEL else joint.parent,
         child=frame if joint.child == MODEL else joint.child,
         pose=pose,
-        axis=_turned(joint.axis, frame),
-        axis2=_turned(joint.axis2, frame),
+        axis=_with_axis_frame(joint.axis, frame),
+        axis2=_with_axis_frame(joint.axis2, frame),
     )
 
 
-def _turned(axis: Axis | None, frame: str) -> Axis | None:
+def _with_axis_frame(axis: Axis | None, frame: str) -> Axis | None:
     """Return an axis that is expressed in `frame` if it was expressed in its model's frame."""
     if axis is None or axis.expressed_in != MODEL:
         return axis

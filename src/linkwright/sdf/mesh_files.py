@@ -1,4 +1,4 @@
-"""Paths of the mesh and heightmap files of worlds and models."""
+"""Finds the mesh and heightmap files that models use."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ def shapes_of(model: Model) -> Iterator[Visual | Collision]:
     for link in model.links:
         yield from link.visuals
         yield from link.collisions
-    for inner in model.models:
-        yield from shapes_of(inner)
+    for nested_model in model.models:
+        yield from shapes_of(nested_model)
 
 
 def mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
-    """Return the existing mesh and heightmap files of models, each once."""
-    found: dict[Path, None] = {}
-    for shape in (item for model in models for item in shapes_of(model)):
+    """Return the mesh and heightmap files that models use and that exist, without duplicates."""
+    paths: dict[Path, None] = {}
+    for shape in (model_shape for model in models for model_shape in shapes_of(model)):
         if isinstance(shape.geometry, Mesh | Heightmap) and shape.element is not None and shape.element.source:
             path = finder.file(shape.geometry.uri, Path(shape.element.source.name).parent)
             if not isinstance(path, Missing):
-                found[path] = None
-    return tuple(found)
+                paths[path] = None
+    return tuple(paths)

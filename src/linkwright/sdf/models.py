@@ -24,7 +24,7 @@ class Frame:
     Attributes:
         attached_to: the link, joint, frame or model with which the frame moves; empty for the model or world that
             contains the frame.
-        pose: the pose of the frame; relative to `attached_to` by default.
+        pose: the pose of the frame, relative to `attached_to` unless it names another frame.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Include:
     """An included model, light or actor, with the changes that the include makes.
 
     Attributes:
-        uri: ``model://NAME``, a path or the address of a model.
+        uri: the address of the model: ``model://NAME``, a path or a URL.
         name: the name to use; empty for the name in the file.
         pose: the pose to use; None for the pose in the file.
         static: whether the model never moves; None for the setting of the file.
@@ -62,16 +62,16 @@ class Model:
     """A model, which consists of links, joints and nested models.
 
     Attributes:
-        pose: the pose of the model in the frame of the enclosing model or world.
+        pose: the pose of the model, relative to the enclosing model or world unless it names another frame.
         static: whether the model never moves.
         self_collide: whether the links of the model collide with each other.
         allow_auto_disable: whether the engine may put the model to sleep when it does not move.
         enable_wind: whether wind acts on the links.
         canonical_link: the link to which the model's frame is attached; empty for the first link.
         placement_frame: the frame of the model that is placed at `pose`; empty for the model's own frame.
-        scale: the scale in worlds that Gazebo classic saved, which few readers support.
+        scale: the scale along x, y and z in worlds that Gazebo classic saved; few readers support it.
         models: the nested models.
-        includes: the models from other files.
+        includes: the includes that are not yet, or cannot be, replaced by nested models.
     """
 
     name: str

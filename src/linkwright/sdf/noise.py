@@ -13,17 +13,17 @@ from linkwright.sdf.values import NUMBER, TEXT, never_written, object_rule, valu
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Noise on a value, in the unit of the value.
+    """The noise on a measured value, in the unit of the value.
 
     Attributes:
         type: ``none``, ``gaussian`` or ``gaussian_quantized``.
         mean: the mean of the noise.
-        stddev: the standard deviation.
-        bias_mean: the mean of a bias that is drawn once.
-        bias_stddev: the standard deviation of this bias.
-        dynamic_bias_stddev: the standard deviation of a drifting bias.
+        stddev: the standard deviation of the noise.
+        bias_mean: the mean of a constant bias, which is drawn once.
+        bias_stddev: the standard deviation of the constant bias.
+        dynamic_bias_stddev: the standard deviation of a bias that drifts.
         dynamic_bias_correlation_time: the correlation time of the drift, in seconds.
-        precision: the step to which quantized values are rounded.
+        precision: the step to which values with quantized noise are rounded.
     """
 
     type: str = "none"
@@ -50,7 +50,7 @@ class NoiseXyz:
 
 NO_NOISE_XYZ = NoiseXyz()
 
-_NOISE_PARTS = (
+_NOISE_RULES = (
     value("mean", NUMBER, "its mean", default="0"),
     value("stddev", NUMBER, "its standard deviation", default="0"),
     value("bias_mean", NUMBER, "the mean of a bias that is drawn once", default="0"),
@@ -61,12 +61,12 @@ _NOISE_PARTS = (
 )
 
 
-def _noise_of(type: str, old_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
-    """Return the noise that an element of any SDF version describes.
+def _noise_of(type: str, old_type: str, **parameters: float) -> Noise:  # noqa: A002 - the attribute's name
+    """Return the noise for the values in a ``<noise>`` element of any SDF version.
 
-    In older files, a child element gives the type. Numbers without a type mean Gaussian noise, as in Gazebo.
+    In older files, the type is a child element, `old_type`. Numbers without a type mean Gaussian noise, as in Gazebo.
     """
-    return Noise(old_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
+    return Noise(old_type or type or ("gaussian" if any(parameters.values()) else "none"), **parameters)
 
 
 def noise_rule() -> ElementRule:
@@ -77,7 +77,7 @@ def noise_rule() -> ElementRule:
         (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
         (
             value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="old_type", get=never_written),
-            *_NOISE_PARTS,
+            *_NOISE_RULES,
         ),
         make=_noise_of,
         keeps=True,
@@ -88,15 +88,19 @@ def noise_rule() -> ElementRule:
 
 def wrapped_noise_rule(tag: str, meaning: str, target: str = "") -> ElementRule:
     """Return the rule of an element that contains only ``<noise>``, such as ``<x>``."""
-    inside = replace(noise_rule(), get=_inner)
-    return object_rule(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
+    inner_rule = replace(noise_rule(), get=_same_noise)
+    return object_rule(_same_noise, tag, meaning, inner_rule, default=NO_NOISE, field=target or tag)
 
 
-def _inner(noise: Noise) -> Noise:
+def _same_noise(noise: Noise) -> Noise:
     return noise
 
 
-def noise_xyz_rule(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
-    """Return the rule of an element with noise for x, y and z; `absent` is the default."""
-    parts = (wrapped_noise_rule("x", "along x"), wrapped_noise_rule("y", "along y"), wrapped_noise_rule("z", "along z"))
-    return object_rule(NoiseXyz, tag, meaning, *parts, default=absent)
+def noise_xyz_rule(tag: str, meaning: str, default_noise: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
+    """Return the rule of an element with noise for x, y and z; `default_noise` is the value of a missing element."""
+    axis_rules = (
+        wrapped_noise_rule("x", "along x"),
+        wrapped_noise_rule("y", "along y"),
+        wrapped_noise_rule("z", "along z"),
+    )
+    return object_rule(NoiseXyz, tag, meaning, *axis_rules, default=default_noise)

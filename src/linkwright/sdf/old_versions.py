@@ -1,8 +1,8 @@
 """Translates SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
 
 SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
-have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. The table of the language determines
-which value belongs to which element; a few elements had other names. Source: ``1_0.convert`` of libsdformat.
+have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. The rules of the current SDF
+determine which attribute becomes which element; a few elements had other names. Source: ``1_0.convert`` of libsdformat.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from linkwright.schema import ElementRule
 from linkwright.xmltree import Element
 from linkwright.xmltree.nodes import Node, Text
 
-_RENAMED = {
+_NEW_NAMES = {
     ("mesh", "filename"): "uri",
     ("heightmap", "filename"): "uri",
     ("image", "filename"): "uri",
@@ -21,55 +21,57 @@ _RENAMED = {
     ("link", "damping"): "velocity_decay",
     ("physics", "update_rate"): "real_time_update_rate",
 }
-"""New names of attributes and elements, by the element around them and their old name."""
+"""The new names of attributes and elements, by the tag of the parent element and the old name."""
 _ORIGIN, _POSE = "origin", "pose"
-_VALUES = ("pose", "rgba", "xyz", "angle", "enabled", "link", "name")
-"""The attributes that had the value of an element."""
-_OLD = re.compile(r"1\.[012]").fullmatch
+_VALUE_ATTRIBUTES = ("pose", "rgba", "xyz", "angle", "enabled", "link", "name")
+"""Attributes that contained the value of an element that now has it as text."""
+_MATCH_OLD_VERSION = re.compile(r"1\.[012]").fullmatch
 
 
 def is_old(root: Element) -> bool:
     """Return whether a document declares SDF 1.0 to 1.2."""
-    return _OLD(root.attributes.get("version", "").strip()) is not None
+    return _MATCH_OLD_VERSION(root.attributes.get("version", "").strip()) is not None
 
 
 def upgraded(element: Element, rule: ElementRule) -> Element:
-    """Return an element translated to SDF 1.3, whose parts keep their positions in the source.
+    """Return a copy of an element translated to SDF 1.3; all elements keep their positions in the source.
 
     Args:
         element: an element of SDF 1.0 to 1.2, which is not changed.
         rule: the rule of the element in the current SDF.
     """
-    new = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
-    new.children = [_child(child, rule) if isinstance(child, Element) else child for child in element.children]
-    present = {child.tag for child in new.elements()}
+    new_element = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
+    new_element.children = [
+        _upgraded_child(child, rule) if isinstance(child, Element) else child for child in element.children
+    ]
+    existing_tags = {child.tag for child in new_element.elements()}
     for name, value in element.attributes.items():
-        tag = _RENAMED.get((rule.tag, name), name)
-        if name not in rule.attribute_rules and tag in rule.child_rules and tag not in present:
-            new.children.append(_value_element(element, rule.child_rules[tag], value))
+        tag = _NEW_NAMES.get((rule.tag, name), name)
+        if name not in rule.attribute_rules and tag in rule.child_rules and tag not in existing_tags:
+            new_element.children.append(_value_element(element, rule.child_rules[tag], value))
     if rule.text is not None and not element.text().strip():
-        value = next((element.attributes[name] for name in _VALUES if name in element.attributes), "")
-        new.children.append(Text(value))
-    return new
+        value = next((element.attributes[name] for name in _VALUE_ATTRIBUTES if name in element.attributes), "")
+        new_element.children.append(Text(value))
+    return new_element
 
 
-def _child(child: Element, rule: ElementRule) -> Node:
-    tag = _RENAMED.get((rule.tag, child.tag), child.tag)
+def _upgraded_child(child: Element, rule: ElementRule) -> Node:
+    tag = _NEW_NAMES.get((rule.tag, child.tag), child.tag)
     if child.tag == _ORIGIN and _POSE in child.attributes:
         tag = _POSE
     child_rule = rule.child_rules.get(tag)
     if child_rule is None or tag == "plugin":
         return child
-    new = upgraded(child, child_rule)
-    new.tag = tag
-    return new
+    new_element = upgraded(child, child_rule)
+    new_element.tag = tag
+    return new_element
 
 
 def _value_element(element: Element, rule: ElementRule, value: str) -> Element:
-    """Return the element that replaces an attribute of `element`; `rule` is the new element's rule."""
-    new = Element(rule.tag, None, element.source, element.offset, element.origin)
+    """Return the new element, described by `rule`, that replaces an attribute of `element`."""
+    new_element = Element(rule.tag, None, element.source, element.offset, element.origin)
     if "name" in rule.child_rules:
-        new.children.append(_value_element(element, rule.child_rules["name"], value))
+        new_element.children.append(_value_element(element, rule.child_rules["name"], value))
     else:
-        new.children.append(Text(value))
-    return new
+        new_element.children.append(Text(value))
+    return new_element

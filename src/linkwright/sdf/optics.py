@@ -1,4 +1,4 @@
-"""Camera models: pinhole cameras, and lenses with distortion.
+"""Computes the projection of cameras: pinhole cameras, and lenses with distortion.
 
 Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); image axes of
 REP 103: x to the right, y down, z into the image.
@@ -15,10 +15,10 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.cameras import Camera, Distortion
 
-_TURNS = 20
-"""The number of iterations that undistort a point."""
-_LARGEST = 2.0
-"""The greatest width of the pinhole image that is resampled for a distorted image, in widths of the latter."""
+_ITERATIONS = 20
+"""The number of fixed-point iterations to undistort a point."""
+_MAX_REACH = 2.0
+"""The maximum distance from the principal point to an edge of the pinhole image, in sizes of the final image."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class Optics:
     Attributes:
         width, height: the size of the image in pixels.
         fx, fy: the focal lengths in pixels.
-        cx, cy: the principal point, in pixels from the outer corner of the first pixel, whose centre is at 0.5.
+        cx, cy: the principal point in pixels; the centre of the first pixel is at 0.5.
         near, far: the limits of the visible distance along the optical axis, in m.
-        distortion: the distortion of the lens; None if there is none.
+        distortion: the distortion of the lens; None for a lens without distortion.
     """
 
     width: int
@@ -45,46 +45,46 @@ class Optics:
 
     @cached_property
     def rays(self) -> Array:
-        """The direction of each pixel, with x, y and z = 1, shape (height * width, 3)."""
-        across = (np.arange(self.width) + 0.5 - self.cx) / self.fx
-        down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
+        """The direction (x, y, 1) of each pixel in the axes of the image, shape (height * width, 3)."""
+        column_slopes = (np.arange(self.width) + 0.5 - self.cx) / self.fx
+        row_slopes = (np.arange(self.height) + 0.5 - self.cy) / self.fy
         x: Array
         y: Array
-        x, y = (item.ravel() for item in np.meshgrid(across, down))
+        x, y = (grid.ravel() for grid in np.meshgrid(column_slopes, row_slopes))
         if self.distortion is not None:
             x, y = undistorted(self.distortion, x, y)
         rays: Array = np.stack([x, y, np.ones_like(x)], axis=-1)
         return rays
 
     def directions(self, axes: Array) -> Array:
-        """Return the direction of each pixel in other axes, shape (height * width, 3), float32.
+        """Return the direction of each pixel in another frame, shape (height * width, 3), float32.
 
         Args:
-            axes: right, down and forwards, as columns.
+            axes: the image's axes (right, down, forwards) in that frame, as columns.
         """
-        across, down = self.slopes
-        directions = np.empty((len(across), 3), np.float32)
-        for index, (right, below, forwards) in enumerate(axes.astype(np.float32)):
-            directions[:, index] = across * right + down * below + forwards
+        x_slopes, y_slopes = self.slopes
+        directions = np.empty((len(x_slopes), 3), np.float32)
+        for index, (right_component, down_component, forward_component) in enumerate(axes.astype(np.float32)):
+            directions[:, index] = x_slopes * right_component + y_slopes * down_component + forward_component
         return directions  # type: ignore[return-value]  # 32 bits are enough here
 
     @cached_property
     def columns(self) -> tuple[float, float]:
-        """The minimum and maximum x at z = 1 of all pixels."""
-        across, _ = self.slopes
-        return float(across.min()), float(across.max())
+        """The minimum and maximum x at z = 1 over all pixels."""
+        x_slopes, _ = self.slopes
+        return float(x_slopes.min()), float(x_slopes.max())
 
     @cached_property
     def rows(self) -> tuple[float, float]:
-        """The minimum and maximum y at z = 1 of all pixels."""
-        _, down = self.slopes
-        return float(down.min()), float(down.max())
+        """The minimum and maximum y at z = 1 over all pixels."""
+        _, y_slopes = self.slopes
+        return float(y_slopes.min()), float(y_slopes.max())
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
         """The x and y at z = 1 of each pixel, both of shape (height * width,), float32."""
-        across, down, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
-        return across, down
+        x_slopes, y_slopes, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
+        return x_slopes, y_slopes
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
@@ -116,13 +116,13 @@ class Optics:
 
     @cached_property
     def pinhole(self) -> Optics:
-        """The optics of a pinhole camera whose image covers the image of this camera."""
+        """A pinhole camera with square pixels and an image that covers the image of this camera."""
         if self.is_pinhole:
             return self
         x, y = self.rays[:, 0], self.rays[:, 1]
         focal = max(self.fx, self.fy)
         left, right, top, bottom = (
-            min(focal * reach + 1.0, _LARGEST * size)
+            min(focal * reach + 1.0, _MAX_REACH * size)
             for reach, size in (
                 (-x.min(), self.width),
                 (x.max(), self.width),
@@ -136,17 +136,17 @@ class Optics:
 
     @cached_property
     def sources(self) -> tuple[Array, Array]:
-        """The column and row in the image of `pinhole` of each pixel, as fractional pixel indices."""
-        hole = self.pinhole
-        return self.rays[:, 0] * hole.fx + hole.cx - 0.5, self.rays[:, 1] * hole.fy + hole.cy - 0.5
+        """For each pixel, the fractional column and row in the image of `pinhole`."""
+        pinhole = self.pinhole
+        return self.rays[:, 0] * pinhole.fx + pinhole.cx - 0.5, self.rays[:, 1] * pinhole.fy + pinhole.cy - 0.5
 
     def project(self, points: Array) -> Array:
-        """Return the columns and rows in pixels, shape (n, 2), of points, shape (n, 3) with z > 0."""
+        """Project points, shape (n, 3) with z > 0, to columns and rows in pixels, shape (n, 2)."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if self.distortion is not None:
             x, y = distort(self.distortion, x, y)
-        placed: Array = np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
-        return placed
+        pixels: Array = np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
+        return pixels
 
 
 def optics_of(camera: Camera) -> Optics:
@@ -155,33 +155,35 @@ def optics_of(camera: Camera) -> Optics:
     clip = camera.clip
     nearest = max(clip.near, 1e-3)
     farthest = max(clip.far, nearest * 2)
-    given, lens = camera.distortion, camera.intrinsics
-    lossy = given is not None and any((given.k1, given.k2, given.k3, given.p1, given.p2))
+    distortion, intrinsics = camera.distortion, camera.intrinsics
+    is_distorted = distortion is not None and any(
+        (distortion.k1, distortion.k2, distortion.k3, distortion.p1, distortion.p2)
+    )
     focal = width / (2 * tan(min(max(camera.horizontal_fov, 1e-3), 3.1) / 2))
-    if lens is not None and lens.fx > 0 and lens.fy > 0:
-        place = lens.fx, lens.fy, lens.cx, lens.cy
+    if intrinsics is not None and intrinsics.fx > 0 and intrinsics.fy > 0:
+        focal_and_center = intrinsics.fx, intrinsics.fy, intrinsics.cx, intrinsics.cy
     else:
-        place = focal, focal, width / 2, height / 2
-    return Optics(width, height, *place, nearest, farthest, given if lossy else None)
+        focal_and_center = focal, focal, width / 2, height / 2
+    return Optics(width, height, *focal_and_center, nearest, farthest, distortion if is_distorted else None)
 
 
 def distort(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
     """Return x and y at z = 1 after the distortion of a lens."""
-    square = x * x + y * y
-    radial = 1 + square * (lens.k1 + square * (lens.k2 + square * lens.k3))
-    across = x * radial + 2 * lens.p1 * x * y + lens.p2 * (square + 2 * x * x)
-    down = y * radial + lens.p1 * (square + 2 * y * y) + 2 * lens.p2 * x * y
-    return across, down
+    squared_radius = x * x + y * y
+    radial = 1 + squared_radius * (lens.k1 + squared_radius * (lens.k2 + squared_radius * lens.k3))
+    distorted_x = x * radial + 2 * lens.p1 * x * y + lens.p2 * (squared_radius + 2 * x * x)
+    distorted_y = y * radial + lens.p1 * (squared_radius + 2 * y * y) + 2 * lens.p2 * x * y
+    return distorted_x, distorted_y
 
 
 def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return x and y at z = 1 before the distortion of a lens, found by fixed-point iteration.
+    """Return x and y at z = 1 before the distortion of a lens.
 
-    The arguments are returned where the iteration does not converge.
+    A fixed-point iteration computes them. Points for which it diverges are returned unchanged.
     """
-    across, down = x.copy(), y.copy()
-    for _ in range(_TURNS):
-        there = distort(lens, across, down)
-        across, down = across + (x - there[0]), down + (y - there[1])
-    wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # The comparison is false for NaN.
-    return np.where(wide, across, x), np.where(wide, down, y)
+    estimated_x, estimated_y = x.copy(), y.copy()
+    for _ in range(_ITERATIONS):
+        distorted = distort(lens, estimated_x, estimated_y)
+        estimated_x, estimated_y = estimated_x + (x - distorted[0]), estimated_y + (y - distorted[1])
+    has_converged = (np.abs(estimated_x) < 10) & (np.abs(estimated_y) < 10)  # The comparison is false for NaN.
+    return np.where(has_converged, estimated_x, x), np.where(has_converged, estimated_y, y)

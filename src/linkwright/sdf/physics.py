@@ -18,13 +18,13 @@ class Physics:
     """The settings of a physics engine.
 
     Attributes:
-        type: the engine for which the file was written.
-        default: whether to use these settings if there are several.
-        max_step_size: the step in seconds.
+        type: the engine for which the settings were written, such as ``ode``.
+        default: whether to use these settings if the world has several.
+        max_step_size: the maximum time step in seconds.
         real_time_factor: the maximum number of simulated seconds per real second.
         real_time_update_rate: steps per real second in Gazebo classic; 0 for as many as possible.
         max_contacts: the maximum number of contact points between two shapes.
-        gravity: the gravity in m/s2, up to SDF 1.5; None if not given.
+        gravity: the gravity in m/s2, up to SDF 1.5; None if not specified.
     """
 
     name: str = "default_physics"

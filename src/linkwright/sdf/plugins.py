@@ -9,13 +9,19 @@ from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.values import TEXT
 from linkwright.xmltree import Element
 
-_ENDING = re.compile(r"\.(so|dylib|dll)(\.[0-9.]+)?$")
-_GZ = re.compile(r"^(gz-sim|ignition-gazebo)[0-9]*-")
+_LIBRARY_SUFFIX = re.compile(r"\.(so|dylib|dll)(\.[0-9.]+)?$")
+_GZ_PREFIX = re.compile(r"^(gz-sim|ignition-gazebo)[0-9]*-")
 
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A plugin: the library file, its name (in gz-sim the class name), and the element with the parameters."""
+    """A library that the simulator loads.
+
+    Attributes:
+        filename: the file name of the library, with or without ``lib`` and ``.so``.
+        name: the name of the plugin; in gz-sim, the name of its class.
+        element: the ``<plugin>`` element, which contains the parameters.
+    """
 
     filename: str
     name: str = ""
@@ -38,20 +44,19 @@ PLUGIN = ElementRule(
 
 
 def library_name(filename: str) -> str:
-    """Return the name of a library without folders, ``lib``, ``.so`` and version.
+    """Return the name of a library without its folder, the prefix ``lib``, the suffix ``.so`` and the version.
 
     The prefix ``ignition-gazebo-`` becomes ``gz-sim-``.
     """
-    name = _ENDING.sub("", filename.strip().replace("\\", "/").rpartition("/")[2])
-    return _GZ.sub("gz-sim-", name.removeprefix("lib"))
+    name = _LIBRARY_SUFFIX.sub("", filename.strip().replace("\\", "/").rpartition("/")[2])
+    return _GZ_PREFIX.sub("gz-sim-", name.removeprefix("lib"))
 
 
 def original_library(class_name: str) -> str:
     """Return the library that defines a class, derived from the namespace of the class.
 
-    For example, it is ``ign_ros2_control-system`` for the namespace ``ign_ros2_control``, and empty for a class without
-    a namespace. Vendors ship copies of libraries under their own names, such as ``franka_ign_ros2_control-system``,
-    that keep the class.
+    For the namespace ``ign_ros2_control`` it is ``ign_ros2_control-system``; for a class without a namespace it is
+    empty. The class identifies copies that vendors rename, such as ``franka_ign_ros2_control-system``.
     """
     namespace, separator, _ = class_name.strip().partition("::")
     return f"{namespace}-system" if separator else ""

@@ -1,8 +1,8 @@
 """The element ``<population>``: copies of a model, distributed over a box or a cylinder.
 
-Source of the elements: the SDFormat specification 1.12, ``population.sdf``; of the positions and names, Gazebo
-classic's ``Population.cc``. In Gazebo classic, `random` and `uniform` give other positions with each start; here the
-positions are always the same.
+Sources: for the elements the SDFormat specification 1.12, ``population.sdf``; for the positions and names Gazebo
+classic's ``Population.cc``. In Gazebo classic, the positions of ``random`` and ``uniform`` differ with each start; here
+they are always the same.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from math import cos, pi, sin, sqrt
 from random import Random
 
 from linkwright.geometry.shapes import Box, Cylinder
-from linkwright.geometry.single import Pose, Vector3, quaternion_of, rotate
+from linkwright.geometry.single import Pose, Vector3, pose_quaternion, rotate
 from linkwright.schema import ElementRule
 from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
@@ -22,16 +22,16 @@ from linkwright.xmltree import Element
 
 _AXES = ("linear-x", "linear-y", "linear-z")
 KINDS = ("random", "uniform", "grid", *_AXES)
-"""The kinds of distributions."""
-_MOST = 100_000
-"""The greatest number of models of one population."""
+"""The values of ``<type>`` in a ``<distribution>``."""
+_MAX_MODELS = 100_000
+"""The maximum number of models in one population."""
 _GOLDEN_ANGLE = pi * (3 - sqrt(5))
-"""Points that turn on by it, one by one, fill a disc evenly."""
+"""The angle in radians between consecutive points of a spiral that fills a disc evenly."""
 
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """The distribution of models; `rows`, `columns` and `step` (in metres) apply to a grid."""
+    """How models are distributed; `rows`, `columns` and `step` (in metres) only apply to a grid."""
 
     type: str = "random"
     rows: int = 1
@@ -41,10 +41,10 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class Population:
-    """A population: a model and the distribution of its copies.
+    """A model and the distribution of its copies.
 
     Attributes:
-        pose: the pose of the box's centre, of the centre of the cylinder's base, or of the grid.
+        pose: the pose of the centre of the box or grid, or of the centre of the cylinder's base.
         models: the repeated model; only the first is used.
         count: the number of copies, unless the copies form a grid.
         box: the box that contains the copies; None if there is no box.
@@ -62,23 +62,28 @@ class Population:
 
 
 def models_of(population: Population) -> Iterator[Model]:
-    """Yield the models of a population, which are named ``NAME_clone_0`` and so on.
+    """Yield the models of a population, with the names ``NAME_clone_0``, ``NAME_clone_1`` and so on.
 
-    As in Gazebo, a population without a volume yields nothing, unless it is a grid.
+    As in Gazebo, a population without a box or cylinder has no models unless it is a grid.
     """
     if not population.models:
         return
     model = population.models[0]
     origin = population.pose.pose
-    corner = [each - half for each, half in zip(origin.xyz, _half(population), strict=True)]
-    rotation = quaternion_of(origin)
-    for index, place in enumerate(_places(population)):
-        x, y, z = (one + other for one, other in zip(corner, rotate(rotation, place), strict=True))
+    corner = [
+        coordinate - offset for coordinate, offset in zip(origin.xyz, _offset_from_corner(population), strict=True)
+    ]
+    rotation = pose_quaternion(origin)
+    for index, position in enumerate(_positions(population)):
+        x, y, z = (
+            corner_coordinate + position_coordinate
+            for corner_coordinate, position_coordinate in zip(corner, rotate(rotation, position), strict=True)
+        )
         yield replace(model, name=f"{model.name}_clone_{index}", pose=RawPose(Pose((x, y, z))))
 
 
-def _half(population: Population) -> Vector3:
-    """Return the offset from the corner of the volume to its pose; Gazebo does not rotate this offset."""
+def _offset_from_corner(population: Population) -> Vector3:
+    """Return the offset in metres from the first corner of a volume to its pose; Gazebo does not rotate it."""
     distribution = population.distribution
     if distribution.type == "grid":
         x, y, _ = distribution.step
@@ -89,44 +94,44 @@ def _half(population: Population) -> Vector3:
     return x / 2, y / 2, z / 2
 
 
-def _places(population: Population) -> Iterator[Vector3]:
-    distribution, count = population.distribution, min(population.count, _MOST)
-    chance = Random(population.name)  # noqa: S311 - the same with each start, on purpose
+def _positions(population: Population) -> Iterator[Vector3]:
+    distribution, count = population.distribution, min(population.count, _MAX_MODELS)
+    generator = Random(population.name)  # noqa: S311 - the same with each start, on purpose
     if distribution.type == "grid":
         x, y, _ = distribution.step
-        for index in range(min(distribution.rows * distribution.columns, _MOST)):
+        for index in range(min(distribution.rows * distribution.columns, _MAX_MODELS)):
             row, column = divmod(index, distribution.columns)
             yield column * x, row * y, 0.0
     elif population.box is not None:
-        yield from _positions_in_box(distribution.type, count, population.box, chance)
+        yield from _positions_in_box(distribution.type, count, population.box, generator)
     elif population.cylinder is not None and distribution.type not in _AXES:
-        yield from _positions_in_cylinder(distribution.type, count, population.cylinder, chance)
+        yield from _positions_in_cylinder(distribution.type, count, population.cylinder, generator)
 
 
-def _positions_in_box(kind: str, count: int, box: Box, chance: Random) -> Iterator[Vector3]:
+def _positions_in_box(kind: str, count: int, box: Box, generator: Random) -> Iterator[Vector3]:
     x, y, z = box.size
     columns = max(1, round(sqrt(count * x / y))) if x > 0 and y > 0 else 1
     rows = -(-count // columns)
     for index in range(count):
         if kind == "random":
-            yield chance.uniform(0, x), chance.uniform(0, y), chance.uniform(0, z)
+            yield generator.uniform(0, x), generator.uniform(0, y), generator.uniform(0, z)
         elif kind == "uniform":
             row, column = divmod(index, columns)
-            yield (column + 0.5) * x / columns, (row + 0.5) * y / rows, chance.uniform(0, z)
+            yield (column + 0.5) * x / columns, (row + 0.5) * y / rows, generator.uniform(0, z)
         else:
-            middle = [x / 2, y / 2, z / 2]
-            along = _AXES.index(kind)
-            middle[along] = box.size[along] * index / count
-            yield middle[0], middle[1], middle[2]
+            position = [x / 2, y / 2, z / 2]
+            axis_index = _AXES.index(kind)
+            position[axis_index] = box.size[axis_index] * index / count
+            yield position[0], position[1], position[2]
 
 
-def _positions_in_cylinder(kind: str, count: int, cylinder: Cylinder, chance: Random) -> Iterator[Vector3]:
+def _positions_in_cylinder(kind: str, count: int, cylinder: Cylinder, generator: Random) -> Iterator[Vector3]:
     for index in range(count):
         if kind == "random":
-            angle, radius = chance.uniform(0, 2 * pi), chance.uniform(0, cylinder.radius)
+            angle, radius = generator.uniform(0, 2 * pi), generator.uniform(0, cylinder.radius)
         else:
             angle, radius = index * _GOLDEN_ANGLE, cylinder.radius * sqrt((index + 0.5) / count)
-        yield radius * cos(angle), radius * sin(angle), chance.uniform(0, cylinder.length)
+        yield radius * cos(angle), radius * sin(angle), generator.uniform(0, cylinder.length)
 
 
 POPULATION = ElementRule(

@@ -16,17 +16,17 @@ WORLD = "world"
 MODEL = "__model__"
 """The name of the enclosing model's frame in poses and joints."""
 SEPARATOR = "::"
-"""The separator between the name of a model and that of something in it."""
+"""The separator between the name of a model and the name of an element in it."""
 
 
 @dataclass(frozen=True, slots=True)
 class RawPose:
-    """A pose as written; `linkwright.sdf.frames` computes the pose in the model.
+    """A pose as the file states it; `linkwright.sdf.frames` computes the pose in the model or world.
 
     Attributes:
         pose: the pose in the frame named by `relative_to`.
-        relative_to: a frame, link, joint or model; empty for the default, which is the enclosing element, or for a
-            joint its child link.
+        relative_to: the name of a frame, link, joint or model. If empty, the pose of a joint is relative to its child
+            link, and any other pose to the enclosing element.
     """
 
     pose: Pose = IDENTITY_POSE
@@ -36,7 +36,7 @@ class RawPose:
 AT_ORIGIN = RawPose()
 
 
-def _written(**values: Any) -> dict[str, Any]:
+def _values_as_dict(**values: Any) -> dict[str, Any]:
     return values
 
 
@@ -79,7 +79,7 @@ POSE = ElementRule(
         field="numbers",
         get=lambda raw: (*raw.pose.xyz, *(raw.pose.quaternion or raw.pose.rpy)),
     ),
-    make=_written,
+    make=_values_as_dict,
     check=_read,
     default=AT_ORIGIN,
 )

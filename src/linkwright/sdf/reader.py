@@ -1,7 +1,7 @@
-"""Reads an SDF document into worlds and models, and reports all of its errors as findings.
+"""Reads the worlds and models of an SDF document, and reports its errors as findings.
 
-Like libsdformat, the reader continues after an error if it can: a missing value has its default, and an invalid value
-counts as missing. If libsdformat rejects the file at that point, the finding is an error.
+Like libsdformat, the reader continues after an error if it can: it uses the default for a missing or invalid
+value. If libsdformat rejects the file at that point, the finding is an error.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from linkwright.sdf.worlds import SDF, Sdf
 from linkwright.xmltree import Document, Element
 
 _OLD_ROOT = "gazebo"
-"""The root of SDF 1.0 to 1.2."""
+"""The tag of the root element in SDF 1.0 to 1.2."""
 _FRAME = "frame"
-"""The frame that everything with a pose could have in SDF 1.5 and 1.6."""
+"""The child element that any element with a pose could have in SDF 1.5 and 1.6."""
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
 _NEWEST_FLAT_MINOR = 7
 _NEWEST_LENIENT_MINOR = 6
-_DEEPEST = 200
-"""Elements in elements; a model of ten models in each other has twenty."""
-_NAMED = frozenset({"world", "model", "link", "joint", "frame", "light", "actor"})
-_SIBLINGS = ("visual", "collision", "sensor", "light")
+_MAX_DEPTH = 200
+"""The maximum nesting depth of elements."""
+_SHARED_NAMESPACE_TAGS = frozenset({"world", "model", "link", "joint", "frame", "light", "actor"})
+_SEPARATE_NAMESPACE_TAGS = ("visual", "collision", "sensor", "light")
 _OTHER_FORMATS = {
     "robot": phrase("a URDF file"),
     "mujoco": phrase("a MuJoCo model"),
-    "gazebo:world": phrase("a world of Gazebo before 1.0"),
+    "gazebo:world": phrase("a world of a Gazebo version before 1.0"),
     "COLLADA": phrase("a COLLADA mesh"),
     "launch": phrase("a launch file"),
 }
@@ -103,9 +103,9 @@ WITHOUT_EFFECT = {
     "road": {"material"},
     "metal": {"subsurface"},
 }
-"""Words of SDF that have no effect here, by the elements around them, and elements that ros2_control reads itself."""
+"""Child elements, by their parent, that Linkwright knows and ignores, and those that ros2_control reads itself."""
 OPEN = frozenset({"plugin", "gui", "state"})
-"""Elements whose content other programs define, and the state that Gazebo saved."""
+"""Elements with content that other programs define, and the state that Gazebo saved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ class Reading:
     """The parsed content of a document, and the findings.
 
     Attributes:
-        sdf: the parsed document; None if it is not SDF.
+        sdf: the content of the document; None if it is not SDF or is nested too deeply.
         diagnostics: all errors and warnings, in the order of the text.
     """
 
@@ -122,7 +122,7 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Read an SDF document; errors in its content are reported as findings and never raised."""
+    """Return the content of an SDF document, with all errors as findings; no error is raised."""
     report = SdfReport()
     root = document.root
     if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
@@ -140,32 +140,36 @@ def read(document: Document) -> Reading:
 
 
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
-    """Read an element, and report all mistakes in it.
+    """Return the object that an element describes, and report all mistakes in the element.
 
-    Check the element with `is_too_deep` first.
+    The caller must first check the element with `is_too_deep`.
     """
-    found = reader_of(rule, NEWEST).read(element, element, report)
-    flat = _allows_separators(element)
-    known = list(_known(element, rule))
-    static_links = links_of_static_models(each for each, _ in known)
-    for each, each_rule in known:
-        _check_names(each, report, flat=flat)
-        unread = [
+    content = reader_of(rule, NEWEST).read(element, element, report)
+    allows_separators = _allows_separators(element)
+    known_elements = list(_known_elements(element, rule))
+    static_links = links_of_static_models(known_element for known_element, _ in known_elements)
+    for nested_element, nested_rule in known_elements:
+        _check_names(nested_element, report, flat=allows_separators)
+        unread_children = [
             child
-            for child in each.elements()
-            if child.tag not in each_rule.child_rules and not _is_ignored(child, each_rule)
+            for child in nested_element.elements()
+            if child.tag not in nested_rule.child_rules and not _is_ignored(child, nested_rule)
         ]
-        report.unknown_elements(unread, each_rule, [changes_nothing(child, each, static_links) for child in unread])
-    return found
+        report.unknown_elements(
+            unread_children,
+            nested_rule,
+            [changes_nothing(child, nested_element, static_links) for child in unread_children],
+        )
+    return content
 
 
 def is_too_deep(root: Element, report: SdfReport) -> bool:
-    """Return whether an element is nested too deeply to be read, and report it if so."""
-    deep = _too_deep(root)
-    if deep is not None:
-        message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
-        report.reject("SDF133", message, deep, hint=phrase("is a closing tag missing?"))
-    return deep is not None
+    """Return whether elements in `root` are nested too deeply to be read, and report it if so."""
+    deep_element = _find_too_deep(root)
+    if deep_element is not None:
+        message = phrase("elements are nested more than {count} deep", count=_MAX_DEPTH)
+        report.reject("SDF133", message, deep_element, hint=phrase("is a closing tag missing?"))
+    return deep_element is not None
 
 
 def _explain_root(root: Element, report: SdfReport) -> None:
@@ -179,65 +183,65 @@ def _explain_root(root: Element, report: SdfReport) -> None:
 
 
 def _check_version(root: Element, report: SdfReport) -> None:
-    written = root.attributes.get("version")
-    if written is None:
+    version_text = root.attributes.get("version")
+    if version_text is None:
         return  # The reader reports a missing version.
-    found = _VERSION(written.strip())
-    if found and int(found[1]) <= NEWEST[1]:
+    version_match = _VERSION(version_text.strip())
+    if version_match and int(version_match[1]) <= NEWEST[1]:
         return
-    message = phrase("SDF version '{written}' is not known", written=written)
-    hint = phrase("the versions are 1.0 to 1.12; the file is read as 1.12")
+    message = phrase("SDF version '{written}' does not exist", written=version_text)
+    hint = phrase("use a version from 1.0 to 1.12; the file is read as 1.12")
     report.warning("SDF102", message, root, "version", hint=hint)
 
 
-def _too_deep(root: Element) -> Element | None:
-    """Return an element that is nested too deeply, or None if there is none."""
-    waiting = [(root, 0)]
-    while waiting:
-        element, depth = waiting.pop()
-        if depth > _DEEPEST:
+def _find_too_deep(root: Element) -> Element | None:
+    """Return a descendant that is nested too deeply, or None if there is none."""
+    pending = [(root, 0)]
+    while pending:
+        element, depth = pending.pop()
+        if depth > _MAX_DEPTH:
             return element
-        waiting.extend((child, depth + 1) for child in element.elements())
+        pending.extend((child, depth + 1) for child in element.elements())
     return None
 
 
-def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
+def _known_elements(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
     """Yield an element and its known descendants in document order, each with its rule.
 
-    Elements whose content other programs define are left out.
+    The elements in `OPEN` and their content are left out.
     """
-    waiting = [(root, rule)]
-    while waiting:
-        element, rule = waiting.pop()
+    pending = [(root, rule)]
+    while pending:
+        element, rule = pending.pop()
         if rule.tag in OPEN:
             continue
         yield element, rule
         rules = rule.child_rules
-        inner = [(child, rules[child.tag]) for child in element.elements() if child.tag in rules]
-        waiting.extend(reversed(inner))
+        known_children = [(child, rules[child.tag]) for child in element.elements() if child.tag in rules]
+        pending.extend(reversed(known_children))
 
 
 def _is_ignored(element: Element, rule: ElementRule) -> bool:
-    """Return whether an unknown element is not reported.
+    """Return whether an element without a rule is accepted without a finding.
 
-    This applies to an element with a prefix, and to an SDF element that has no effect here.
+    Such elements have a namespace prefix, or are valid SDF that has no effect here.
     """
     tag = element.tag
     return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
 
 def _allows_separators(root: Element) -> bool:
-    """Return whether names may contain '::' in the file's version.
+    """Return whether names may contain '::' in the file's SDF version.
 
-    Up to SDF 1.7, the parts of an included model became parts of the including model, with such names.
+    Up to SDF 1.7, the links of an included model became links of the including model, with such names.
     """
     return _minor(root) <= _NEWEST_FLAT_MINOR
 
 
 def _minor(root: Element) -> int:
-    """Return the minor number of a file's SDF version; the newest minor number for an invalid version."""
-    found = _VERSION(root.attributes.get("version", "").strip())
-    return NEWEST[1] if found is None else int(found[1])
+    """Return the minor number of a file's SDF version, or the newest one if the version is invalid."""
+    version_match = _VERSION(root.attributes.get("version", "").strip())
+    return NEWEST[1] if version_match is None else int(version_match[1])
 
 
 def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:
@@ -245,16 +249,16 @@ def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:
 
     Links, joints, frames and models share one namespace. Visuals, collisions, sensors and lights each have their own.
     """
-    first: dict[tuple[str, str], Element] = {}
+    first_elements: dict[tuple[str, str], Element] = {}
     for child in element.elements():
         name = child.attributes.get("name")
-        if name is None or not (child.tag in _NAMED or child.tag in _SIBLINGS):
+        if name is None or not (child.tag in _SHARED_NAMESPACE_TAGS or child.tag in _SEPARATE_NAMESPACE_TAGS):
             continue
-        space = child.tag if child.tag in _SIBLINGS else ""
-        if not space and (
+        namespace = child.tag if child.tag in _SEPARATE_NAMESPACE_TAGS else ""
+        if not namespace and (
             (SEPARATOR in name and not flat) or name == WORLD or (name.startswith("__") and name.endswith("__"))
         ):
             report.reserved(child, name)
-        before = first.setdefault((space, name), child)
-        if before is not child:
-            report.twice(child, before)
+        first_element = first_elements.setdefault((namespace, name), child)
+        if first_element is not child:
+            report.twice(child, first_element)

@@ -1,4 +1,4 @@
-"""Checks references by name in joints and poses."""
+"""Checks references by name in models, frames, joints and poses."""
 
 from __future__ import annotations
 
@@ -20,114 +20,116 @@ from linkwright.xmltree import Element
 def check_references(sdf: Sdf) -> list[Diagnostic]:
     """Return the findings on references by name, without duplicates.
 
-    The includes of the file must have been resolved.
+    Includes must be resolved first.
     """
-    found: dict[tuple[object, str], Diagnostic] = {}
-    inserted = (model for world in sdf.worlds for state in world.states for model in state.insertions.models)
-    owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models, *inserted)
+    findings: dict[tuple[object, str], Diagnostic] = {}
+    inserted_models = (model for world in sdf.worlds for state in world.states for model in state.insertions.models)
+    owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models, *inserted_models)
     for owner in owners:
-        for diagnostic in _check(owner, Frames(owner)):
-            found.setdefault((diagnostic.span, str(diagnostic.message)), diagnostic)
-    return list(found.values())
+        for diagnostic in _check_owner(owner, Frames(owner)):
+            findings.setdefault((diagnostic.span, str(diagnostic.message)), diagnostic)
+    return list(findings.values())
 
 
-def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
+def _check_owner(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
     links = owner.links if isinstance(owner, Model) else ()
     if isinstance(owner, Model):
-        yield from _model(owner, frames)
-    placed: tuple[Link | Frame | Model, ...] = (*links, *owner.frames, *owner.models)
-    for item in placed:
-        yield from _pose(item.pose, item.element, frames)
+        yield from _check_model(owner, frames)
+    posed_elements: tuple[Link | Frame | Model, ...] = (*links, *owner.frames, *owner.models)
+    for posed_element in posed_elements:
+        yield from _check_pose(posed_element.pose, posed_element.element, frames)
     for frame in owner.frames:
         if frame.attached_to and not _is_known(frame.attached_to, frames):
-            yield _unknown(frame.element, "attached_to", frame.attached_to, frames)
+            yield _missing_frame(frame.element, "attached_to", frame.attached_to, frames)
     for link in links:
-        parts: tuple[Visual | Collision | Sensor | Light, ...] = (
+        link_children: tuple[Visual | Collision | Sensor | Light, ...] = (
             *link.visuals,
             *link.collisions,
             *link.sensors,
             *link.lights,
         )
-        for part in parts:
+        for link_child in link_children:
             # libsdformat resolves these references only when needed, and continues if a frame is missing.
             yield from (
                 diagnostic.with_changes(severity=Severity.WARNING)
-                for diagnostic in _pose(part.pose, part.element, frames)
+                for diagnostic in _check_pose(link_child.pose, link_child.element, frames)
             )
     for joint in owner.joints:
         yield from _joint(joint, frames)
     yield from _check_cycles((*owner.frames, *links, *owner.joints, *owner.models), frames)
     for model in owner.models:
         if frames.named.get(model.name) is model:
-            yield from _check(model, frames.inside(model.name))
+            yield from _check_owner(model, frames.inside(model.name))
 
 
-def _model(model: Model, frames: Frames) -> Iterator[Diagnostic]:
+def _check_model(model: Model, frames: Frames) -> Iterator[Diagnostic]:
     if not (model.links or model.models or model.includes or model.static):
-        message = phrase("{whose} has no links", whose=_described(model.element))
-        yield _error("SDF132", message, model.element, hint=phrase("a model that moves has at least one <link>"))
+        message = phrase("{whose} has no links", whose=_description(model.element))
+        yield _error("SDF132", message, model.element, hint=phrase("add a <link>, or make the model static"))
     for attribute in ("canonical_link", "placement_frame"):
         name = getattr(model, attribute)
         if name and not _is_known(name, frames):
-            yield _unknown(model.element, attribute, name, frames)
+            yield _missing_frame(model.element, attribute, name, frames)
 
 
 def _joint(joint: Joint, frames: Frames) -> Iterator[Diagnostic]:
-    for end in ("parent", "child"):
-        name = getattr(joint, end)
-        if not name or (name == WORLD and end == "parent") or _is_known(name, frames):
+    for end_tag in ("parent", "child"):
+        name = getattr(joint, end_tag)
+        if not name or (name == WORLD and end_tag == "parent") or _is_known(name, frames):
             continue
-        element = joint.element.first(end) if joint.element is not None else None
+        element = joint.element.first(end_tag) if joint.element is not None else None
         message = phrase(
-            "<{tag}> of {owner} names '{name}', which does not exist",
-            tag=end,
-            owner=_described(joint.element),
+            "<{tag}> of {owner} refers to '{name}', which does not exist",
+            tag=end_tag,
+            owner=_description(joint.element),
             name=name,
         )
-        yield _error("SDF140", message, element or joint.element, hint=did_you_mean(name, _linkable(frames)))
+        yield _error("SDF140", message, element or joint.element, hint=did_you_mean(name, _link_candidates(frames)))
     if joint.parent and joint.parent == joint.child:
-        message = phrase("{owner} connects '{name}' with itself", owner=_described(joint.element), name=joint.child)
+        message = phrase("{owner} connects '{name}' to itself", owner=_description(joint.element), name=joint.child)
         yield _error("SDF140", message, joint.element)
-    yield from _pose(joint.pose, joint.element, frames)
+    yield from _check_pose(joint.pose, joint.element, frames)
     for axis, tag in ((joint.axis, "axis"), (joint.axis2, "axis2")):
         if axis is not None and axis.expressed_in and not _is_known(axis.expressed_in, frames):
             element = joint.element.first(tag) if joint.element is not None else None
             xyz = element.first("xyz") if element is not None else None
-            yield _unknown(xyz, "expressed_in", axis.expressed_in, frames)
+            yield _missing_frame(xyz, "expressed_in", axis.expressed_in, frames)
 
 
-def _pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iterator[Diagnostic]:
+def _check_pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iterator[Diagnostic]:
     if pose is None or not pose.relative_to or _is_known(pose.relative_to, frames):
         return
-    written = element.first("pose") if element is not None else None
-    attribute = "relative_to" if written is not None and "relative_to" in written.attributes else "frame"
-    yield _unknown(written, attribute, pose.relative_to, frames)
+    pose_element = element.first("pose") if element is not None else None
+    attribute = "relative_to" if pose_element is not None and "relative_to" in pose_element.attributes else "frame"
+    yield _missing_frame(pose_element, attribute, pose.relative_to, frames)
 
 
-def _check_cycles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
-    """Yield a finding for each cycle of frames whose poses are relative to each other."""
+def _check_cycles(elements: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
+    """Yield a finding for each cycle of relative poses."""
     reported: set[frozenset[str]] = set()
-    for part in parts:
-        circle = _find_cycle(part.name, frames)
-        if not circle or frozenset(circle) in reported:
+    for element in elements:
+        cycle = _find_cycle(element.name, frames)
+        if not cycle or frozenset(cycle) in reported:
             continue
-        reported.add(frozenset(circle))
-        message = phrase("frames are relative to each other in a cycle: {value}", value=" -> ".join(circle))
-        named = frames.named.get(circle[0])
+        reported.add(frozenset(cycle))
+        message = phrase(
+            ("the poses of these frames depend on each other in a cycle: {value}"), value=" -> ".join(cycle)
+        )
+        first_element = frames.named.get(cycle[0])
         yield _error(
             "SDF142",
             message,
-            (named or part).element,
-            hint=phrase("make the pose of one of them independent of the others"),
+            (first_element or element).element,
+            hint=phrase("make the pose of one frame independent of the other frames"),
         )
 
 
 def _find_cycle(name: str, frames: Frames) -> tuple[str, ...]:
-    """Return the cycle of frames on which the pose of a frame depends; empty if there is none."""
+    """Return the cycle of frames on which the pose of a frame depends, or an empty tuple."""
     try:
         frames.pose(name)
     except FrameError as error:
-        return error.circle
+        return error.cycle
     return ()
 
 
@@ -137,24 +139,24 @@ def _is_known(name: str, frames: Frames) -> bool:
         return True
     head = name.partition(SEPARATOR)[0]
     if head in frames.named and head != name:
-        inner = frames.named[head]
-        return isinstance(inner, Model) and bool(inner.includes)
+        nested_model = frames.named[head]
+        return isinstance(nested_model, Model) and bool(nested_model.includes)
     return bool(frames.owner.includes)
 
 
-def _unknown(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
-    message = phrase("'{attribute}' names '{name}', which does not exist", attribute=attribute, name=name)
+def _missing_frame(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
+    message = phrase("'{attribute}' refers to '{name}', which does not exist", attribute=attribute, name=name)
     hint = did_you_mean(name, frames.named) or phrase(
         "choose from {names}", names=joined([*frames.named][:8] or [MODEL])
     )
     return _error("SDF141", message, element, attribute, hint)
 
 
-def _linkable(frames: Frames) -> list[str]:
-    return [name for name, part in frames.named.items() if not isinstance(part, Joint)]
+def _link_candidates(frames: Frames) -> list[str]:
+    return [name for name, element in frames.named.items() if not isinstance(element, Joint)]
 
 
-def _described(element: Element | None) -> Phrase:
+def _description(element: Element | None) -> Phrase:
     return phrase("a model") if element is None else described(element)
 
 

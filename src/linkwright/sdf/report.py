@@ -1,4 +1,4 @@
-"""Messages about errors in SDF elements, created from the rules of the elements."""
+"""Creates messages about errors in SDF elements from the rules of the elements."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from linkwright.urdf.values import number_hint, vector_hint
 from linkwright.xmltree import Element
 
 NEWEST = (1, 12)
-"""The newest version of SDF that is known; older files are read by its words, as libsdformat converts them."""
+"""The newest supported version of SDF; older files are read with its rules, as in libsdformat."""
 
 
 def described(element: Element) -> Phrase:
@@ -46,7 +46,7 @@ class SdfReport(Findings):
     def __init__(self) -> None:
         super().__init__(NEWEST)
         self.is_of_classic = False
-        """Whether the file is of a version before 1.7, for Gazebo classic, which takes more than newer libsdformat."""
+        """Whether the SDF version is older than 1.7; Gazebo classic accepts more than newer libsdformat."""
         self._misspelt: list[Element] = []
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -56,11 +56,11 @@ class SdfReport(Findings):
             self.error("SDF120", message, element, hint=phrase("write <{tag}>...</{tag}>", tag=rule.tag))
             return
         values = {"tag": rule.tag, "name": attribute.name}
-        unknown = [name for name in element.attributes if name not in rule.attribute_rules]
-        like = nearest(attribute.name, unknown, limit=1)
+        unknown_names = [name for name in element.attributes if name not in rule.attribute_rules]
+        similar_names = nearest(attribute.name, unknown_names, limit=1)
         hint = phrase('add {name}="..."', name=attribute.name)
-        if like:
-            hint = phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=like[0])
+        if similar_names:
+            hint = phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=similar_names[0])
         if owner is element or owner.attributes.get("name") is None:
             message = phrase("<{tag}> has no '{name}'", **values)
         else:
@@ -68,26 +68,30 @@ class SdfReport(Findings):
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report an invalid value, and return the value to use, or ``UNREADABLE`` for the default.
+        """Report an invalid value, and return the value to use instead, or ``UNREADABLE`` for the default.
 
-        For a number or a vector, libsdformat reads the beginning of the text and ignores the rest. This value is
-        returned, and the finding is a warning.
+        For a number or a vector, libsdformat reads the start of the text and ignores the rest. If this gives a value,
+        return it and report a warning.
         """
-        inside = attribute is rule.text
-        text = element.text().strip() if inside else element.attributes[attribute.name]
+        is_text = attribute is rule.text
+        text = element.text().strip() if is_text else element.attributes[attribute.name]
         message, hint = _explain_value(_place(element, rule, attribute, owner), text, attribute, element)
-        taken = leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
-        if taken is not None and isfinite(taken):
-            self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
-            return int(taken) if attribute.type is INTEGER else taken
-        if attribute.type in (VECTOR2, VECTOR3) and (begun := leading_numbers(text, COUNTS[attribute.type])):
-            self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
-            return begun
-        if self.is_of_classic and attribute.type in COUNTS and (filled := _filled(text, COUNTS[attribute.type])):
-            note = Note(phrase("Gazebo classic reads missing numbers as 0; newer Gazebo refuses the file"))
-            self.warning("SDF121", message, element, None if inside else attribute.name, notes=(note,), hint=hint)
-            return attribute.type.read(filled)
-        self.error("SDF121", message, element, None if inside else attribute.name, hint=hint)
+        number = leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
+        if number is not None and isfinite(number):
+            self.warning("SDF121", message, element, None if is_text else attribute.name, hint=hint)
+            return int(number) if attribute.type is INTEGER else number
+        if attribute.type in (VECTOR2, VECTOR3) and (vector := leading_numbers(text, COUNTS[attribute.type])):
+            self.warning("SDF121", message, element, None if is_text else attribute.name, hint=hint)
+            return vector
+        if (
+            self.is_of_classic
+            and attribute.type in COUNTS
+            and (completed_text := _with_missing_zeros(text, COUNTS[attribute.type]))
+        ):
+            note = Note(phrase("Gazebo classic reads missing numbers as 0, but newer Gazebo versions reject the file"))
+            self.warning("SDF121", message, element, None if is_text else attribute.name, notes=(note,), hint=hint)
+            return attribute.type.read(completed_text)
+        self.error("SDF121", message, element, None if is_text else attribute.name, hint=hint)
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -97,8 +101,8 @@ class SdfReport(Findings):
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
         """Report a missing required child element."""
         candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
-        like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
-        misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
+        similar_tags = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
+        misspelt = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
         if misspelt is not None:
             hint = phrase("did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag)
@@ -119,34 +123,36 @@ class SdfReport(Findings):
         raise AssertionError(rule.tag)
 
     def unknown_elements(self, elements: Sequence[Element], rule: ElementRule, harmless: Sequence[bool]) -> None:
-        """Report the unknown elements of one parent.
+        """Report the child elements of one parent that have no rule.
 
-        Misspelt and misplaced elements are reported separately, the others together.
+        Misspelt, misplaced and harmless elements are reported separately, and all others in one finding.
 
         Args:
-            elements: the unknown elements.
+            elements: the child elements without a rule.
             rule: the rule of the parent.
             harmless: for each element, whether reading it would make no difference; such an element is reported as
                 information, unless it is misspelt.
         """
-        known = [child.tag for child in rule.children]
-        others: list[Element] = []
+        known_tags = [child.tag for child in rule.children]
+        unexplained: list[Element] = []
         for element, is_harmless in zip(elements, harmless, strict=True):
             if any(element is child for child in self._misspelt):
                 continue
-            hint = did_you_mean(element.tag, known)
+            hint = did_you_mean(element.tag, known_tags)
             if hint is None and is_harmless:
                 self._unread([element], rule, severity=Severity.INFO)
                 continue
             if hint is None:
-                homes = [f"<{home}>" for home in allowed_parents(element.tag) if home != rule.tag]
-                hint = phrase("it belongs directly in {listed}", listed=" or ".join(homes)) if homes else None
+                parent_tags = [
+                    f"<{parent_tag}>" for parent_tag in allowed_parents(element.tag) if parent_tag != rule.tag
+                ]
+                hint = phrase("put it directly in {listed}", listed=" or ".join(parent_tags)) if parent_tags else None
             if hint is not None:
                 self._unread([element], rule, hint)
             else:
-                others.append(element)
-        if others:
-            self._unread(others, rule)
+                unexplained.append(element)
+        if unexplained:
+            self._unread(unexplained, rule)
 
     def _unread(
         self,
@@ -165,9 +171,9 @@ class SdfReport(Findings):
 
     def reserved(self, element: Element, name: str) -> None:
         """Report an element whose name is reserved."""
-        message = phrase("'{name}' cannot be the name of a {kind}", name=name, kind=term(element.tag))
+        message = phrase("a {kind} cannot be named '{name}'", name=name, kind=term(element.tag))
         if element.tag == name == WORLD:
-            hint = phrase("gz rejects this name, which Gazebo classic accepts; use a name such as 'default'")
+            hint = phrase("Gazebo classic accepts this name, but gz rejects it; use a name such as 'default'")
             self.warning("SDF111", message, element, "name", hint=hint)
             return
         hint = phrase("choose another name: '::' separates names, and SDF reserves 'world' and '__...__'")
@@ -175,38 +181,40 @@ class SdfReport(Findings):
 
     def twice(self, element: Element, first: Element) -> None:
         """Report an element that has the same name as an earlier sibling."""
-        notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
-        message = phrase("two elements in the same place are named '{name}'", name=element.attributes.get("name", ""))
+        notes: Sequence[Note] = (Note(phrase("it is first defined here"), first.span()),)
+        message = phrase(
+            ("two elements of the same parent are named '{name}'"), name=element.attributes.get("name", "")
+        )
         if element.tag == first.tag:
             kind = element.tag
             message = phrase(
                 "{kind} '{name}' is defined twice", kind=term(kind), name=element.attributes.get("name", "")
             )
-        is_taken = self.is_of_classic and {element.tag, first.tag} == {"link", "joint"}  # libsdformat's Model::Load
-        severity = Severity.WARNING if is_taken else Severity.ERROR
-        self._add(severity, "SDF110", message, element, "name", phrase("give each of them its own name"), notes)
+        is_accepted = self.is_of_classic and {element.tag, first.tag} == {"link", "joint"}  # libsdformat's Model::Load
+        severity = Severity.WARNING if is_accepted else Severity.ERROR
+        self._add(severity, "SDF110", message, element, "name", phrase("give each of them a different name"), notes)
 
 
-def _filled(text: str, count: int) -> str:
-    """Return a text with zeros appended for missing numbers; empty if the text is invalid otherwise."""
+def _with_missing_zeros(text: str, count: int) -> str:
+    """Return a text with zeros appended for missing numbers; empty if no number is missing or a number is invalid."""
     try:
-        found = numbers(text)
+        values = numbers(text)
     except ValueError:
         return ""
-    return f"{text} {'0 ' * (count - len(found))}" if 0 < len(found) < count else ""
+    return f"{text} {'0 ' * (count - len(values))}" if 0 < len(values) < count else ""
 
 
 def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
-    """Return a description of the location of a value.
+    """Return a description of a value's location for messages.
 
     Examples are ``<mass> of link 'arm'`` and ``'type' of joint 'elbow'``.
     """
     if "name" in element.attributes:
         return phrase("'{name}' of {owner}", name=attribute.name, owner=described(element))
-    place = phrase("<{tag}>", tag=rule.tag)
+    location = phrase("<{tag}>", tag=rule.tag)
     if attribute is not rule.text:
-        place = phrase("'{name}' in <{tag}>", name=attribute.name, tag=rule.tag)
-    return place if owner is element else phrase("{place} of {owner}", place=place, owner=described(owner))
+        location = phrase("'{name}' in <{tag}>", name=attribute.name, tag=rule.tag)
+    return location if owner is element else phrase("{place} of {owner}", place=location, owner=described(owner))
 
 
 def _explain_value(
@@ -217,14 +225,14 @@ def _explain_value(
     if attribute.type in COUNTS:
         return _explain_numbers(values, text, COUNTS[attribute.type], element)
     if attribute.type is TRUTH:
-        return phrase("{place} is neither true nor false: '{value}'", **values), phrase("write true or false")
+        return phrase("{place} must be true or false, not '{value}'", **values), phrase("write true or false")
     if attribute.type in (NUMBER, TIME):
         return phrase("{place} is not a number: '{value}'", **values), number_hint(text)
     if attribute.type is INTEGER:
         return phrase("{place} is not an integer: '{value}'", **values), None
     words = attribute.type.name.split(" | ")
     hint = did_you_mean(text, words) or phrase("choose from {names}", names=joined(words))
-    return phrase("{place} is not known: '{value}'", **values), hint
+    return phrase("{place} has an unsupported value: '{value}'", **values), hint
 
 
 def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:

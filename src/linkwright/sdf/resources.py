@@ -15,7 +15,7 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase, quoted
-from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.finder import shipped_folder
 from linkwright.packages.manifest import MANIFEST
@@ -30,38 +30,38 @@ SEARCH_VARIABLES = (
     "GAZEBO_MODEL_PATH",
     "GAZEBO_RESOURCE_PATH",
 )
-"""The environment variables with folders in which models and their files are looked for, in this order."""
+"""The environment variables that list folders with models and their files, in the order of the search."""
 
 CONFIG = "model.config"
 _MODEL_FILE = "model.sdf"
-_WORLDS = (".world", ".sdf")
-_SHIPPED = Path(__file__).parent / "models"
+_WORLD_SUFFIXES = (".world", ".sdf")
+_OWN_MODELS_FOLDER = Path(__file__).parent / "models"
 _NEWEST_MINOR = 12
-_HOOK = re.compile(r".+\.(?:dsv|sh)(?:\.in)?").fullmatch
-_HOOKED = re.compile(
+_MATCH_HOOK_NAME = re.compile(r".+\.(?:dsv|sh)(?:\.in)?").fullmatch
+_HOOKED_PATH = re.compile(
     rf"(?:{'|'.join(SEARCH_VARIABLES)})"
     r"(?:;|\s+[\"']?\$\{?(?:AMENT|COLCON)_CURRENT_PREFIX\}?/)share(?:/(?P<path>[^\s\"';:]*))?"
 )
-"""``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
-_OF_GAZEBO = "media/"
-"""The folder of files that Gazebo classic ships, such as the walking people of its actors."""
-_BELOW = ("", "models", "media/models", "Media/models")
-"""Where in a folder of the search path Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
+"""Finds ``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"`` in environment hooks."""
+_GAZEBO_MEDIA_PREFIX = "media/"
+"""The path prefix of files that Gazebo classic ships, such as the meshes of actors."""
+_MEDIA_SUBFOLDERS = ("", "models", "media/models", "Media/models")
+"""Subfolders of the search path in which Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
 _SCHEMES = ("model", "package", "file")
-_TEMPLATES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
-"""The endings behind a file's own of templates that a build makes the file from."""
-_SHORTEST = 4
-"""Models with shorter names, such as ``suv`` and ``sun``, are never taken for misspellings of each other."""
+_TEMPLATE_SUFFIXES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
+"""Suffixes of templates from which a build creates a file, such as ``model.sdf.jinja``."""
+_MIN_NAME_LENGTH = 4
+"""The minimum length of a name for which similar names are suggested; ``suv`` is not a misspelling of ``sun``."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
-"""Fuel models that nearly every world includes, and our own models that replace them."""
+"""Fuel models that most worlds include, and the models of this program that replace them."""
 
 
 class Missing(NamedTuple):
-    """The reason why a URI cannot be resolved, and a hint.
+    """Why a URI cannot be resolved.
 
     Attributes:
-        reason: the reason.
-        hint: the hint; None if there is none.
+        reason: the reason, as a message for users.
+        hint: what the user can do; None if there is no suggestion.
         severity: the severity of a finding about the URI; information if Gazebo can probably find the resource, because
             it downloads models or finds them in folders that this machine does not have.
     """
@@ -81,72 +81,72 @@ class ResourceFinder:
        (``<gazebo_ros gazebo_model_path="..."/>``), or add to these variables by an environment hook,
     3. the folders that contain packages, so that ``model://PACKAGE/PATH`` works as in gz,
     4. the folder ``models`` of each package,
-    5. our own models: ``ground_plane`` and ``sun``,
+    5. the models of this program: ``ground_plane`` and ``sun``,
     6. the folder of the file that contains the URI and its parents, up to the folder of its package, and ``models`` in
        each: launch files put one of these into the variables.
 
     ``file://PATH`` without a third slash is relative to one of these folders, or to its parent, as in Gazebo classic,
     or to ``models``, ``media/models`` or ``Media/models`` there.
 
-    Nothing is downloaded: models on Fuel are only found if they are in the cache of gz.
+    Nothing is downloaded: Fuel models are only found in the cache of gz.
 
     Args:
-        packages: the finder of packages.
+        packages: finds the packages and resolves their URIs.
         environment: the environment variables; by default the variables of the process.
     """
 
     def __init__(self, packages: PackageFinder, environment: Mapping[str, str] | None = None) -> None:
         self._packages = packages
         self._environment = os.environ if environment is None else environment
-        self._near: dict[Path, tuple[Path, ...]] = {}
+        self._nearby_folders: dict[Path, tuple[Path, ...]] = {}
 
     def file(self, address: str, beside: Path) -> Path | Missing:
         """Return the existing file or folder of a URI, or the reason why there is none.
 
         Args:
-            address: the URI as written.
-            beside: the folder of the file that contains the URI, to which plain paths are relative.
+            address: the URI or path as written.
+            beside: the folder of the file that contains the URI; plain paths are relative to it.
         """
         address = address.strip()
         scheme, colon, rest = address.partition("://")
         if not colon:
-            return self._plain(address, beside)
+            return self._find_plain_path(address, beside)
         if scheme == "model":
             return self._find_model_uri(address, unquote(rest).lstrip("/"), beside)
         if scheme in ("http", "https"):
-            return self._cached(address)
+            return self._find_in_cache(address)
         if scheme == "file" and absolute_path(f"//{rest}") is None:
-            return self._below(address, unquote(rest), beside)
+            return self._find_file_uri(address, unquote(rest), beside)
         try:
             path = self._packages.resolve(address, beside)
         except LinkwrightError as error:
-            meant = misspelling_of(scheme, _SCHEMES)
-            hint = error.diagnostics[0].hint if meant is None else did_you_mean(scheme, [meant])
+            suggested_scheme = find_misspelt(scheme, _SCHEMES)
+            hint = error.diagnostics[0].hint if suggested_scheme is None else did_you_mean(scheme, [suggested_scheme])
             return Missing(error.diagnostics[0].message, hint)
         return path if path.exists() else _no_file(path)
 
     def model(self, address: str, beside: Path) -> Path | Missing:
-        """Return the SDF file of a model's URI, or the reason why there is none.
+        """Return the SDF file for a model's URI, or the reason why there is none.
 
-        The URI names the file itself, or a folder, whose newest readable file is used.
+        The URI names the file, or the folder of a model. In a folder, the newest supported SDF version is used.
         """
-        found = self.file(address, beside)
-        if isinstance(found, Missing) or not found.is_dir():
-            return found
-        return model_file(found)
+        path = self.file(address, beside)
+        if isinstance(path, Missing) or not path.is_dir():
+            return path
+        return model_file(path)
 
     def models(self) -> dict[str, Path]:
         """Return the folders of all models on the search path, by name.
 
         If several folders have the same name, the first is returned.
         """
-        found: dict[str, Path] = {}
+        folders: dict[str, Path] = {}
         for folder in self._folders:
             with suppress(OSError):
-                for place in sorted(folder.iterdir()):
-                    if _is_model(place):
-                        found.setdefault(place.name, place)
-        return found
+                for subfolder in sorted(folder.iterdir()):
+                    if _is_model(subfolder):
+                        folders.setdefault(subfolder.name, subfolder)
+        return folders
 
     def worlds(self) -> dict[str, Path]:
         """Return the files of all worlds on the search path, by name without suffix.
@@ -154,19 +154,19 @@ class ResourceFinder:
         If several files have the same name, the first is returned. The search includes the folders of models, and the
         folders ``worlds`` in these folders and in packages.
         """
-        found: dict[str, Path] = {}
+        files: dict[str, Path] = {}
         shares = self._packages.packages().values()
         for folder in dict.fromkeys(
             (
-                *(path for place in self._folders for path in (place, place / "worlds")),
+                *(path for model_folder in self._folders for path in (model_folder, model_folder / "worlds")),
                 *(share / "worlds" for share in shares),
             )
         ):
             with suppress(OSError):
                 for file in sorted(folder.iterdir()):
-                    if file.suffix in _WORLDS and file.is_file() and _contains_world(file):
-                        found.setdefault(file.stem, file)
-        return found
+                    if file.suffix in _WORLD_SUFFIXES and file.is_file() and _contains_world(file):
+                        files.setdefault(file.stem, file)
+        return files
 
     def world(self, name: str) -> Path | None:
         """Return the file of a world, or None if there is none.
@@ -177,15 +177,15 @@ class ResourceFinder:
         path = Path(file if file == name else absolute_path(f"//{file}") or file).expanduser()
         if path.is_file():
             return path
-        known = {} if "/" in name else self.worlds()
-        return known.get(name) or known.get(name.partition(".")[0])
+        known_worlds = {} if "/" in name else self.worlds()
+        return known_worlds.get(name) or known_worlds.get(name.partition(".")[0])
 
     @cached_property
     def _folders(self) -> tuple[Path, ...]:
         """The existing folders of the search path for models, in order."""
-        return tuple(dict.fromkeys(path for path in self._places() if path.is_dir()))
+        return tuple(dict.fromkeys(path for path in self._search_folders() if path.is_dir()))
 
-    def _places(self) -> Iterator[Path]:
+    def _search_folders(self) -> Iterator[Path]:
         for variable in SEARCH_VARIABLES:
             for folder in self._environment.get(variable, "").split(os.pathsep):
                 if folder:
@@ -199,60 +199,67 @@ class ResourceFinder:
             yield share.parent
         for share in shares.values():
             yield share / "models"
-        yield _SHIPPED
+        yield _OWN_MODELS_FOLDER
 
-    def _plain(self, path: str, beside: Path) -> Path | Missing:
-        places = (
+    def _find_plain_path(self, path: str, beside: Path) -> Path | Missing:
+        candidates = (
             [Path(path)] if Path(path).is_absolute() else [beside / path, *(folder / path for folder in self._folders)]
         )
-        return next((place for place in places if place.exists()), None) or _no_file(places[0])
+        return next((candidate for candidate in candidates if candidate.exists()), None) or _no_file(candidates[0])
 
-    def _below(self, address: str, path: str, beside: Path) -> Path | Missing:
-        around = (folder.parent for folder in self._folders)
-        folders = (*self._folders, *around, *(beside.absolute() / "x").parents)
-        places = [folder / below / path for folder in folders for below in _BELOW]
-        found = next((place for place in places if place.exists()), None)
-        if found is not None:
-            return found
-        cased = next(filter(None, map(_find_in_other_case, places)), None)
-        hint = phrase(
-            "add the folder that '{path}' starts from to {variable}", path=path, variable=SEARCH_VARIABLES[-1]
+    def _find_file_uri(self, address: str, path: str, beside: Path) -> Path | Missing:
+        parent_folders = (folder.parent for folder in self._folders)
+        folders = (*self._folders, *parent_folders, *(beside.absolute() / "x").parents)
+        candidates = [folder / subfolder / path for folder in folders for subfolder in _MEDIA_SUBFOLDERS]
+        existing_path = next((place for place in candidates if place.exists()), None)
+        if existing_path is not None:
+            return existing_path
+        other_case_path = next(filter(None, map(_find_in_other_case, candidates)), None)
+        hint = phrase("add the folder that contains '{path}' to {variable}", path=path, variable=SEARCH_VARIABLES[-1])
+        if other_case_path is not None:
+            hint = phrase("did you mean {names}?", names=quoted(other_case_path.name))
+        severity = (
+            Severity.INFO if path.startswith(_GAZEBO_MEDIA_PREFIX) and other_case_path is None else Severity.WARNING
         )
-        if cased is not None:
-            hint = phrase("did you mean {names}?", names=quoted(cased.name))
-        severity = Severity.INFO if path.startswith(_OF_GAZEBO) and cased is None else Severity.WARNING
         return Missing(phrase("there is no '{path}' on the search path", path=address), hint, severity)
 
     def _find_model_uri(self, address: str, path: str, beside: Path) -> Path | Missing:
         if not path:
-            return Missing(phrase("'{uri}' names no model", uri=address), phrase("write model://MODEL"))
-        if beside not in self._near:
-            self._near[beside] = _around(beside.absolute())
-        near = self._near[beside]
-        for folder in (*self._folders, *near[:2], *(path / "models" for path in near), *near[2:]):
-            found = folder / path
-            if found.exists() and (folder not in near[2:] or "/" in path or _is_model(found)):
-                return found
+            return Missing(phrase("'{uri}' does not name a model", uri=address), phrase("write model://MODEL"))
+        if beside not in self._nearby_folders:
+            self._nearby_folders[beside] = _around(beside.absolute())
+        nearby_folders = self._nearby_folders[beside]
+        for folder in (
+            *self._folders,
+            *nearby_folders[:2],
+            *(path / "models" for path in nearby_folders),
+            *nearby_folders[2:],
+        ):
+            candidate = folder / path
+            if candidate.exists() and (folder not in nearby_folders[2:] or "/" in path or _is_model(candidate)):
+                return candidate
         name, _, rest = path.partition("/")
         for folder in self._folders:
             if (folder / name).is_dir() and (_is_ours(beside) or not _is_ours(folder)):
                 return _no_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
-        renamed = next((path for path in near[:2] if rest and (path / rest).exists()), None)
-        if renamed is not None:
-            here = renamed.absolute().name
-            return Missing(reason, phrase("the folder that contains '{path}' is named '{name}'", path=rest, name=here))
-        meant = misspelling_of(name, self.models()) if len(name) >= _SHORTEST else None
-        if meant is not None:
-            return Missing(reason, did_you_mean(name, [meant]))
+        renamed_folder = next((path for path in nearby_folders[:2] if rest and (path / rest).exists()), None)
+        if renamed_folder is not None:
+            folder_name = renamed_folder.absolute().name
+            return Missing(
+                reason, phrase("the folder that contains '{path}' is named '{name}'", path=rest, name=folder_name)
+            )
+        suggested_name = find_misspelt(name, self.models()) if len(name) >= _MIN_NAME_LENGTH else None
+        if suggested_name is not None:
+            return Missing(reason, did_you_mean(name, [suggested_name]))
         hint = phrase("add the folder that contains '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])
         return Missing(reason, hint, Severity.INFO)
 
-    def _cached(self, address: str) -> Path | Missing:
+    def _find_in_cache(self, address: str) -> Path | Missing:
         """Return the folder of a Fuel address in gz's cache, or the reason why there is none.
 
-        The folder is ``HOST/OWNER/models/NAME/VERSION``, in lower case. For ``sun`` and ``ground plane``, our own
-        models are used if the cache does not have them.
+        The folder is ``HOST/OWNER/models/NAME/VERSION``, in lower case. If ``sun`` or ``ground plane`` is not in the
+        cache, the model of this program is used.
         """
         parts = [unquote(part) for part in urlsplit(address).path.split("/") if part]
         host = urlsplit(address).netloc.lower()
@@ -262,23 +269,23 @@ class ResourceFinder:
             return Missing(phrase("'{uri}' is not the address of a model", uri=address), None)
         owner, kind, name, *rest = parts
         for cache in self._caches():
-            place = cache / host / owner.lower() / kind / name.lower()
-            found = _version_in(place, rest)
-            if found is not None and found.exists():
-                return found
-        known = _SUN_AND_GROUND.get(name.lower())
-        if known is not None and not rest[1:]:
-            return _SHIPPED / known
+            model_folder = cache / host / owner.lower() / kind / name.lower()
+            cached_path = _version_in(model_folder, rest)
+            if cached_path is not None and cached_path.exists():
+                return cached_path
+        own_model = _SUN_AND_GROUND.get(name.lower())
+        if own_model is not None and not rest[1:]:
+            return _OWN_MODELS_FOLDER / own_model
         hint = phrase(
-            "models are not fetched from the network: run `gz fuel download -u '{uri}'` to put it into the cache",
+            "models are not downloaded automatically: run `gz fuel download -u '{uri}'` to add this model to the cache",
             uri=address,
         )
         return Missing(phrase("the Fuel model '{name}' is not in the cache", name=name), hint, Severity.INFO)
 
     def _caches(self) -> Iterator[Path]:
-        given = self._environment.get("GZ_FUEL_CACHE_PATH") or self._environment.get("IGN_FUEL_CACHE_PATH")
-        if given:
-            yield Path(given)
+        cache_path = self._environment.get("GZ_FUEL_CACHE_PATH") or self._environment.get("IGN_FUEL_CACHE_PATH")
+        if cache_path:
+            yield Path(cache_path)
         home = Path(self._environment.get("HOME") or Path.home())
         yield from (home / ".gz" / "fuel", home / ".ignition" / "fuel")
 
@@ -290,18 +297,18 @@ def _is_model(folder: Path) -> bool:
 def _around(folder: Path) -> tuple[Path, ...]:
     """Return a folder and its parents, up to the folder of its package.
 
-    A folder outside of packages is returned with one parent.
+    Outside of a package, return the folder and one parent.
     """
     package = enclosing_package(folder)
-    around = (folder, *folder.parents)
-    last = 1 if package is None else max(1, around.index(package[1]))
-    return around[: last + 1]
+    folders = (folder, *folder.parents)
+    last_index = 1 if package is None else max(1, folders.index(package[1]))
+    return folders[: last_index + 1]
 
 
 def model_file(folder: Path) -> Path | Missing:
     """Return the SDF file in a model's folder, or the reason why there is none.
 
-    It is the newest file in ``model.config`` whose version can be read, or else ``model.sdf``.
+    It is the file with the newest supported version in ``model.config``, or else ``model.sdf``.
     """
     newest: tuple[int, Path] | None = None
     with suppress(LinkwrightError):
@@ -316,7 +323,7 @@ def model_file(folder: Path) -> Path | Missing:
     path = folder / _MODEL_FILE
     if path.is_file():
         return path
-    template = next((path for path in sorted(folder.glob("*.sdf.*")) if path.suffix in _TEMPLATES), None)
+    template = next((path for path in sorted(folder.glob("*.sdf.*")) if path.suffix in _TEMPLATE_SUFFIXES), None)
     return _no_file(path) if template is None else _missing_template_output(template, path)
 
 
@@ -328,8 +335,8 @@ def _contains_world(file: Path) -> bool:
 def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
     """Yield the folders that a package exports to Gazebo in its ``package.xml``.
 
-    `attribute` is the attribute of ``<gazebo_ros>`` that lists them. ``${prefix}`` in a folder is the share folder of
-    the package.
+    `attribute` is the attribute of ``<gazebo_ros>`` that lists these folders. ``${prefix}`` in a folder is replaced
+    by the share folder of the package.
     """
     text = ""
     with suppress(OSError):
@@ -348,21 +355,20 @@ def hooked_folders(share: Path) -> Iterator[Path]:
     """Yield the folders that a package's environment hooks add to `SEARCH_VARIABLES`.
 
     The templates of hooks in the sources of the package are also read. Source: ``ament_environment_hooks`` and the
-    ``.dsv``
-    files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
+    ``.dsv`` files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
     """
     for file in sorted((*share.glob("*hook*/*.*"), *share.glob("environment/*.dsv"))):
-        if _HOOK(file.name):
+        if _MATCH_HOOK_NAME(file.name):
             with suppress(OSError):
                 text = file.read_text(encoding="utf-8", errors="replace").replace("@PROJECT_NAME@", share.name)
-                for found in _HOOKED.finditer(text):
-                    yield Path(os.path.normpath(share.parent / (found["path"] or "")))
+                for path_match in _HOOKED_PATH.finditer(text):
+                    yield Path(os.path.normpath(share.parent / (path_match["path"] or "")))
 
 
-def _version_in(place: Path, rest: list[str]) -> Path | None:
+def _version_in(place: Path, version_and_file: list[str]) -> Path | None:
     """Return the folder or file in a cached model that the rest of a Fuel address names.
 
-    ``tip`` or no version means the newest one. None is returned if no version is cached.
+    Without a version, or with ``tip``, the newest version is used. Return None if no version is cached.
     """
     try:
         versions = sorted((int(path.name), path) for path in place.iterdir() if path.name.isdigit())
@@ -370,26 +376,28 @@ def _version_in(place: Path, rest: list[str]) -> Path | None:
         return None
     if not versions:
         return None
-    chosen = versions[-1][1]
-    if rest and rest[0].isdigit():
-        chosen = place / rest[0]
-    inside = rest[2:] if len(rest) > 1 and rest[1] == "files" else []
-    return chosen.joinpath(*inside)
+    version_path = versions[-1][1]
+    if version_and_file and version_and_file[0].isdigit():
+        version_path = place / version_and_file[0]
+    file_parts = version_and_file[2:] if len(version_and_file) > 1 and version_and_file[1] == "files" else []
+    return version_path.joinpath(*file_parts)
 
 
-def _kind(path: Path) -> str:
-    """Return the suffix of a file, in which worlds and models are equal, for suggesting similar files."""
+def _normalized_suffix(path: Path) -> str:
+    """Return the suffix of a file in lower case, with ``.sdf`` for ``.world``, to suggest similar files."""
     suffix = path.suffix.lower()
     return ".sdf" if suffix == ".world" else suffix
 
 
 def _is_ours(folder: Path) -> bool:
-    """Return whether a folder belongs to the models that are part of the program.
+    """Return whether a folder belongs to the models of this program.
 
-    These models replace some of Gazebo's models, but have fewer files.
+    These models replace models of Gazebo, but have fewer files.
     """
     shipped = shipped_folder()
-    return folder.is_relative_to(_SHIPPED) or (shipped is not None and folder.absolute().is_relative_to(shipped))
+    return folder.is_relative_to(_OWN_MODELS_FOLDER) or (
+        shipped is not None and folder.absolute().is_relative_to(shipped)
+    )
 
 
 def _find_in_other_case(path: Path) -> Path | None:
@@ -406,14 +414,15 @@ def _missing_template_output(template: Path, path: Path) -> Missing:
 
 def _no_file(path: Path) -> Missing:
     template = next(
-        (entry for entry in (path.with_name(path.name + end) for end in _TEMPLATES) if entry.is_file()), None
+        (entry for entry in (path.with_name(path.name + suffix) for suffix in _TEMPLATE_SUFFIXES) if entry.is_file()),
+        None,
     )
     if template is not None:
         return _missing_template_output(template, path)
     hint = None
     with suppress(OSError):
-        kind = _kind(path)
-        names = sorted(entry.name for entry in path.parent.iterdir() if _kind(entry) == kind)
+        kind = _normalized_suffix(path)
+        names = sorted(entry.name for entry in path.parent.iterdir() if _normalized_suffix(entry) == kind)
         hint = did_you_mean(path.name, names)
         if names and hint is None:
             hint = phrase("choose from {names}", names=joined(names[:8]))

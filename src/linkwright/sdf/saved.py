@@ -1,6 +1,6 @@
 """The saved state of a world: ``<state>``, which Gazebo classic writes.
 
-A saved world contains each pose twice: in the models as they were first written, and in ``<state>``, which the
+A saved world contains each pose twice: the original pose in the model, and the saved pose in ``<state>``, which the
 simulator uses. Poses in a state are in the frame of the world.
 """
 
@@ -17,23 +17,23 @@ from linkwright.sdf.worlds import World
 
 
 def with_saved_state(world: World) -> World:
-    """Return a world with its last saved state applied; unchanged if there is no saved state.
+    """Return a world with its last saved state applied; a world without a saved state is returned unchanged.
 
-    The includes of the world must have been resolved.
+    Includes must be resolved first.
     """
     if not world.states:
         return world
     state = world.states[-1]
-    gone = set(state.deletions.names)
-    models = [each for each in (*world.models, *state.insertions.models) if each.name not in gone]
-    lights = [each for each in (*world.lights, *state.insertions.lights) if each.name not in gone]
-    placed = {each.name: each for each in state.models}
+    deleted_names = set(state.deletions.names)
+    models = [model for model in (*world.models, *state.insertions.models) if model.name not in deleted_names]
+    lights = [light for light in (*world.lights, *state.insertions.lights) if light.name not in deleted_names]
+    model_states = {model_state.name: model_state for model_state in state.models}
     frames = Frames(world)
-    poses = {each.name: each.pose for each in state.lights if each.pose is not None}
+    light_poses = {light_state.name: light_state.pose for light_state in state.lights if light_state.pose is not None}
     return replace(
         world,
-        models=tuple(_restore(model, placed.get(model.name), _place(frames, model)) for model in models),
-        lights=tuple(replace(each, pose=poses.get(each.name, each.pose)) for each in lights),
+        models=tuple(_with_state(model, model_states.get(model.name), _place(frames, model)) for model in models),
+        lights=tuple(replace(each, pose=light_poses.get(each.name, each.pose)) for each in lights),
     )
 
 
@@ -44,10 +44,10 @@ def _place(frames: Frames, model: Model) -> Transform:
         return transform_of(model.pose.pose)  # `check` reports the missing frame.
 
 
-def _restore(model: Model, state: ModelState | None, place: Transform) -> Model:
+def _with_state(model: Model, state: ModelState | None, place: Transform) -> Model:
     """Return a model with its saved state applied.
 
-    `place` is the pose of the model in the world, which applies if the state does not contain a pose.
+    `place` is the pose of the model in the world, for a state without a pose.
     """
     if state is None:
         return model
@@ -55,24 +55,25 @@ def _restore(model: Model, state: ModelState | None, place: Transform) -> Model:
         place = transform_of(state.pose.pose)
         model = replace(model, pose=state.pose, placement_frame="")
     to_model = invert(place)
-    links = {each.name: each.pose for each in state.links if each.pose is not None}
-    models = {each.name: each for each in state.models}
+    link_poses = {link_state.name: link_state.pose for link_state in state.links if link_state.pose is not None}
+    model_states = {model_state.name: model_state for model_state in state.models}
 
     def inside(pose: RawPose) -> RawPose:
         return RawPose(pose_of(compose(to_model, transform_of(pose.pose))))
 
-    def inner(each: Model) -> Model:
-        found = models.get(each.name)
-        if found is None or found.pose is None:
-            return each
-        restored = _restore(each, found, place)
-        return replace(restored, pose=inside(found.pose))
+    def inner(nested_model: Model) -> Model:
+        nested_state = model_states.get(nested_model.name)
+        if nested_state is None or nested_state.pose is None:
+            return nested_model
+        restored = _with_state(nested_model, nested_state, place)
+        return replace(restored, pose=inside(nested_state.pose))
 
     return replace(
         model,
         scale=state.scale if state.scale != (1.0, 1.0, 1.0) else model.scale,
         links=tuple(
-            replace(each, pose=inside(links[each.name])) if each.name in links else each for each in model.links
+            replace(link, pose=inside(link_poses[link.name])) if link.name in link_poses else link
+            for link in model.links
         ),
         models=tuple(map(inner, model.models)),
     )

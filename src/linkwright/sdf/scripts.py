@@ -1,7 +1,7 @@
-"""Material scripts: Gazebo's own materials by name, and ``.material`` files of models.
+"""Reads material scripts: Gazebo's built-in materials by name, and ``.material`` files of models.
 
-The renderer of Gazebo classic, Ogre, has materials in scripts of its own language; only their colours and the first
-image are read here. Colours in the SDF file take precedence over the colours of the script.
+The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colours and the first image of a
+material are read here. Colours in the SDF file take precedence over the colours of the script.
 
 Source: ``gazebo.material`` of Gazebo classic, and Ogre's manual, "Material scripts".
 """
@@ -24,9 +24,9 @@ from linkwright.sdf.worlds import Sdf
 
 
 class Look(NamedTuple):
-    """The colours and the texture of a material in a script.
+    """The colours and the texture that a script defines for a material.
 
-    Missing colours are None, and a missing texture is empty.
+    A colour is None if the script does not set it; without a texture, `image` is empty.
     """
 
     ambient: Color | None = None
@@ -36,73 +36,73 @@ class Look(NamedTuple):
     image: str = ""
 
 
-def _plain(red: float, green: float, blue: float, alpha: float = 1.0, *, glow: bool = False) -> Look:
+def _uniform_look(red: float, green: float, blue: float, alpha: float = 1.0, *, glow: bool = False) -> Look:
     color = (float(red), float(green), float(blue), alpha)
     return Look(color, color, None, color if glow else None)
 
 
-_NAMED = {
-    "Black": _plain(0, 0, 0),
-    "Blue": _plain(0, 0, 1),
-    "BlueGlow": _plain(0, 0, 1, glow=True),
-    "BlueLaser": _plain(0, 0, 1, 0.4),
-    "BlueTransparent": _plain(0, 0, 1, 0.5),
-    "Bricks": _plain(0.6, 0.35, 0.27),
-    "CeilingTiled": _plain(0.8, 0.8, 0.78),
-    "DarkGrey": _plain(0.175, 0.175, 0.175),
-    "DarkYellow": _plain(0.7, 0.7, 0),
-    "FlatBlack": _plain(0.1, 0.1, 0.1),
+_BUILT_IN_LOOKS = {
+    "Black": _uniform_look(0, 0, 0),
+    "Blue": _uniform_look(0, 0, 1),
+    "BlueGlow": _uniform_look(0, 0, 1, glow=True),
+    "BlueLaser": _uniform_look(0, 0, 1, 0.4),
+    "BlueTransparent": _uniform_look(0, 0, 1, 0.5),
+    "Bricks": _uniform_look(0.6, 0.35, 0.27),
+    "CeilingTiled": _uniform_look(0.8, 0.8, 0.78),
+    "DarkGrey": _uniform_look(0.175, 0.175, 0.175),
+    "DarkYellow": _uniform_look(0.7, 0.7, 0),
+    "FlatBlack": _uniform_look(0.1, 0.1, 0.1),
     "Gold": Look((0.4, 0.24869, 0.020759, 1.0), (0.8, 0.64869, 0.120759, 1.0), (0.4, 0.4, 0.4, 1.0)),
-    "Green": _plain(0, 1, 0),
-    "GreenGlow": _plain(0, 1, 0, glow=True),
-    "GreenTransparent": _plain(0, 1, 0, 0.5),
+    "Green": _uniform_look(0, 1, 0),
+    "GreenGlow": _uniform_look(0, 1, 0, glow=True),
+    "GreenTransparent": _uniform_look(0, 1, 0, 0.5),
     "Grey": Look((0.3, 0.3, 0.3, 1.0), (0.7, 0.7, 0.7, 1.0), (0.01, 0.01, 0.01, 1.0)),
-    "GreyTransparent": _plain(0.5, 0.5, 0.5, 0.5),
-    "Indigo": _plain(0.33, 0, 0.5),
-    "LightOff": _plain(1, 0, 0, glow=True),
-    "LightOn": _plain(0, 1, 0, glow=True),
+    "GreyTransparent": _uniform_look(0.5, 0.5, 0.5, 0.5),
+    "Indigo": _uniform_look(0.33, 0, 0.5),
+    "LightOff": _uniform_look(1, 0, 0, glow=True),
+    "LightOn": _uniform_look(0, 1, 0, glow=True),
     "Orange": Look((1.0, 0.5088, 0.0468, 1.0), (1.0, 0.5088, 0.0468, 1.0), (0.5, 0.5, 0.5, 1.0)),
-    "OrangeTransparent": _plain(1, 0.44, 0, 0.4),
-    "PaintedWall": _plain(0.85, 0.83, 0.78),
+    "OrangeTransparent": _uniform_look(1, 0.44, 0, 0.4),
+    "PaintedWall": _uniform_look(0.85, 0.83, 0.78),
     "Pioneer2Body": Look(
         (0.481193, 0.000123, 0.000123, 1.0), (0.681193, 0.000923, 0.000923, 1.0), (0.5, 0.5, 0.5, 1.0)
     ),
-    "Purple": _plain(1, 0, 1),
-    "PurpleGlow": _plain(1, 0, 1, glow=True),
-    "Red": _plain(1, 0, 0),
-    "RedBright": _plain(0.87, 0.26, 0.07),
-    "RedGlow": _plain(1, 0, 0, glow=True),
-    "RedTransparent": _plain(1, 0, 0, 0.5),
-    "Residential": _plain(0.35, 0.35, 0.35),
-    "Road": _plain(0.3, 0.3, 0.3),
+    "Purple": _uniform_look(1, 0, 1),
+    "PurpleGlow": _uniform_look(1, 0, 1, glow=True),
+    "Red": _uniform_look(1, 0, 0),
+    "RedBright": _uniform_look(0.87, 0.26, 0.07),
+    "RedGlow": _uniform_look(1, 0, 0, glow=True),
+    "RedTransparent": _uniform_look(1, 0, 0, 0.5),
+    "Residential": _uniform_look(0.35, 0.35, 0.35),
+    "Road": _uniform_look(0.3, 0.3, 0.3),
     "SkyBlue": Look((0.13, 0.44, 0.7, 1.0), (0.0, 0.0, 1.0, 1.0)),
-    "Turquoise": _plain(0, 1, 1),
-    "TurquoiseGlow": _plain(0, 1, 1, glow=True),
-    "White": _plain(1, 1, 1),
-    "WhiteGlow": _plain(1, 1, 1, glow=True),
-    "Wood": _plain(0.62, 0.46, 0.3),
-    "WoodFloor": _plain(0.55, 0.36, 0.2),
-    "WoodPallet": _plain(0.7, 0.56, 0.38),
-    "Yellow": _plain(1, 1, 0),
-    "YellowGlow": _plain(1, 1, 0, glow=True),
-    "YellowTransparent": _plain(1, 1, 0, 0.5),
-    "ZincYellow": _plain(0.9725, 0.9529, 0.2078),
+    "Turquoise": _uniform_look(0, 1, 1),
+    "TurquoiseGlow": _uniform_look(0, 1, 1, glow=True),
+    "White": _uniform_look(1, 1, 1),
+    "WhiteGlow": _uniform_look(1, 1, 1, glow=True),
+    "Wood": _uniform_look(0.62, 0.46, 0.3),
+    "WoodFloor": _uniform_look(0.55, 0.36, 0.2),
+    "WoodPallet": _uniform_look(0.7, 0.56, 0.38),
+    "Yellow": _uniform_look(1, 1, 0),
+    "YellowGlow": _uniform_look(1, 1, 0, glow=True),
+    "YellowTransparent": _uniform_look(1, 1, 0, 0.5),
+    "ZincYellow": _uniform_look(0.9725, 0.9529, 0.2078),
 }
-"""Gazebo's own materials; those that are images there have about the colour of the image."""
+"""Gazebo's built-in materials by name without prefix; textured ones have the approximate colour of their image."""
 _PREFIX = "Gazebo/"
-_LARGEST = 1_000_000
-"""Bytes of a script; Gazebo's own has 19 000."""
-_WORDS = re.compile(r"//[^\n]*|/\*.*?\*/|\{|\}|\n|[^\s{}]+", re.DOTALL)
+_MAX_SCRIPT_BYTES = 1_000_000
+"""The maximum size of a script in bytes; the script with Gazebo's materials has 19 000."""
+_TOKENS = re.compile(r"//[^\n]*|/\*.*?\*/|\{|\}|\n|[^\s{}]+", re.DOTALL)
 _COLORS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def gazebo_look(name: str) -> Look | None:
-    """Return the look of one of Gazebo's materials, such as ``Gazebo/Grey``; None for other names."""
-    return _NAMED.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
+    """Return the look of a built-in material of Gazebo, such as ``Gazebo/Grey``; None for other names."""
+    return _BUILT_IN_LOOKS.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
 
 
 def with_look(material: Material, look: Look) -> Material:
-    """Return a material in which a script's look replaces missing colours and a missing texture."""
+    """Return a material with missing colours and a missing texture taken from a script's look."""
     pbr = material.pbr
     if look.image and pbr is None:
         pbr = Pbr(metal=Workflow(albedo_map=look.image))
@@ -117,18 +117,18 @@ def with_look(material: Material, look: Look) -> Material:
 
 
 def with_scripts(sdf: Sdf, finder: ResourceFinder) -> Sdf:
-    """Return a file whose materials are completed from the scripts that they name.
+    """Return the content of a file with its materials completed from the scripts that they name.
 
     Args:
-        sdf: the file, with its includes resolved.
-        finder: the finder of scripts and images.
+        sdf: the content of the file, with its includes resolved.
+        finder: finds scripts and images.
     """
-    library = _Library(finder)
+    library = _ScriptLibrary(finder)
     worlds = tuple(replace(world, models=tuple(map(library.model, world.models))) for world in sdf.worlds)
     return replace(sdf, worlds=worlds, models=tuple(map(library.model, sdf.models)))
 
 
-class _Library:
+class _ScriptLibrary:
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
         self._files: dict[Path, dict[str, Look]] = {}
@@ -150,32 +150,33 @@ class _Library:
 
     def _look(self, script: MaterialScript, visual: Visual) -> Look | None:
         source = None if visual.element is None else visual.element.source
-        beside = Path() if source is None else Path(source.name).parent
-        found = {uri: self._finder.file(uri.strip(), beside) for uri in script.uris if uri and uri.strip()}
-        places = {uri: place for uri, place in found.items() if not isinstance(place, Missing)}
-        for file in (file for place in places.values() for file in _scripts(place)):
+        folder = Path() if source is None else Path(source.name).parent
+        paths = {uri: self._finder.file(uri.strip(), folder) for uri in script.uris if uri and uri.strip()}
+        existing_paths = {uri: path for uri, path in paths.items() if not isinstance(path, Missing)}
+        for file in (file for place in existing_paths.values() for file in _script_files(place)):
             look = self._read(file).get(script.name)
             if look is not None:
-                return look._replace(image=_image(look.image, file, places))
+                return look._replace(image=_image(look.image, file, existing_paths))
         return gazebo_look(script.name)
 
     def _read(self, file: Path) -> dict[str, Look]:
         if file not in self._files:
             self._files[file] = {}
             with suppress(OSError):
-                if file.stat().st_size <= _LARGEST:
+                if file.stat().st_size <= _MAX_SCRIPT_BYTES:
                     self._files[file] = read_script(file.read_text(encoding="utf-8", errors="replace"))
         return self._files[file]
 
 
-def _image(name: str, script: Path, places: Mapping[str, Path]) -> str:
-    """Return the URI of a texture that a script names; empty if there is no such file.
+def _image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
+    """Return the URI of a texture that a script names, or an empty string if the file does not exist.
 
-    The texture is searched for in the folders of the material, and near the script.
+    The file is searched for in the folders of the material, beside the script, and in the folder ``textures`` next to
+    the script's folder.
     """
     if name:
-        for uri, place in places.items():
-            if (place / name).is_file():
+        for uri, path in paths.items():
+            if (path / name).is_file():
                 return f"{uri.strip().rstrip('/')}/{name}"
         for folder in (script.parent, script.parent.parent / "textures"):
             if (folder / name).is_file():
@@ -183,7 +184,7 @@ def _image(name: str, script: Path, places: Mapping[str, Path]) -> str:
     return ""
 
 
-def _scripts(place: Path) -> list[Path]:
+def _script_files(place: Path) -> list[Path]:
     if not place.is_dir():
         return [place]
     with suppress(OSError):
@@ -194,52 +195,52 @@ def _scripts(place: Path) -> list[Path]:
 def read_script(text: str) -> dict[str, Look]:
     """Return the looks of the materials in an Ogre script, by name.
 
-    The first value of each property is used.
+    If a property occurs several times, its first value is used.
     """
-    found: dict[str, Look] = {}
+    looks: dict[str, Look] = {}
     current = ""
     depth = 0
     for line in _lines(text):
-        head, *words = line
-        if head == "material" and depth == 0 and words:
-            current = words[0].strip('"')
-            parent = words[-1].strip('"') if ":" in words else ""
-            found[current] = found.get(parent) or gazebo_look(parent) or Look()
-        elif head in "{}":
-            depth = max(0, depth + (1 if head == "{" else -1))
+        keyword, *arguments = line
+        if keyword == "material" and depth == 0 and arguments:
+            current = arguments[0].strip('"')
+            parent = arguments[-1].strip('"') if ":" in arguments else ""
+            looks[current] = looks.get(parent) or gazebo_look(parent) or Look()
+        elif keyword in "{}":
+            depth = max(0, depth + (1 if keyword == "{" else -1))
         elif current and depth:
-            found[current] = _with_property(found[current], head, words)
-    return found
+            looks[current] = _with_property(looks[current], keyword, arguments)
+    return looks
 
 
-def _with_property(look: Look, word: str, values: list[str]) -> Look:
-    if word == "texture" and values and not look.image:
+def _with_property(look: Look, keyword: str, values: list[str]) -> Look:
+    if keyword == "texture" and values and not look.image:
         return look._replace(image=values[0].strip('"'))
-    if word in _COLORS and getattr(look, word) is None:
+    if keyword in _COLORS and getattr(look, keyword) is None:
         with suppress(ValueError):
             numbers = [float(value) for value in values[:4]]
             # In a specular colour, the last of four or five numbers is the shininess.
-            alpha = numbers[3] if len(numbers) == 4 and (word != "specular" or len(values) == 5) else 1.0
+            alpha = numbers[3] if len(numbers) == 4 and (keyword != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:
-                colours: dict[str, Any] = {word: (numbers[0], numbers[1], numbers[2], alpha)}
+                colours: dict[str, Any] = {keyword: (numbers[0], numbers[1], numbers[2], alpha)}
                 return look._replace(**colours)
     return look
 
 
 def _lines(text: str) -> Iterator[list[str]]:
-    """Yield the tokens of each nonempty line, without comments; each brace is a separate line."""
-    words: list[str] = []
-    for match in _WORDS.finditer(text):
-        word = match[0]
-        if word.startswith(("//", "/*")):
+    """Yield the symbols of each line that has any, without comments; each brace counts as a line."""
+    symbols: list[str] = []
+    for match in _TOKENS.finditer(text):
+        symbol = match[0]
+        if symbol.startswith(("//", "/*")):
             continue
-        if word in ("{", "}", "\n"):
-            if words:
-                yield words
-            words = []
-            if word != "\n":
-                yield [word]
+        if symbol in ("{", "}", "\n"):
+            if symbols:
+                yield symbols
+            symbols = []
+            if symbol != "\n":
+                yield [symbol]
         else:
-            words.append(word)
-    if words:
-        yield words
+            symbols.append(symbol)
+    if symbols:
+        yield symbols

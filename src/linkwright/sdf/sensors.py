@@ -21,7 +21,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """The rays of a lidar in one direction, from `min_angle` to `max_angle` in radians."""
+    """The horizontal or vertical rays of a lidar, from `min_angle` to `max_angle` in radians."""
 
     samples: int = 640
     resolution: float = 1.0
@@ -50,9 +50,9 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Lidar:
-    """A lidar, which looks along x of its frame.
+    """A lidar that points along the x axis of its frame.
 
-    Horizontal angles are about z, and vertical angles are positive upwards.
+    Horizontal angles are rotations about z, and vertical angles are positive upwards.
     """
 
     horizontal: Sweep = Sweep()
@@ -70,7 +70,7 @@ class Imu:
         angular_velocity: the noise in rad/s.
         linear_acceleration: the noise in m/s2.
         enable_orientation: whether the IMU also measures its orientation.
-        localization: the reference of the orientation: ``CUSTOM``, ``NED``, ``ENU``, ``NWU``, ``GRAV_UP`` or
+        localization: the frame to which the orientation refers: ``CUSTOM``, ``NED``, ``ENU``, ``NWU``, ``GRAV_UP`` or
             ``GRAV_DOWN``.
         custom_rpy: roll, pitch, yaw of the custom frame, in radians, in the frame `custom_parent_frame`.
     """
@@ -85,7 +85,7 @@ class Imu:
 
 @dataclass(frozen=True, slots=True)
 class ContactSensor:
-    """The settings of a contact sensor: the name of a collision, and the topic."""
+    """The collision whose contacts a sensor reports, and the topic for its messages."""
 
     collision: str = "__default__"
     topic: str = "__default_topic__"
@@ -93,7 +93,7 @@ class ContactSensor:
 
 @dataclass(frozen=True, slots=True)
 class Navsat:
-    """A satellite receiver, with noise of positions in metres and of velocities in m/s."""
+    """The noise of a satellite receiver: of positions in metres and of velocities in m/s."""
 
     horizontal_position: Noise = NO_NOISE
     vertical_position: Noise = NO_NOISE
@@ -120,7 +120,7 @@ class ForceTorque:
 
 @dataclass(frozen=True, slots=True)
 class Altimeter:
-    """An altimeter, with noise of the height in metres and of the vertical velocity in m/s."""
+    """The noise of an altimeter: of the height in metres and of the vertical velocity in m/s."""
 
     vertical_position: Noise = NO_NOISE
     vertical_velocity: Noise = NO_NOISE
@@ -136,7 +136,7 @@ class AirPressure:
 
 @dataclass(frozen=True, slots=True)
 class Sonar:
-    """A sonar whose beam is a cone, sphere or box (``geometry``); lengths in metres."""
+    """A sonar; `geometry` is the shape of its beam, such as ``cone`` or ``sphere``, and lengths are in metres."""
 
     geometry: str = "cone"
     min: float = 0.0
@@ -146,9 +146,9 @@ class Sonar:
 
 @dataclass(frozen=True, slots=True)
 class LogicalCamera:
-    """A logical camera, which lists the models in its view.
+    """A sensor that reports the models in its field of view.
 
-    Distances are in metres, and the horizontal angle of view is in radians.
+    Distances are in metres, and the horizontal field of view is in radians.
     """
 
     near: float = 0.0
@@ -163,7 +163,7 @@ class Sensor:
 
     Attributes:
         type: the type, such as ``camera``, ``gpu_lidar`` or ``imu``; an unknown type is kept as written.
-        pose: the pose in the frame of the link or joint.
+        pose: the pose in the frame of the link or joint, unless it names another frame.
         update_rate: the measurements per second; 0 for one per step.
         always_on: whether the sensor measures without a subscriber.
         visualize: whether measurements are displayed.
@@ -197,7 +197,7 @@ class Sensor:
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
-def _sweep(tag: str, meaning: str, samples: int) -> ElementRule:
+def _sweep_rule(tag: str, meaning: str, samples: int) -> ElementRule:
     return object_rule(
         Sweep,
         tag,
@@ -222,28 +222,28 @@ _RANGE = object_rule(
 
 
 @dataclass(frozen=True, slots=True)
-class _Scan:
+class _ScanValues:
     horizontal: Sweep = Sweep()
     vertical: Sweep = Sweep(1)
 
 
-def _lidar_of(scan: _Scan, **parts: Any) -> Lidar:
-    return Lidar(scan.horizontal, scan.vertical, **parts)
+def _make_lidar(scan: _ScanValues, **options: Any) -> Lidar:
+    return Lidar(scan.horizontal, scan.vertical, **options)
 
 
-def _lidar(tag: str) -> ElementRule:
+def _lidar_rule(tag: str) -> ElementRule:
     return object_rule(
-        _lidar_of,
+        _make_lidar,
         tag,
         "the rays and the range of a lidar",
         object_rule(
-            _Scan,
+            _ScanValues,
             "scan",
             "its rays",
-            _sweep("horizontal", "the rays about z", 640),
-            _sweep("vertical", "the rays upwards", 1),
-            default=_Scan(),
-            get=lambda lidar: _Scan(lidar.horizontal, lidar.vertical),
+            _sweep_rule("horizontal", "the rays about z", 640),
+            _sweep_rule("vertical", "the rays upwards", 1),
+            default=_ScanValues(),
+            get=lambda lidar: _ScanValues(lidar.horizontal, lidar.vertical),
         ),
         _RANGE,
         noise_rule(),
@@ -252,31 +252,31 @@ def _lidar(tag: str) -> ElementRule:
 
 
 @dataclass(frozen=True, slots=True)
-class _Reference:
+class _OrientationReference:
     localization: str = "CUSTOM"
     custom_rpy: tuple[Vector3, str] = ((0.0, 0.0, 0.0), "")
 
 
-def _imu_of(orientation_reference_frame: _Reference, **parts: Any) -> Imu:
+def _make_imu(orientation_reference_frame: _OrientationReference, **options: Any) -> Imu:
     rpy, parent = orientation_reference_frame.custom_rpy
     return Imu(
-        localization=orientation_reference_frame.localization, custom_rpy=rpy, custom_parent_frame=parent, **parts
+        localization=orientation_reference_frame.localization, custom_rpy=rpy, custom_parent_frame=parent, **options
     )
 
 
-def _custom(angles: Vector3, parent_frame: str) -> tuple[Vector3, str]:
+def _custom_orientation(angles: Vector3, parent_frame: str) -> tuple[Vector3, str]:
     return angles, parent_frame
 
 
 _IMU = object_rule(
-    _imu_of,
+    _make_imu,
     "imu",
     "the noise and the reference of an IMU",
     noise_xyz_rule("angular_velocity", "noise on the angular velocity"),
     noise_xyz_rule("linear_acceleration", "noise on the acceleration"),
     value("enable_orientation", TRUTH, "whether it measures its orientation too", default="true"),
     object_rule(
-        _Reference,
+        _OrientationReference,
         "orientation_reference_frame",
         "the reference frame of the orientation",
         value("localization", TEXT, "CUSTOM, NED, ENU, NWU, GRAV_UP or GRAV_DOWN", default="CUSTOM"),
@@ -287,22 +287,22 @@ _IMU = object_rule(
             text=AttributeRule(
                 "text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="angles", get=itemgetter(0)
             ),
-            make=_custom,
+            make=_custom_orientation,
             default=((0.0, 0.0, 0.0), ""),
         ),
-        default=_Reference(),
-        get=lambda imu: _Reference(imu.localization, (imu.custom_rpy, imu.custom_parent_frame)),
+        default=_OrientationReference(),
+        get=lambda imu: _OrientationReference(imu.localization, (imu.custom_rpy, imu.custom_parent_frame)),
     ),
 )
 
 
 @dataclass(frozen=True, slots=True)
-class _Sensing:
+class _SensingNoise:
     horizontal: Noise = NO_NOISE
     vertical: Noise = NO_NOISE
 
 
-def _navsat_of(position_sensing: _Sensing, velocity_sensing: _Sensing) -> Navsat:
+def _make_navsat(position_sensing: _SensingNoise, velocity_sensing: _SensingNoise) -> Navsat:
     return Navsat(
         position_sensing.horizontal,
         position_sensing.vertical,
@@ -311,16 +311,21 @@ def _navsat_of(position_sensing: _Sensing, velocity_sensing: _Sensing) -> Navsat
     )
 
 
-def _navsat(tag: str) -> ElementRule:
+def _navsat_rule(tag: str) -> ElementRule:
     def sensing(kind: str, meaning: str) -> ElementRule:
-        parts = (wrapped_noise_rule("horizontal", "across the ground"), wrapped_noise_rule("vertical", "upwards"))
-        both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
+        noise_rules = (wrapped_noise_rule("horizontal", "across the ground"), wrapped_noise_rule("vertical", "upwards"))
+        get_both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
         return object_rule(
-            _Sensing, f"{kind}_sensing", meaning, *parts, default=_Sensing(), get=lambda navsat: _Sensing(*both(navsat))
+            _SensingNoise,
+            f"{kind}_sensing",
+            meaning,
+            *noise_rules,
+            default=_SensingNoise(),
+            get=lambda navsat: _SensingNoise(*get_both(navsat)),
         )
 
     return object_rule(
-        _navsat_of,
+        _make_navsat,
         tag,
         "noise of a satellite receiver",
         sensing("position", "noise on the position"),
@@ -349,7 +354,7 @@ _SONAR = object_rule(
 )
 
 
-def _sensor_of(
+def _make_sensor(
     *,
     ray: Lidar | None,
     gps: Navsat | None,
@@ -358,10 +363,10 @@ def _sensor_of(
     ignition_frame_id: str,
     gz_frame_id: str,
     frame_id: str,
-    **parts: Any,
+    **options: Any,
 ) -> Sensor:
     return Sensor(
-        lidar=lidar or ray, navsat=navsat or gps, frame_id=frame_id or gz_frame_id or ignition_frame_id, **parts
+        lidar=lidar or ray, navsat=navsat or gps, frame_id=frame_id or gz_frame_id or ignition_frame_id, **options
     )
 
 
@@ -386,8 +391,8 @@ SENSOR = ElementRule(
         ),
         value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default="", get=never_written),
         CAMERA,
-        _lidar("lidar"),
-        replace(_lidar("ray"), get=never_written),
+        _lidar_rule("lidar"),
+        replace(_lidar_rule("ray"), get=never_written),
         _IMU,
         object_rule(
             ContactSensor,
@@ -396,8 +401,8 @@ SENSOR = ElementRule(
             value("collision", TEXT, "the collision", default="__default__"),
             value("topic", TEXT, "the topic of its messages", default="__default_topic__"),
         ),
-        _navsat("navsat"),
-        replace(_navsat("gps"), get=never_written),
+        _navsat_rule("navsat"),
+        replace(_navsat_rule("gps"), get=never_written),
         noise_xyz_rule("magnetometer", "noise of a magnetometer", None),
         object_rule(
             Altimeter,
@@ -427,7 +432,7 @@ SENSOR = ElementRule(
         PLUGIN,
     ),
     many=True,
-    make=_sensor_of,
+    make=_make_sensor,
     keeps=True,
     located=True,
     owns=True,

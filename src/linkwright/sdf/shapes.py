@@ -1,4 +1,4 @@
-"""The element ``<geometry>``: the shapes of SDF, with lengths in metres.
+"""The element ``<geometry>``: the shapes of visuals and collisions, with lengths in metres.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``geometry.sdf`` and the files of each shape.
 """
@@ -26,7 +26,7 @@ from linkwright.sdf.values import (
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """An infinite plane through the origin; `size` is the visible part."""
+    """An infinite plane through the origin; `size` is the extent of its visible part."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (1.0, 1.0)
@@ -49,7 +49,7 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Submesh:
-    """The name of a part of a mesh file; with `center`, the part is moved to the origin."""
+    """A named part of a mesh file, which is centred at the origin if `center` is set."""
 
     name: str
     center: bool = False
@@ -66,7 +66,7 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class TerrainTexture:
-    """A texture of a heightmap: the URIs of its images, and its edge length in metres."""
+    """A texture of a heightmap: the URIs of its colour and normal images, and its edge length in metres."""
 
     diffuse: str = ""
     normal: str = ""
@@ -75,7 +75,7 @@ class TerrainTexture:
 
 @dataclass(frozen=True, slots=True)
 class Blend:
-    """The transition between two textures of a heightmap: its start height and its extent, in metres."""
+    """The height at which one texture of a heightmap starts to fade into the next, and over which distance."""
 
     min_height: float = 0.0
     fade_dist: float = 0.0
@@ -83,14 +83,14 @@ class Blend:
 
 @dataclass(frozen=True, slots=True)
 class Heightmap:
-    """Terrain whose heights are the grey values of an image, or the values of an elevation model.
+    """Terrain with heights from the grey values of an image, or from a digital elevation model.
 
     Attributes:
-        uri: the image, with 2^n + 1 pixels along each side.
-        size: the extent along x and y, and from the lowest to the highest value.
+        uri: the address of the file; an image has 2^n + 1 pixels along each side.
+        size: the extent along x and y, and the height between the lowest and the highest value.
         position: the offset of the centre.
         textures: the textures, from the lowest to the highest.
-        blends: the transitions between the textures.
+        blends: the transitions between consecutive textures.
         sampling: the number of heights per pixel.
     """
 
@@ -104,7 +104,7 @@ class Heightmap:
 
 @dataclass(frozen=True, slots=True)
 class Image:
-    """A relief: each pixel of an image that is brighter than a threshold becomes a box of a given height."""
+    """A relief with a box wherever an image is brighter than a threshold; all boxes have the same height."""
 
     uri: str
     scale: float = 1.0
@@ -115,7 +115,7 @@ class Image:
 
 @dataclass(frozen=True, slots=True)
 class Polyline:
-    """A polygon in the plane z = 0, extruded to a height."""
+    """A polygon in the plane z = 0, extruded along z to `height`."""
 
     points: tuple[tuple[float, float], ...]
     height: float = 1.0
@@ -123,7 +123,7 @@ class Polyline:
 
 @dataclass(frozen=True, slots=True)
 class Empty:
-    """An empty geometry without a shape."""
+    """A geometry without a shape."""
 
 
 NO_SHAPE = Empty()
@@ -145,13 +145,13 @@ Shape = (
 )
 
 
-def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
-    """Return the first shape that is given, in libsdformat's order of shapes, or `NO_SHAPE`."""
+def _first_shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
+    """Return the first shape that is present, in libsdformat's order, or `NO_SHAPE`."""
     return next((shape for shape in shapes.values() if shape), NO_SHAPE)
 
 
-def _getter(kind: type) -> Callable[[Shape], Shape | None]:
-    """Return a function for writing that returns a shape of the class `kind`, and None for any other."""
+def _shape_if(kind: type) -> Callable[[Shape], Shape | None]:
+    """Return a function that returns its argument if it is a `kind`, and None otherwise; for writing."""
     return lambda shape: shape if isinstance(shape, kind) else None
 
 
@@ -167,7 +167,7 @@ _URI = value(
 )
 
 GEOMETRY = object_rule(
-    _shape,
+    _first_shape,
     "geometry",
     "the shape",
     object_rule(
@@ -175,30 +175,30 @@ GEOMETRY = object_rule(
         "box",
         "a box centred at the origin",
         value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1", usual=True),
-        get=_getter(Box),
+        get=_shape_if(Box),
     ),
     object_rule(
-        Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_getter(Capsule)
+        Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_shape_if(Capsule)
     ),
-    object_rule(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_getter(Cone)),
+    object_rule(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_shape_if(Cone)),
     object_rule(
-        Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_getter(Cylinder)
+        Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_shape_if(Cylinder)
     ),
     object_rule(
         Ellipsoid,
         "ellipsoid",
         "an ellipsoid centred at the origin",
         value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1", usual=True),
-        get=_getter(Ellipsoid),
+        get=_shape_if(Ellipsoid),
     ),
-    object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_getter(Sphere)),
+    object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_shape_if(Sphere)),
     object_rule(
         Plane,
         "plane",
         "a plane without end",
         value("normal", VECTOR3, "the direction that it faces", default="0 0 1", usual=True),
         value("size", VECTOR2, "how much of it is drawn", "m", default="1 1", usual=True),
-        get=_getter(Plane),
+        get=_shape_if(Plane),
     ),
     object_rule(
         Mesh,
@@ -213,7 +213,7 @@ GEOMETRY = object_rule(
             value("name", TEXT, "the name of the part in the file", default=""),
             value("center", TRUTH, "whether the part is moved to the origin", default="false"),
         ),
-        get=_getter(Mesh),
+        get=_shape_if(Mesh),
     ),
     object_rule(
         Heightmap,
@@ -242,7 +242,7 @@ GEOMETRY = object_rule(
             field="blends",
         ),
         value("sampling", INTEGER, "the number of heights per pixel", default="2"),
-        get=_getter(Heightmap),
+        get=_shape_if(Heightmap),
     ),
     object_rule(
         Image,
@@ -253,7 +253,7 @@ GEOMETRY = object_rule(
         value("threshold", INTEGER, "the brightness from 0 to 255 from which there is a box", default="200"),
         value("height", NUMBER, "height of the boxes", "m", default="1"),
         value("granularity", INTEGER, "how many pixels make one box along each side", default="1"),
-        get=_getter(Image),
+        get=_shape_if(Image),
     ),
     object_rule(
         without_unreadable(Polyline),
@@ -264,6 +264,6 @@ GEOMETRY = object_rule(
         many=True,
         get=lambda shape: shape if isinstance(shape, tuple) else (),
     ),
-    object_rule(Empty, "empty", "no shape", get=_getter(Empty)),
+    object_rule(Empty, "empty", "no shape", get=_shape_if(Empty)),
     default=NO_SHAPE,
 )

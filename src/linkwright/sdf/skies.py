@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Sky:
-    """A sky; the time of day and the times of sunrise and sunset are in hours."""
+    """A sky with the time of day, sunrise and sunset, in hours from 0 to 24."""
 
     time: float = 10.0
     sunrise: float = 6.0
@@ -27,10 +27,10 @@ class Fog:
 
     Attributes:
         color: the colour of the fog.
-        type: ``none``, ``linear`` (from `start` to `end`), or by `density`: ``constant`` (Gazebo: ``exp``) or
-            ``quadratic`` (``exp2``).
-        start: the distance in m at which the fog begins.
-        end: the distance in m beyond which nothing is visible.
+        type: ``none``; ``linear`` for fog from `start` to `end`; or ``constant`` or ``quadratic`` for fog by `density`,
+            which Gazebo calls ``exp`` and ``exp2``.
+        start: the distance in m at which linear fog begins.
+        end: the distance in m beyond which linear fog hides everything.
         density: the density in 1/m.
     """
 

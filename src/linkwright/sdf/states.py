@@ -41,7 +41,7 @@ class ModelState:
 
 @dataclass(frozen=True, slots=True)
 class LightState:
-    """The state of a light in a saved world."""
+    """The state of a light in a saved world; its pose is in the frame of the world."""
 
     name: str
     pose: RawPose | None = None
@@ -68,8 +68,8 @@ class State:
 
     Attributes:
         world_name: the name of the world.
-        sim_time: the simulated time in seconds.
-        iterations: the number of steps.
+        sim_time: the simulated time in seconds when the world was saved.
+        iterations: the number of simulation steps up to then.
     """
 
     world_name: str = ""

@@ -15,15 +15,16 @@ from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, never_w
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction with ODE's friction pyramid.
+    """The parameters of ODE's friction pyramid.
 
     Attributes:
         mu: the coefficient of Coulomb friction along `direction`.
         mu2: the coefficient perpendicular to `direction`.
-        direction: the first direction in the frame of the collision (or of `expressed_in`); zero for any.
+        direction: the first friction direction in the frame of the collision, or in the frame `expressed_in`; zero lets
+            the engine choose it.
         slip1: the slip velocity per force along `direction`, in m/s/N.
         slip2: the slip velocity per force perpendicular to `direction`, in m/s/N.
-        expressed_in: the frame of `direction`.
+        expressed_in: the name of the frame of `direction`; empty for the frame of the collision.
     """
 
     mu: float = 1.0
@@ -36,7 +37,7 @@ class Friction:
 
 @dataclass(frozen=True, slots=True)
 class BulletFriction:
-    """Friction parameters of the physics engine Bullet."""
+    """The friction coefficients for the physics engine Bullet."""
 
     friction: float = 1.0
     friction2: float = 1.0
@@ -55,15 +56,15 @@ class TorsionalFriction:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """The stiffness of a contact.
+    """The stiffness and damping of a contact in ODE.
 
     Attributes:
-        soft_cfm: the constraint force mixing.
-        soft_erp: the fraction of the error that is corrected in a step.
+        soft_cfm: the constraint force mixing (CFM).
+        soft_erp: the error reduction parameter (ERP): the fraction of the error that is corrected in a step.
         kp: the stiffness in N/m.
         kd: the damping in N s/m.
         max_vel: the maximum speed at which an overlap is corrected, in m/s.
-        min_depth: the overlap up to which nothing is corrected, in metres.
+        min_depth: the overlap in metres below which nothing is corrected.
     """
 
     soft_cfm: float = 0.0
@@ -79,15 +80,15 @@ class Surface:
     """The contact properties of a collision.
 
     Attributes:
-        friction: friction for ODE; None if not given.
-        bullet_friction: friction for the engine Bullet; None if not given.
-        torsional: friction against rotation about the normal; None if not given.
-        contact: the stiffness; None if not given.
+        friction: friction for ODE; None if not specified.
+        bullet_friction: friction for the engine Bullet; None if not specified.
+        torsional: friction against rotation about the contact normal; None if not specified.
+        contact: stiffness and damping; None if not specified.
         restitution: the fraction of the speed that remains after a bounce.
         bounce_threshold: the speed in m/s above which the collision bounces.
         collide_without_contact: whether contacts are reported without having an effect.
-        collide_bitmask: a bit mask that selects the shapes to touch, by a common bit.
-        category_bitmask: the bits that the masks of other shapes select.
+        collide_bitmask: selects other shapes: they collide if this mask shares a bit with their `category_bitmask`.
+        category_bitmask: the bits that the collide masks of other shapes select.
     """
 
     friction: Friction | None = None
@@ -125,39 +126,39 @@ class _Bounce:
     bounce_threshold: float = 100000.0
 
 
-def _friction(mu: float, mu2: float, fdir1: tuple[Vector3, str] | None, slip1: float, slip2: float) -> Friction:
+def _make_friction(mu: float, mu2: float, fdir1: tuple[Vector3, str] | None, slip1: float, slip2: float) -> Friction:
     direction, expressed_in = fdir1 or ((0.0, 0.0, 0.0), "")
     return Friction(mu, mu2, direction, slip1, slip2, expressed_in)
 
 
-def _direction(direction: Vector3, old: str, new: str) -> tuple[Vector3, str]:
+def _direction_with_frame(direction: Vector3, old: str, new: str) -> tuple[Vector3, str]:
     return direction, new or old
 
 
-def _surface(friction: _FrictionGroup | None, contact: _ContactGroup | None, bounce: _Bounce | None) -> Surface:
-    group = contact or _ContactGroup(
+def _make_surface(friction: _FrictionGroup | None, contact: _ContactGroup | None, bounce: _Bounce | None) -> Surface:
+    contact_group = contact or _ContactGroup(
         None, collide_without_contact=False, collide_bitmask=0xFFFF, category_bitmask=0xFFFF
     )
-    hop = bounce or _Bounce(0.0, 100000.0)
+    bounce_values = bounce or _Bounce(0.0, 100000.0)
     return Surface(
         friction.ode if friction else None,
         friction.bullet if friction else None,
         friction.torsional if friction else None,
-        group.ode,
-        hop.restitution,
-        hop.bounce_threshold,
-        group.collide_without_contact,
-        group.collide_bitmask,
-        group.category_bitmask,
+        contact_group.ode,
+        bounce_values.restitution,
+        bounce_values.bounce_threshold,
+        contact_group.collide_without_contact,
+        contact_group.collide_bitmask,
+        contact_group.category_bitmask,
     )
 
 
 _Group = TypeVar("_Group")
 
 
-def _unless_default(group: _Group, usual: _Group) -> _Group | None:
-    """Return a group of values for writing, or None if all values are defaults."""
-    return None if group == usual else group
+def _unless_default(group: _Group, default: _Group) -> _Group | None:
+    """Return a group of values for writing, or None if all of them are the defaults."""
+    return None if group == default else group
 
 
 def _friction_group(surface: Surface) -> _FrictionGroup | None:
@@ -173,7 +174,7 @@ def _contact_group(surface: Surface) -> _ContactGroup | None:
 
 
 _ODE_FRICTION = object_rule(
-    _friction,
+    _make_friction,
     "ode",
     "friction as ODE has it",
     value("mu", NUMBER, "Coulomb's coefficient", default="1"),
@@ -202,7 +203,7 @@ _ODE_FRICTION = object_rule(
             field="direction",
             get=lambda friction: friction.direction,
         ),
-        make=_direction,
+        make=_direction_with_frame,
         get=lambda friction: friction if any(friction.direction) or friction.expressed_in else None,
     ),
     value("slip1", NUMBER, "sliding for each newton along the first direction", "m/s/N", default="0"),
@@ -210,7 +211,7 @@ _ODE_FRICTION = object_rule(
 )
 
 SURFACE = object_rule(
-    _surface,
+    _make_surface,
     "surface",
     "friction, bounce and stiffness",
     object_rule(

@@ -1,6 +1,6 @@
-"""Parses XML as the simulators do, whose parser (TinyXML2) accepts more than XML allows.
+"""Parses XML as the simulators do; their parser, TinyXML2, accepts more than XML allows.
 
-The simulators also accept whitespace and comments before the XML declaration, and bytes that are not UTF-8.
+For example, they accept whitespace and comments before the XML declaration, and bytes that are not UTF-8.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from linkwright.xmltree import Document
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import COMMENT, forbidden, parse_as_tinyxml
 
-_EMPTY, _NOT_TEXT, _NOT_XML = "XML105", "XML104", "XML206"
+_EMPTY_CODE, _NOT_TEXT_CODE, _NOT_XML_CODE = "XML105", "XML104", "XML206"
 _LATE_DECLARATION = re.compile(rf"(?:\s|{COMMENT})+(<\?xml\s[^>]*\?>)")
-_READ_ALL_THE_SAME = phrase("simulators read it anyway, but other XML readers reject the file")
+_TOLERATED_BY_SIMULATORS = phrase("simulators accept this, but other XML readers reject the file")
 
 
 def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as Gazebo does, and report each kind of text that XML forbids.
+    """Parse a text as Gazebo does, and report each kind of XML error that Gazebo tolerates.
 
-    An error that does not change the content, such as dashes in a comment, is reported as information, because only
+    An error that does not change the content, such as two dashes in a comment, is reported as information, because only
     simulators read these files.
 
     Raises:
@@ -28,40 +28,46 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
     """
     warnings: list[Diagnostic] = []
     if isinstance(text, bytes):
-        text, warnings = _decoded(text, name)
-    read_as = text
-    late = _LATE_DECLARATION.match(text)
-    if late:
-        message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
+        text, warnings = _decode_tolerantly(text, name)
+    corrected_text = text
+    late_declaration = _LATE_DECLARATION.match(text)
+    if late_declaration:
+        message = phrase("the XML declaration '<?xml' must be at the very start of the file")
         source = SourceText(name, text)
-        span = source.span(late.start(1), late.start(1) + len("<?xml"))
-        warnings.append(forbidden(message, span, source, phrase("remove everything before it"), _READ_ALL_THE_SAME))
-        read_as = read_as[: late.start(1)] + re.sub(r"\S", " ", late[1]) + read_as[late.end(1) :]
+        span = source.span(late_declaration.start(1), late_declaration.start(1) + len("<?xml"))
+        warnings.append(
+            forbidden(message, span, source, phrase("remove everything before it"), _TOLERATED_BY_SIMULATORS)
+        )
+        corrected_text = (
+            corrected_text[: late_declaration.start(1)]
+            + re.sub(r"\S", " ", late_declaration[1])
+            + corrected_text[late_declaration.end(1) :]
+        )
     try:
-        document, more = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME, read_as=read_as)
+        document, parser_warnings = parse_as_tinyxml(text, name, _TOLERATED_BY_SIMULATORS, read_as=corrected_text)
     except LinkwrightError as error:
         found = error.diagnostics[0]
-        if found.code != _EMPTY:
+        if found.code != _EMPTY_CODE:
             raise
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
         raise LinkwrightError(found.with_changes(hint=hint)) from None
-    findings = (*warnings, *more)
+    findings = (*warnings, *parser_warnings)
     return document, tuple(
-        diagnostic.with_changes(severity=Severity.INFO) if diagnostic.code == _NOT_XML else diagnostic
+        diagnostic.with_changes(severity=Severity.INFO) if diagnostic.code == _NOT_XML_CODE else diagnostic
         for diagnostic in findings
     )
 
 
-def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
-    """Return the text of a file, and findings.
+def _decode_tolerantly(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
+    """Decode the bytes of a file, and return the text and the findings.
 
-    If the bytes are invalid in the encoding of the file, the text is decoded as Latin-1, with a warning.
+    If the bytes are invalid in the file's encoding, they are decoded as Latin-1 with a warning.
     """
     try:
         return decode(data, name), []
     except LinkwrightError as error:
-        found = error.diagnostics[0]
-        if found.code != _NOT_TEXT or b"\0" in data:
+        diagnostic = error.diagnostics[0]
+        if diagnostic.code != _NOT_TEXT_CODE or b"\0" in data:
             raise
-        hint = phrase("it is read as Latin-1; save the file as UTF-8")
-        return data.decode("latin-1"), [found.with_changes(severity=Severity.WARNING, hint=hint)]
+        hint = phrase("save the file as UTF-8; it is read as Latin-1 until then")
+        return data.decode("latin-1"), [diagnostic.with_changes(severity=Severity.WARNING, hint=hint)]

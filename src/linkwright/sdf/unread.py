@@ -1,4 +1,4 @@
-"""Messages about elements in places where SDF does not define them."""
+"""Explains elements in places where SDF does not define them."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from linkwright.schema import ElementRule
 from linkwright.sdf.worlds import SDF
 from linkwright.xmltree import Element
 
-_TRUE, _FALSE = ("true", "1"), ("false", "")
-_NO_SCALE = 1.0
-_MOST_HOMES = 3
-_HARMLESS = frozenset({("collision", "material")})
-"""Parents and child elements that no reader needs: the colour of an element that is never drawn."""
+_TRUE_TEXTS, _FALSE_TEXTS = ("true", "1"), ("false", "")
+_NEUTRAL_SCALE = 1.0
+_MAX_PARENTS = 3
+_HARMLESS_PAIRS = frozenset({("collision", "material")})
+"""Pairs of parent and child tags that no reader needs: a collision is never drawn, so its colour has no effect."""
 
 
 def allowed_parents(tag: str) -> tuple[str, ...]:
     """Return the tags of the parents in which SDF allows an element.
 
-    The result is empty if the element is unknown or has many parents.
+    The result is empty if SDF does not define the element, or allows it in more than three parents.
     """
-    found = _parents_by_tag().get(tag, ())
-    return tuple(sorted(found)) if len(found) <= _MOST_HOMES else ()
+    parents = _parents_by_tag().get(tag, ())
+    return tuple(sorted(parents)) if len(parents) <= _MAX_PARENTS else ()
 
 
 def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
-    """Return the ``id()`` of each link element in static models."""
+    """Return the ``id()`` of each link element in static models among `elements`."""
     return frozenset(
         id(link)
         for model in elements
-        if model.tag == "model" and any(element.text().strip() in _TRUE for element in model.elements("static"))
+        if model.tag == "model" and any(element.text().strip() in _TRUE_TEXTS for element in model.elements("static"))
         for link in model.elements("link")
     )
 
@@ -38,24 +38,24 @@ def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
 def changes_nothing(child: Element, parent: Element, static_links: frozenset[int]) -> bool:
     """Return whether reading an element would make no difference.
 
-    This is the case if the element is empty, repeats the default, or is unknown and has the value zero or false.
+    The element is then empty, repeats a default, or is not defined in SDF and has the value zero or false.
     """
-    if (parent.tag, child.tag) in _HARMLESS or (child.tag == "static" and id(parent) in static_links):
+    if (parent.tag, child.tag) in _HARMLESS_PAIRS or (child.tag == "static" and id(parent) in static_links):
         return True
     if next(child.elements(), None) is not None:
         return False
     text = child.text().strip()
     if not text:
         return True
-    values = _numbers(text)
+    numbers = _numbers(text)
     if child.tag == "scale":
-        return bool(values) and all(value == _NO_SCALE for value in values)
-    return child.tag not in _parents_by_tag() and (text in _FALSE or (bool(values) and not any(values)))
+        return bool(numbers) and all(value == _NEUTRAL_SCALE for value in numbers)
+    return child.tag not in _parents_by_tag() and (text in _FALSE_TEXTS or (bool(numbers) and not any(numbers)))
 
 
 def _numbers(text: str) -> list[float]:
     try:
-        return [float(item) for item in text.split()]
+        return [float(token) for token in text.split()]
     except ValueError:
         return []
 
@@ -63,15 +63,15 @@ def _numbers(text: str) -> list[float]:
 @cache
 def _parents_by_tag() -> dict[str, frozenset[str]]:
     """Return the tags of the allowed parents of each element, by tag."""
-    homes: dict[str, set[str]] = {}
-    seen: set[int] = set()
-    waiting: list[ElementRule] = [SDF]
-    while waiting:
-        rule = waiting.pop()
-        if id(rule) in seen:
+    parents: dict[str, set[str]] = {}
+    visited_rules: set[int] = set()
+    pending: list[ElementRule] = [SDF]
+    while pending:
+        rule = pending.pop()
+        if id(rule) in visited_rules:
             continue
-        seen.add(id(rule))
+        visited_rules.add(id(rule))
         for tag, child in rule.child_rules.items():
-            homes.setdefault(tag, set()).add(rule.tag)
-            waiting.append(child)
-    return {tag: frozenset(found) for tag, found in homes.items()}
+            parents.setdefault(tag, set()).add(rule.tag)
+            pending.append(child)
+    return {tag: frozenset(parent_tags) for tag, parent_tags in parents.items()}

@@ -1,6 +1,6 @@
-"""Types of values in SDF, and helper functions for the tables of the language.
+"""The types of values in SDF, and helper functions for the rules of its elements.
 
-SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by whitespace of any kind. The
+SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Any whitespace separates numbers. The
 syntax of values follows libsdformat's parser (``Param.cc``): it accepts ``inf`` and ``nan`` as numbers, and ``true``,
 ``false``, ``1`` or ``0`` in upper or lower case as booleans.
 """
@@ -15,10 +15,12 @@ from typing import Any
 from linkwright.geometry.single import Pose, Quaternion, Vector3, rpy_from_quaternion
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, ValueType
 
-_NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE)
-_STREAMED = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-"""A number as C++ reads it from a stream."""
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+_NUMBER_PATTERN = re.compile(
+    r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE
+)
+_STREAM_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+"""Matches a number as C++ reads it from a stream."""
+_TRUTH_VALUES = {"true": True, "1": True, "false": False, "0": False}
 
 Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, each from 0 to 1."""
@@ -30,7 +32,7 @@ def number(text: str) -> float:
     Raises:
         ValueError: the text is not a number.
     """
-    if not _NUMBER.fullmatch(text.strip()):
+    if not _NUMBER_PATTERN.fullmatch(text.strip()):
         raise ValueError(text)
     return float(text)
 
@@ -39,13 +41,13 @@ def numbers(text: str) -> tuple[float, ...]:
     """Parse a list of numbers that are separated by whitespace.
 
     Raises:
-        ValueError: one of the words is not a number.
+        ValueError: an item is not a number.
     """
     return tuple(map(number, text.split()))
 
 
 def plain(value: float) -> str:
-    """Format a number as briefly as possible without loss."""
+    """Format a number with as few characters as possible without loss."""
     return repr(float(value) or 0.0).removesuffix(".0")  # ``or 0.0`` changes -0.0 to 0.0
 
 
@@ -54,21 +56,21 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def leading_number(text: str) -> float | None:
-    """Return the number at the beginning of a text, or None if there is none.
+    """Return the number at the start of a text, or None if the text does not start with a number.
 
-    The text is read as by ``std::stod`` in libsdformat.
+    This is what ``std::stod`` reads in libsdformat.
     """
-    found = _NUMBER.match(text.strip())
-    return None if found is None else float(found[0])
+    number_match = _NUMBER_PATTERN.match(text.strip())
+    return None if number_match is None else float(number_match[0])
 
 
 def leading_numbers(text: str, count: int) -> tuple[float, ...] | None:
     """Return the first `count` numbers of a text, or None if there are fewer.
 
-    The text is read as by ``>>`` in libsdformat.
+    This is what the operator ``>>`` reads in libsdformat.
     """
-    found = re.match(rf"\s*{_STREAMED}(?:\s+{_STREAMED}){{{count - 1}}}", text)
-    return None if found is None else tuple(map(float, found[0].split()))
+    numbers_match = re.match(rf"\s*{_STREAM_NUMBER}(?:\s+{_STREAM_NUMBER}){{{count - 1}}}", text)
+    return None if numbers_match is None else tuple(map(float, numbers_match[0].split()))
 
 
 def _integer(text: str) -> int:
@@ -82,7 +84,7 @@ def _integer(text: str) -> int:
 
 def _truth(text: str) -> bool:
     try:
-        return _TRUTH[text.strip().casefold()]
+        return _TRUTH_VALUES[text.strip().casefold()]
     except KeyError:
         raise ValueError(text) from None
 
@@ -111,18 +113,18 @@ def _color(text: str) -> Color:
 
 def _time(text: str) -> float:
     """Parse seconds and nanoseconds, or only seconds, and return seconds."""
-    found = numbers(text)
-    if len(found) == 1:
-        return found[0]
-    seconds, nanoseconds = found
+    parts = numbers(text)
+    if len(parts) == 1:
+        return parts[0]
+    seconds, nanoseconds = parts
     return seconds + nanoseconds * 1e-9
 
 
 def _pose_numbers(text: str) -> tuple[float, ...]:
-    found = _finite(text)
-    if len(found) not in (6, 7):
+    pose_values = _finite(text)
+    if len(pose_values) not in (6, 7):
         raise ValueError(text)
-    return found
+    return pose_values
 
 
 TEXT = ValueType("text")
@@ -136,11 +138,11 @@ TIME = ValueType("seconds, or seconds and nanoseconds", _time, plain)
 POSE = ValueType("6 numbers", _pose_numbers, _joined)
 
 COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
-"""The number of numbers in a value, by type."""
+"""How many numbers a value has, by type."""
 
 
 def choice(*names: str) -> ValueType:
-    """Return the value type of an enumeration of words."""
+    """Return the type of a value that is one of `names`."""
 
     def read(text: str) -> str:
         if text.strip() not in names:
@@ -162,26 +164,26 @@ def value(
     usual: bool = False,
     get: Callable[[Any], Any] | None = None,
 ) -> ElementRule:
-    """Return the rule of an element whose text is a value, such as ``<mass>2.5</mass>``."""
+    """Return the rule of an element that contains a value, such as ``<mass>2.5</mass>``."""
     rule = AttributeRule(
         "text", kind, meaning, unit, required=required, default=default, usual=usual, field=field or tag, get=get
     )
-    absent = None if default is None else kind.read(default)
-    return ElementRule(tag, meaning, text=rule, required=required, default=(absent,))
+    default_value = None if default is None else kind.read(default)
+    return ElementRule(tag, meaning, text=rule, required=required, default=(default_value,))
 
 
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
-    """Return the rule of an element whose text is a value, and which may occur any number of times."""
-    rule = AttributeRule("text", kind, meaning, field="value", get=_only)
-    return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
+    """Return the rule of an element that contains a value and may be repeated."""
+    rule = AttributeRule("text", kind, meaning, field="value", get=_same_value)
+    return ElementRule(tag, meaning, text=rule, many=True, make=_same_value, field=field or f"{tag}s")
 
 
-def _only(value: Any) -> Any:
+def _same_value(value: Any) -> Any:
     return value
 
 
 def never_written(_: Any) -> None:
-    """Return None, so that the synonym of an element is never written."""
+    """Return None, so that an older synonym of an element is read but never written."""
 
 
 def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
@@ -192,44 +194,44 @@ def name_of(meaning: str = "its name, unique among its kind in the model or worl
 def object_rule(
     kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any
 ) -> ElementRule:
-    """Return the rule of an element from whose parts `kind` creates an object.
+    """Return the rule of an element from which `kind` creates an object.
 
-    An invalid part does not affect the others.
+    Each child element is a keyword argument of `kind`. An invalid child does not affect the others.
     """
     return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
 
 
 def without_unreadable(kind: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a factory so that missing and unreadable items are removed from its tuple arguments."""
+    """Wrap a factory to remove missing and unreadable items from its tuple arguments."""
 
-    def make(**parts: Any) -> Any:
+    def make(**arguments: Any) -> Any:
         return kind(
             **{
-                name: tuple(item for item in part if item is not None and item is not UNREADABLE)
-                if isinstance(part, tuple)
-                else part
-                for name, part in parts.items()
+                name: tuple(item for item in argument if item is not None and item is not UNREADABLE)
+                if isinstance(argument, tuple)
+                else argument
+                for name, argument in arguments.items()
             }
         )
 
     return make
 
 
-def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:
-    """Return the pose given by the numbers of a ``<pose>``.
+def pose_of(pose_numbers: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:
+    """Return the pose that the numbers of a ``<pose>`` describe.
 
     Raises:
         ValueError: the number of values does not match the format, or a quaternion is zero.
     """
     if rotation_format == "quat_xyzw":
-        x, y, z, *rest = found
+        x, y, z, *rest = pose_numbers
         qx, qy, qz, qw = rest
         length = (qx * qx + qy * qy + qz * qz + qw * qw) ** 0.5
         if length == 0.0:
-            raise ValueError(found)
+            raise ValueError(pose_numbers)
         if abs(length - 1.0) < 1e-12:
             length = 1.0  # keeps a written unit quaternion unchanged
         quaternion: Quaternion = (qx / length, qy / length, qz / length, qw / length)
         return Pose((x, y, z), rpy_from_quaternion(quaternion), quaternion)
-    x, y, z, roll, pitch, yaw = found
+    x, y, z, roll, pitch, yaw = pose_numbers
     return Pose((x, y, z), (radians(roll), radians(pitch), radians(yaw)) if degrees else (roll, pitch, yaw))

@@ -25,17 +25,17 @@ def with_mass(model: Model, factor: float) -> Model:
         density = None if inertial.density is None else inertial.density * factor
         return replace(link, inertial=replace(inertial, mass=inertial.mass * factor, inertia=inertia, density=density))
 
-    return _changed(model, Link, scaled)
+    return _with_changes(model, Link, scaled)
 
 
 def with_friction(model: Model, coefficient: float) -> Model:
-    """Return a model with a new coefficient of friction for all collisions and directions."""
+    """Return a model with one coefficient of friction for all its collisions in both directions."""
 
     def scaled(collision: Collision) -> Collision:
         friction = replace(collision.surface.friction or Friction(), mu=coefficient, mu2=coefficient)
         return replace(collision, surface=replace(collision.surface, friction=friction))
 
-    return _changed(model, Collision, scaled)
+    return _with_changes(model, Collision, scaled)
 
 
 def with_noise(model: Model, factor: float) -> Model:
@@ -44,27 +44,29 @@ def with_noise(model: Model, factor: float) -> Model:
     def scaled(noise: Noise) -> Noise:
         return replace(noise, **{name: getattr(noise, name) * factor for name in _SCALED_NOISE})
 
-    return _changed(model, Noise, scaled)
+    return _with_changes(model, Noise, scaled)
 
 
-def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
-    """Return a value in which `change` is applied to all contained instances of a class.
+def _with_changes(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
+    """Return a copy of a value with `change` applied to all contained instances of a class.
 
-    Unchanged parts are the same objects as before.
+    Parts without such instances are not copied.
     """
     if isinstance(value, kind):
         return cast("V", change(value))
     if isinstance(value, tuple):
-        parts = [_changed(item, kind, change) for item in value]
-        if all(new is old for new, old in zip(parts, value, strict=True)):
+        new_items = [_with_changes(item, kind, change) for item in value]
+        if all(new is old for new, old in zip(new_items, value, strict=True)):
             return value
-        return cast("V", type(value)(*parts) if hasattr(value, "_fields") else tuple(parts))
+        return cast("V", type(value)(*new_items) if hasattr(value, "_fields") else tuple(new_items))
     if not is_dataclass(value) or isinstance(value, type):
         return value
-    new = {
-        field.name: _changed(getattr(value, field.name), kind, change)
+    new_fields = {
+        field.name: _with_changes(getattr(value, field.name), kind, change)
         for field in fields(value)
         if field.name != "element"
     }
-    new = {name: part for name, part in new.items() if part is not getattr(value, name)}
-    return replace(value, **new) if new else value
+    new_fields = {
+        name: field_value for name, field_value in new_fields.items() if field_value is not getattr(value, name)
+    }
+    return replace(value, **new_fields) if new_fields else value

@@ -1,6 +1,6 @@
-"""The elements ``<world>`` and ``<sdf>``, and the parts of a world without a module of their own.
+"""The elements ``<world>`` and ``<sdf>``, with scene, position on earth, atmosphere and roads.
 
-These are the scene, the position on earth, the atmosphere and roads.
+Other modules define the remaining elements of a world.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``scene.sdf``.
 """
@@ -40,7 +40,7 @@ from linkwright.xmltree import Element
 class Scene:
     """The appearance of a world: ambient light, background, sky and fog.
 
-    Colours are as in `Material`. The sky or the fog is None if there is none.
+    Colours are red, green, blue and alpha from 0 to 1. `sky` and `fog` are None for a scene without them.
     """
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
@@ -57,7 +57,8 @@ class Scene:
 class SphericalCoordinates:
     """The position and heading on earth of a world's origin.
 
-    Latitude (north), longitude (east) and heading are in degrees. The elevation is in metres above the ellipsoid.
+    Latitude (to the north), longitude (to the east) and heading are in degrees. The elevation is in metres above the
+    ellipsoid.
     """
 
     surface_model: str = "EARTH_WGS84"
@@ -72,8 +73,7 @@ class SphericalCoordinates:
 class Atmosphere:
     """The atmosphere of a world.
 
-    Its properties are the temperature at the origin in kelvin, the temperature gradient in K/m, and the pressure at the
-    origin in pascals.
+    At the origin, the temperature is in kelvin and the pressure in pascals. The temperature gradient is in K/m.
     """
 
     type: str = "adiabatic"
@@ -97,7 +97,7 @@ class World:
     """A world, with lengths in metres, gravity in m/s2, the magnetic field in tesla and wind in m/s.
 
     Attributes:
-        gravity: None if the world does not set it; `linkwright.sdf.worlds.gravity_of` returns the effective gravity.
+        gravity: the gravity; None if the world does not set it (`gravity_of` then returns the effective gravity).
         states: the saved states; Gazebo classic uses the last one.
     """
 
@@ -135,7 +135,7 @@ class Sdf:
 
 
 def gravity_of(world: World) -> Vector3:
-    """Return the gravity in m/s2: of the world, of its physics in old files, or the default."""
+    """Return a world's gravity in m/s2: its own, that of its physics settings (up to SDF 1.5), or the default."""
     if world.gravity is not None:
         return world.gravity
     physics = physics_of(world)
@@ -143,15 +143,15 @@ def gravity_of(world: World) -> Vector3:
 
 
 def with_populations(world: World) -> World:
-    """Return a world in which the models of its populations are added to its own models."""
-    more = (model for population in world.populations for model in models_of(population))
-    return replace(world, models=(*world.models, *more), populations=())
+    """Return a world in which copies of models replace the populations."""
+    copies = (model for population in world.populations for model in models_of(population))
+    return replace(world, models=(*world.models, *copies), populations=())
 
 
 def physics_of(world: World) -> Physics:
-    """Return the physics settings in use: those marked as default, or else the first.
+    """Return the physics settings to use: the ones marked as default, or else the first ones.
 
-    The default settings are returned for a world without physics settings.
+    For a world without physics settings, return SDF's defaults.
     """
     return next(
         (physic for physic in world.physics if physic.default), world.physics[0] if world.physics else Physics()
@@ -163,8 +163,8 @@ class _Wind:
     linear_velocity: Vector3
 
 
-def _world(wind: _Wind | None, **parts: Any) -> World:
-    return World(wind=wind.linear_velocity if wind else (0.0, 0.0, 0.0), **parts)
+def _make_world(wind: _Wind | None, **properties: Any) -> World:
+    return World(wind=wind.linear_velocity if wind else (0.0, 0.0, 0.0), **properties)
 
 
 WORLD = ElementRule(
@@ -245,7 +245,7 @@ WORLD = ElementRule(
         STATE,
     ),
     many=True,
-    make=_world,
+    make=_make_world,
     keeps=True,
     located=True,
     owns=True,

@@ -1,4 +1,4 @@
-"""Writes worlds and models as SDF that gives equal worlds and models when it is read."""
+"""Writes worlds and models as SDF; reading the output gives equal worlds and models."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from linkwright.xmltree import Document, Element, write
 from linkwright.xmltree.writer import strip_mixed_text
 
 VERSION = "1.11"
-"""The SDF version of the output: gz Harmonic, which Jazzy ships, reads no newer one."""
-_PREFIX = "http://gazebosim.org/schema"
-"""The namespace of prefixes that a file uses without declaring them, which Gazebo's readers allow."""
-_GAP = "\x01"
-"""The name of the placeholder of previously written models: XML has no such character."""
+"""The SDF version of the output, which is the newest that gz Harmonic, and so ROS Jazzy, can read."""
+_DEFAULT_NAMESPACE = "http://gazebosim.org/schema"
+"""The namespace for prefixes that a file uses but does not declare; Gazebo accepts such files."""
+_PLACEHOLDER_NAME = "\x01"
+"""The name of a placeholder model, which the written models replace; XML does not allow this character."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,76 +36,78 @@ class WrittenModel:
 
 
 def save_model_of_world(model: Model) -> WrittenModel:
-    """Return the text of a model for `save_world`; the model must not have resolved includes."""
-    element = write_element(MODEL, model, _complete)
+    """Return the text of a model for `save_world`; the includes of the model must not be resolved."""
+    element = write_element(MODEL, model, _restore_ignored_content)
     return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_prefixes(element)))
 
 
 def save_world(world: World, models: Sequence[WrittenModel]) -> str:
-    """Return the SDF text of a world, using models that are already written.
+    """Return the SDF text of a world, from models that are already written.
 
-    The text is the text that `save` returns. A caller that writes a world after each of many changes only has to write
-    the changed models again.
+    The result is the same as from `save`. A caller that writes a world after each of many changes only has to write the
+    changed models again.
 
     Args:
         world: the world without its models.
-        models: the written models.
+        models: the text of each model, in order.
     """
     if not models:
         return save(world)
-    root = _element(Sdf(VERSION, worlds=(replace(world, models=(Model(_GAP),)),)))
-    _declare(root, {prefix for model in models for prefix in model.prefixes})
-    before, _, after = write(Document(root)).partition(xmltree.write_element(Element("model", {"name": _GAP}), depth=2))
-    return "".join((before, *(model.text for model in models), after))
+    root = _root_element(Sdf(VERSION, worlds=(replace(world, models=(Model(_PLACEHOLDER_NAME),)),)))
+    _declare_prefixes(root, {prefix for model in models for prefix in model.prefixes})
+    text_before, _, text_after = write(Document(root)).partition(
+        xmltree.write_element(Element("model", {"name": _PLACEHOLDER_NAME}), depth=2)
+    )
+    return "".join((text_before, *(model.text for model in models), text_after))
 
 
 def save(document: Sdf | World | Model) -> str:
     """Return worlds and models as SDF text.
 
-    Defaults are left out, and numbers are as short as possible without loss. The elements inside plugins, and SDF
-    elements without effect here (``<gui>``), are written as they were read.
+    Defaults are left out, and numbers are as short as possible without loss. The content of plugins, and elements that
+    Linkwright ignores, such as ``<gui>``, are written as they were read.
 
     Args:
-        document: a world, a model or a whole file, without resolved includes.
+        document: a world, a model or the content of a file; its includes must not be resolved.
     """
     if isinstance(document, World):
         document = Sdf(VERSION, worlds=(document,))
     elif isinstance(document, Model):
         document = Sdf(VERSION, models=(document,))
-    root = _element(document)
-    _declare(root)
+    root = _root_element(document)
+    _declare_prefixes(root)
     return write(Document(root))
 
 
-def _element(sdf: Sdf) -> Element:
-    """Return the element of a whole file, with the XML namespaces that the file declared when read."""
-    root = write_element(SDF, replace(sdf, version=VERSION), _complete)
-    declared = {} if sdf.element is None else sdf.element.attributes
-    root.attributes |= {name: value for name, value in declared.items() if name.startswith("xmlns")}
+def _root_element(sdf: Sdf) -> Element:
+    """Return the root element of a file, with the XML namespaces that the original file declares."""
+    root = write_element(SDF, replace(sdf, version=VERSION), _restore_ignored_content)
+    source_attributes = {} if sdf.element is None else sdf.element.attributes
+    root.attributes |= {name: value for name, value in source_attributes.items() if name.startswith("xmlns")}
     return root
 
 
-def _declare(root: Element, more: Iterable[str] = ()) -> None:
-    """Declare the XML prefixes that an element uses, and those in `more`."""
-    for prefix in sorted({*_prefixes(root), *more}):
-        root.attributes.setdefault(f"xmlns:{prefix}", _PREFIX)
+def _declare_prefixes(root: Element, extra_prefixes: Iterable[str] = ()) -> None:
+    """Declare the XML prefixes in `extra_prefixes`, and those that `root` and its descendants use."""
+    for prefix in sorted({*_prefixes(root), *extra_prefixes}):
+        root.attributes.setdefault(f"xmlns:{prefix}", _DEFAULT_NAMESPACE)
 
 
-def _complete(element: Element, rule: ElementRule, instance: Any) -> None:
-    """Add the content of the original element that the rules of the tables do not cover."""
-    read: Element | None = getattr(instance, "element", None)
-    if read is None:
+def _restore_ignored_content(element: Element, rule: ElementRule, instance: Any) -> None:
+    """Add the content of the original element that has no rule but must be kept."""
+    source_element: Element | None = getattr(instance, "element", None)
+    if source_element is None:
         return
     if rule.tag in OPEN:
-        whole = strip_mixed_text(read)
-        element.attributes = whole.attributes | element.attributes
-        element.children = whole.children
+        stripped = strip_mixed_text(source_element)
+        element.attributes = stripped.attributes | element.attributes
+        element.children = stripped.children
         return
-    unread = WITHOUT_EFFECT.get(rule.tag, ())
+    ignored_tags = WITHOUT_EFFECT.get(rule.tag, ())
     element.children += (
         strip_mixed_text(element)
-        for element in read.elements()
-        if element.tag not in rule.child_rules and (element.tag in unread or ":" in element.tag)
+        for element in source_element.elements()
+        if element.tag not in rule.child_rules and (element.tag in ignored_tags or ":" in element.tag)
     )
 
 

@@ -1,7 +1,7 @@
-"""A colcon plugin that installs ``ament_cmake`` packages without ament, by copying files.
+"""A colcon plugin that installs ``ament_cmake`` packages without ament, by copying their files.
 
-colcon finds the classes through the entry points of this distribution. The plugin gives such a package a type of its
-own, for which the task is registered. If ament_cmake is available, the plugin does nothing.
+colcon finds the classes through the entry points of Linkwright. The plugin gives such a package a separate type, for
+which the task is registered. If ament_cmake is available, the plugin has no effect.
 """
 
 from __future__ import annotations
@@ -23,95 +23,97 @@ from linkwright.packages import MANIFEST
 from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 
 COPIED = "ros.ament_cmake_copied"
-"""The colcon type of such packages."""
+"""The colcon type of packages whose files are copied."""
 
 _LOGGER = colcon_logger.getChild(__name__)
-_INDEX = "share/ament_index/resource_index"
+_RESOURCE_INDEX = "share/ament_index/resource_index"
 
 
 class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
-    """Identifies ``ament_cmake`` packages that are only copied because ament_cmake is missing."""
+    """Identifies ``ament_cmake`` packages that must be copied because ament_cmake is not available."""
 
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
     def identify(self, desc: Any) -> None:
-        """Identify a ROS package as colcon-ros does, and set our type if ament_cmake is missing."""
+        """Identify a ROS package as colcon-ros does, and set the type `COPIED` if ament_cmake is missing."""
         super().identify(desc)
         if desc.type == "ros.ament_cmake" and not _has_ament_cmake(os.environ):
             desc.type = COPIED
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """Installs the files that an ``ament_cmake`` package copies, and reports skipped parts."""
+    """Installs the files that an ``ament_cmake`` package copies, and logs which parts are skipped."""
 
     async def build(self) -> int:
-        """Copy the package's files, and return the exit status.
+        """Install the files of the package, and return the exit status.
 
-        Other programs recognise the package by the same files as any other package: its marker in the resource index,
-        and the scripts that add its prefix to the environment.
+        Other programs recognise the package by the files that every installed package has: its marker in the resource
+        index, and the scripts that add its prefix to the environment.
         """
         args, package = self.context.args, self.context.pkg
         folder = Path(args.path)
         try:
             text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
             cmake = read_cmake(SourceText("CMakeLists.txt", text), folder)
-            left_out = _left_out(cmake)
-            if left_out:
+            skipped_parts = _describe_skipped(cmake)
+            if skipped_parts:
                 _LOGGER.warning(
-                    f"'{package.name}' is not built in full without ROS 2: {'; '.join(left_out)}. "
+                    f"'{package.name}' is not built in full without ROS 2: {'; '.join(skipped_parts)}. "
                     "The rest is installed. Build it where ament_cmake is installed to have all of it."
                 )
             _install_all(args, package.name, folder, cmake)
         except FileNotFoundError as error:
-            missing = error.filename or error
-            _LOGGER.error(f"'{package.name}' installs '{missing}', which does not exist")  # noqa: TRY400  # no traceback
+            missing_file = error.filename or error
+            _LOGGER.error(f"'{package.name}' installs '{missing_file}', which does not exist")  # noqa: TRY400  # no traceback
             return 1
         hooks = create_environment_hook(
             "ament_prefix_path", Path(args.install_base), package.name, "AMENT_PREFIX_PATH", "", mode="prepend"
         )
         if cmake.modules:
             hooks += create_environment_hook(
-                "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
+                "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site_packages(), mode="prepend"
             )
-        # Hooks in a shell's language call functions of ament; only ``.dsv`` hooks also work with colcon alone.
+        # Hooks in the language of a shell call functions of ament. Only ``.dsv`` hooks work with colcon alone.
         hooks += [Path(hook) for hook in cmake.hooks if hook.endswith(".dsv")]
         create_environment_scripts(package, args, additional_hooks=hooks)
         return 0
 
 
-def _left_out(cmake: CMakeFile) -> list[str]:
-    compiled = ", ".join(f"'{name}'" for name in dict.fromkeys(cmake.compiled))
-    return [*([f"{compiled} would have to be compiled"] if compiled else []), *dict.fromkeys(cmake.unknown)]
+def _describe_skipped(cmake: CMakeFile) -> list[str]:
+    compiled_names = ", ".join(f"'{name}'" for name in dict.fromkeys(cmake.compiled))
+    return [*([f"{compiled_names} would have to be compiled"] if compiled_names else []), *dict.fromkeys(cmake.unknown)]
 
 
 def _install_all(args: Any, name: str, folder: Path, cmake: CMakeFile) -> None:
-    create_file(args, f"{_INDEX}/packages/{name}")
+    create_file(args, f"{_RESOURCE_INDEX}/packages/{name}")
     install(args, MANIFEST, f"share/{name}/{MANIFEST}")
     for file in cmake.installed(folder):
-        if file.is_made:
+        if file.is_generated:
             create_file(args, file.destination, content=file.text(folder))
         else:
             install(args, file.source, file.destination)
     for interface in cmake.interfaces:
         install(args, interface, f"share/{name}/{interface}")
     if cmake.interfaces:
-        create_file(args, f"{_INDEX}/rosidl_interfaces/{name}", content="\n".join(sorted(cmake.interfaces)) + "\n")
+        create_file(
+            args, f"{_RESOURCE_INDEX}/rosidl_interfaces/{name}", content="\n".join(sorted(cmake.interfaces)) + "\n"
+        )
     for module in cmake.modules:
         _install_module(args, folder, module)
 
 
 def _install_module(args: Any, folder: Path, module: str) -> None:
-    """Install a Python module, or a Python package with its files."""
+    """Install a Python module, or all files of a Python package."""
     path = folder / module
     if not path.exists():
         raise FileNotFoundError(module)
     for file in [path] if path.is_file() else sorted(path.rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
-            inside = Path(path.name) / file.relative_to(path) if path.is_dir() else Path(path.name)
-            install(args, file.relative_to(folder).as_posix(), f"{_site()}/{inside.as_posix()}")
+            relative_path = Path(path.name) / file.relative_to(path) if path.is_dir() else Path(path.name)
+            install(args, file.relative_to(folder).as_posix(), f"{_site_packages()}/{relative_path.as_posix()}")
 
 
-def _site() -> str:
+def _site_packages() -> str:
     """Return the folder for Python packages, relative to the install prefix."""
     paths = sysconfig.get_paths("posix_prefix" if os.name != "nt" else "nt", vars={"base": "", "platbase": ""})
     return paths["purelib"].strip("/\\").replace("\\", "/")

@@ -1,6 +1,6 @@
-"""Hints about replacements for ROS programs that are not available.
+"""Hints on how to replace ROS programs that are not available.
 
-Shells run ``python -m linkwright.shell.instead NAME`` for an unknown command to print such a hint.
+For an unknown command, shells run ``python -m linkwright.shell.instead NAME``, which prints such a hint.
 """
 
 from __future__ import annotations
@@ -9,66 +9,68 @@ import sys
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, print_diagnostics
 
-_PAGE = phrase(
-    "the page has panels for that: run `linkwright launch` or `linkwright view`, then open Panels in its title bar"
+_PAGE_HINT = phrase(
+    "use a panel of the page: run `linkwright launch` or `linkwright view`, and open Panels in its title bar"
 )
-_COLCON = phrase("this is a ROS 1 command; build with `colcon build`")
-_ROS2 = phrase(
+_COLCON_HINT = phrase("this is a ROS 1 command; build with `colcon build`")
+_ROS2_HINT = phrase(
     "this is a ROS 1 command; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`"
 )
-_SIMULATION = phrase(
+_SIMULATION_HINT = phrase(
     "run a launch file that starts it, which uses Linkwright's simulation: `ros2 launch "
     "gazebo_ros gazebo.launch.py world:=FILE`"
 )
 
-INSTEAD: dict[str, Phrase] = {
+HINTS: dict[str, Phrase] = {
     "rosdep": phrase(
         "Linkwright needs no system packages: put the sources of a missing package into the "
         "workspace's src folder, and install Python modules with pip"
     ),
-    "rqt": _PAGE,
-    "rqt_console": _PAGE,
-    "rqt_graph": phrase("open the page's panel Node graph; in the terminal, run `ros2 node info NODE`"),
-    "rqt_plot": _PAGE,
+    "rqt": _PAGE_HINT,
+    "rqt_console": _PAGE_HINT,
+    "rqt_graph": phrase("open the panel Node graph of the page, or run `ros2 node info NODE` in the terminal"),
+    "rqt_plot": _PAGE_HINT,
     "rqt_reconfigure": phrase(
-        "open the page's panel Parameters; in the terminal, run `ros2 param set NODE NAME VALUE`"
+        "open the panel Parameters of the page, or run `ros2 param set NODE NAME VALUE` in the terminal"
     ),
     "rviz": phrase("run `rviz2 -d FILE.rviz`, or `linkwright view FILE` for one robot"),
-    "plotjuggler": _PAGE,
-    "gazebo": _SIMULATION,
-    "gzserver": _SIMULATION,
-    "gzclient": _SIMULATION,
-    "gz": _SIMULATION,
-    "ign": _SIMULATION,
-    "catkin": _COLCON,
-    "catkin_make": _COLCON,
-    "roscore": phrase("this is a ROS 1 command; nodes of ROS 2 find each other without it"),
-    "roslaunch": _ROS2,
-    "rosrun": _ROS2,
-    "rostopic": _ROS2,
-    "rosnode": _ROS2,
-    "rosparam": _ROS2,
-    "rosservice": _ROS2,
-    "rosbag": _ROS2,
+    "plotjuggler": _PAGE_HINT,
+    "gazebo": _SIMULATION_HINT,
+    "gzserver": _SIMULATION_HINT,
+    "gzclient": _SIMULATION_HINT,
+    "gz": _SIMULATION_HINT,
+    "ign": _SIMULATION_HINT,
+    "catkin": _COLCON_HINT,
+    "catkin_make": _COLCON_HINT,
+    "roscore": phrase("this is a ROS 1 command; in ROS 2, nodes find each other without a master"),
+    "roslaunch": _ROS2_HINT,
+    "rosrun": _ROS2_HINT,
+    "rostopic": _ROS2_HINT,
+    "rosnode": _ROS2_HINT,
+    "rosparam": _ROS2_HINT,
+    "rosservice": _ROS2_HINT,
+    "rosbag": _ROS2_HINT,
 }
-"""Name of a program -> hint."""
+"""Maps the names of programs to hints on what to use instead."""
 
 
-def no_such_command(name: str, others: tuple[str, ...], otherwise: Phrase | None = None) -> LinkwrightError:
-    """Return the error SHELL101 for an unknown command, with a hint.
+def unknown_command_error(
+    name: str, existing_commands: tuple[str, ...], default_hint: Phrase | None = None
+) -> LinkwrightError:
+    """Return the error SHELL101 for a command that does not exist, with a hint.
 
     Args:
-        name: the command that the user typed.
-        others: existing commands, for suggestions.
-        otherwise: the hint if there is neither a replacement nor a suggestion.
+        name: the name of the command that the user entered.
+        existing_commands: the names of existing commands, for suggestions.
+        default_hint: the hint if there is neither a replacement nor a suggestion; None for no hint.
     """
-    hint = INSTEAD.get(name) or did_you_mean(name, others) or otherwise
-    return LinkwrightError(Diagnostic("SHELL101", phrase("there is no command '{words}'", words=name), hint=hint))
+    hint = HINTS.get(name) or did_you_mean(name, existing_commands) or default_hint
+    return LinkwrightError(Diagnostic("SHELL101", phrase("command '{words}' does not exist", words=name), hint=hint))
 
 
 def main(name: str) -> int:
-    """Print the hint for an unknown command, and return the exit status that shells use."""
-    print_diagnostics(no_such_command(name, ()).diagnostics, sys.stderr)
+    """Print the hint for an unknown command, and return the exit status with which shells report it."""
+    print_diagnostics(unknown_command_error(name, ()).diagnostics, sys.stderr)
     return 127
 
 

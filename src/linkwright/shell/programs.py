@@ -1,4 +1,4 @@
-"""The commands of ROS 2 as small programs in a folder that is appended to the search path."""
+"""The commands of ROS 2 as small programs, in a folder that is appended to the search path."""
 
 from __future__ import annotations
 
@@ -26,49 +26,49 @@ PROGRAMS = {
     "colcon": ("linkwright.cli.tools", "colcon"),
     "linkwright": ("linkwright", None),
 }
-"""Name of the command -> its Python module, and the first argument of the module.
+"""Maps the name of a command to its Python module, and the first argument of the module or None.
 
-``urdf_to_graphiz`` was urdfdom's spelling for years, which it still installs besides the right one.
+For years, urdfdom spelt a command ``urdf_to_graphiz``. It still installs this name next to the correct one.
 """
 
 
 def write_programs(folder: Path, python: str = sys.executable) -> None:
-    """Write a program for each command to a folder.
+    """Write a small program for each command to a folder.
 
     Args:
         folder: an existing folder.
-        python: the interpreter that runs the programs, which must be able to import Linkwright.
+        python: the path of an interpreter that can import Linkwright and runs the programs.
     """
-    for name, (module, word) in PROGRAMS.items():
-        words = [python, "-m", module, *([word] if word else [])]
+    for name, (module, argument) in PROGRAMS.items():
+        command = [python, "-m", module, *([argument] if argument else [])]
         if sys.platform == "win32":
-            (folder / f"{name}.cmd").write_text(f"@echo off\n{subprocess.list2cmdline(words)} %*\n", encoding="utf-8")
+            (folder / f"{name}.cmd").write_text(f"@echo off\n{subprocess.list2cmdline(command)} %*\n", encoding="utf-8")
         else:
             program = folder / name
-            program.write_text(f'#!/bin/sh\nexec {shlex.join(words)} "$@"\n', encoding="utf-8")
+            program.write_text(f'#!/bin/sh\nexec {shlex.join(command)} "$@"\n', encoding="utf-8")
             program.chmod(0o755)
 
 
 def offer_programs(environment: MutableMapping[str, str]) -> None:
-    """Append the folder of our programs to the search path, for commands in launch files.
+    """Append the folder of Linkwright's programs to the search path, for commands in launch files.
 
-    The programs are written to the cache folder. If that folder is not writable, the search path is not changed.
+    The programs are written to the cache folder. If that is not possible, the search path does not change.
     """
-    key = hashlib.sha256(repr((sys.executable, sorted(PROGRAMS.items()))).encode()).hexdigest()[:16]
-    folder = cache_folder() / "programs" / key
+    digest = hashlib.sha256(repr((sys.executable, sorted(PROGRAMS.items()))).encode()).hexdigest()[:16]
+    folder = cache_folder() / "programs" / digest
     with suppress(OSError):
         if not all((folder / name).exists() or (folder / f"{name}.cmd").exists() for name in PROGRAMS):
             folder.mkdir(parents=True, exist_ok=True)
             write_programs(folder)
-        parts = environment.get("PATH", os.defpath).split(os.pathsep)
-        if str(folder) not in parts:
-            environment["PATH"] = os.pathsep.join([*parts, str(folder)])
+        folders = environment.get("PATH", os.defpath).split(os.pathsep)
+        if str(folder) not in folders:
+            environment["PATH"] = os.pathsep.join([*folders, str(folder)])
 
 
 def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
-    """Set the variables of a sourced ROS 2 that launch files expect, unless ROS 2 is sourced.
+    """Set the environment variables of ROS 2 that launch files expect, unless ROS 2 is sourced.
 
-    The values are those of Humble.
+    The values are those of ROS 2 Humble.
     """
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
@@ -76,5 +76,5 @@ def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
         for name in (
             "GZ_SIM_RESOURCE_PATH",
             "LD_LIBRARY_PATH",
-        ):  # Launch files append to these variables without checking that they are set.
+        ):  # Launch files append to these variables without checking whether they are set.
             environment.setdefault(name, "")

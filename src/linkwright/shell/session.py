@@ -1,7 +1,8 @@
 """Runs a shell, or a command, in an environment with the commands of ROS 2.
 
-The folder of our programs is last on the search path, so that installed programs take precedence. Start-up files of
-shells often set the path again (``~/.bashrc`` may source ROS 2), so the shell reads them before our own start-up file.
+The folder of Linkwright's programs is last on the search path, so that installed programs take precedence. The user's
+start-up files often set the search path (``~/.bashrc`` may source ROS 2). Therefore, the shell reads them first, and
+Linkwright's start-up file after them.
 """
 
 from __future__ import annotations
@@ -17,14 +18,14 @@ from pathlib import Path
 from linkwright.diagnostics import phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.process.interruption import interrupt
-from linkwright.shell.instead import no_such_command
+from linkwright.shell.instead import unknown_command_error
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process
 
 _PR_SET_PDEATHSIG = 1
-"""The option of prctl(2) for a signal on the parent's end."""
+"""The option of prctl(2) that requests a signal when the parent process ends."""
 MARK = "LINKWRIGHT_SHELL"
-"""The environment variable with the folder of the shell's programs."""
+"""The environment variable that contains the folder of the shell's programs."""
 
 
 def run_shell(
@@ -35,105 +36,109 @@ def run_shell(
     """Run the user's shell, or a command, until it ends.
 
     Args:
-        command: the program and its arguments; empty for the user's interactive shell.
+        command: the program and its arguments; empty to start the user's interactive shell.
         environment: the environment to extend; None for the environment of this process.
-        additions: returns additional start-up commands for ``bash``, ``zsh`` or ``fish``.
+        additions: returns additional start-up commands for a shell: ``bash``, ``zsh`` or ``fish``. None for no
+            additions.
 
     Returns:
-        The exit status; 128 plus the signal's number if a signal ended the program, as in shells.
+        The exit status; 128 plus the number of the signal if a signal ended the program, as in shells.
 
     Raises:
-        LinkwrightError: SHELL101, there is no such command.
+        LinkwrightError: SHELL101, the command does not exist.
     """
     with ScratchFolder("shell") as scratch:
         folder = Path(scratch) / "bin"
         folder.mkdir()
         write_programs(folder)
         variables = shell_environment(folder, os.environ if environment is None else environment)
-        words = list(command) or _interactive(Path(scratch), variables, additions or (lambda _: ""))
-        path = shutil.which(words[0], path=variables["PATH"])
+        command_line = list(command) or _interactive_command(Path(scratch), variables, additions or (lambda _: ""))
+        path = shutil.which(command_line[0], path=variables["PATH"])
         if path is None:
-            raise no_such_command(words[0], tuple(PROGRAMS), _QUOTES)
-        return _run([path, *words[1:]], variables)
+            raise unknown_command_error(command_line[0], tuple(PROGRAMS), _COMMAND_HINT)
+        return _run([path, *command_line[1:]], variables)
 
 
-_QUOTES = phrase(
-    "`--` is followed by one command with its arguments; for several commands, write `linkwright "
-    "shell -- bash -c '...'`"
+_COMMAND_HINT = phrase(
+    "write one command with its arguments after `--`; for several commands, run `linkwright shell -- bash -c '...'`"
 )
 
 
 def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment of the shell.
+    """Return the environment variables of the shell.
 
-    If no ``ros2`` is installed, the folder of Linkwright's interpreter is first on the search path, so that ``python3``
-    finds our stand-ins and their dependencies.
+    If no ``ros2`` is installed, the folder of Linkwright's interpreter is first on the search path. ``python3`` then
+    finds the stand-ins and their dependencies.
 
     Args:
-        folder: the folder of our programs.
-        base: the environment to extend.
+        folder: the folder of Linkwright's programs.
+        base: the environment variables to extend.
     """
     variables = process.environment(base)
-    parts = [part for part in variables.get("PATH", os.defpath).split(os.pathsep) if part and part != base.get(MARK)]
-    if shutil.which("ros2", path=os.pathsep.join(parts)) is None:
-        own = str(Path(sys.executable).parent)
-        parts = [own, *(part for part in parts if part != own)]
-    variables["PATH"] = os.pathsep.join([*parts, str(folder)])
+    folders = [
+        folder_name
+        for folder_name in variables.get("PATH", os.defpath).split(os.pathsep)
+        if folder_name and folder_name != base.get(MARK)
+    ]
+    if shutil.which("ros2", path=os.pathsep.join(folders)) is None:
+        interpreter_folder = str(Path(sys.executable).parent)
+        folders = [interpreter_folder, *(part for part in folders if part != interpreter_folder)]
+    variables["PATH"] = os.pathsep.join([*folders, str(folder)])
     variables[MARK] = str(folder)
     return variables
 
 
-_STARTED_BY_A_FILE = ("bash", "zsh", "fish")
+_SHELLS_WITH_START_FILE = ("bash", "zsh", "fish")
 
 
-def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
-    """Return the command that starts the user's shell and then restores our search path.
+def _interactive_command(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
+    """Return the command that starts the user's shell, and then sets the search path again.
 
-    The shell's start-up files often set the search path, so ours is set after them.
+    The search path is set after the user's start-up files, because they often change it.
     """
     if sys.platform == "win32":
         return [os.environ.get("COMSPEC", "cmd.exe")]
     shell = os.environ.get("SHELL") or "/bin/sh"
-    kind = Path(shell).name
-    if kind in _STARTED_BY_A_FILE:  # the entries of the user's start-up file precede our folder
-        parts = variables["PATH"].split(os.pathsep)
-        variables["PATH"] = os.pathsep.join(part for part in parts if part != variables[MARK])
-    if kind == "bash":
-        start = scratch / "bashrc"
-        start.write_text(_start_file("~/.bashrc", variables) + additions(kind), encoding="utf-8")
-        return [shell, "--rcfile", str(start), "-i"]
-    if kind == "zsh":
+    shell_name = Path(shell).name
+    if shell_name in _SHELLS_WITH_START_FILE:  # the entries of the user's start-up file precede our folder
+        folders = variables["PATH"].split(os.pathsep)
+        variables["PATH"] = os.pathsep.join(folder for folder in folders if folder != variables[MARK])
+    if shell_name == "bash":
+        start_file = scratch / "bashrc"
+        start_file.write_text(_start_file("~/.bashrc", variables) + additions(shell_name), encoding="utf-8")
+        return [shell, "--rcfile", str(start_file), "-i"]
+    if shell_name == "zsh":
         home = variables.get("ZDOTDIR") or variables.get("HOME") or "~"
         (scratch / ".zshrc").write_text(
-            f"ZDOTDIR={shlex.quote(home)}\n" + _start_file(f"{home}/.zshrc", variables) + additions(kind),
+            f"ZDOTDIR={shlex.quote(home)}\n" + _start_file(f"{home}/.zshrc", variables) + additions(shell_name),
             encoding="utf-8",
         )
         variables["ZDOTDIR"] = str(scratch)
         return [shell, "-i"]
-    if kind == "fish":
+    if shell_name == "fish":
         settings = "; ".join(
             f"set -gx {name} {shlex.quote(variables[name])}" for name in ("PYTHONPATH", MARK) if name in variables
         )
-        start = scratch / "start.fish"
-        start.write_text(additions(kind), encoding="utf-8")
+        start_file = scratch / "start.fish"
+        start_file.write_text(additions(shell_name), encoding="utf-8")
         return [
             shell,
             "-i",
             "--init-command",
-            f"{settings}; set -gx PATH $PATH ${MARK}; source {shlex.quote(str(start))}",
+            f"{settings}; set -gx PATH $PATH ${MARK}; source {shlex.quote(str(start_file))}",
         ]
     return [shell, "-i"]
 
 
-def _start_file(own: str, variables: Mapping[str, str]) -> str:
-    """Return the contents of the start-up file for bash and zsh.
+def _start_file(user_file: str, variables: Mapping[str, str]) -> str:
+    """Return the contents of a start-up file for bash or zsh.
 
-    It reads the user's own file, then appends our commands to the search path.
+    The start-up file reads the user's own file, and then appends the commands to the search path.
     """
     interpreter = shlex.quote(str(Path(sys.executable).parent))
     standins = shlex.quote(process.standin_path())
     return f"""\
-[ -f {own} ] && . {own}
+[ -f {user_file} ] && . {user_file}
 command -v ros2 >/dev/null 2>&1 || case "$PATH:" in {interpreter}:*) ;; *) export PATH={interpreter}:"$PATH" ;; esac
 export PATH="$PATH":{shlex.quote(variables[MARK])}
 case ":$PYTHONPATH:" in *:{standins}:*) ;; *) export PYTHONPATH="${{PYTHONPATH:+$PYTHONPATH:}}"{standins} ;; esac
@@ -142,30 +147,31 @@ PS1="(linkwright) $PS1"
 
 
 def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
-    """Run a command until it ends, and forward signals to it; return its exit status.
+    """Run a command until it ends, forward signals to it, and return its exit status.
 
     Ctrl-C in a terminal is not forwarded, because both processes receive it. Without a terminal, the command has its
-    own process group, so that signals to our group do not reach it twice. Ctrl-C must not raise KeyboardInterrupt
-    here: if it does so just after the wait ends, the exit status is lost, and `subprocess` returns 0.
+    own process group, so that signals to the group of this process do not reach it twice. Ctrl-C must not raise
+    KeyboardInterrupt here: just after the end of the wait, it would make `subprocess` lose the exit status and return
+    0.
     """
     import signal
 
     child: subprocess.Popen[bytes] | None = None
-    early: list[int] = []  # signals that arrived before the command was running
-    alone = os.name == "posix" and not _has_terminal()
+    early_signals: list[int] = []  # signals that were received before the command was running
+    is_detached = os.name == "posix" and not _has_terminal()
 
-    def pass_on(number: int, _frame: object) -> None:
+    def pass_on(signal_number: int, _frame: object) -> None:
         if child is None:
-            early.append(number)
-        elif alone or number != signal.SIGINT:
-            child.send_signal(number)
+            early_signals.append(signal_number)
+        elif is_detached or signal_number != signal.SIGINT:
+            child.send_signal(signal_number)
 
     previous = {number: signal.signal(number, pass_on) for number in _forwarded_signals()}
     try:
-        first = _detaching() if alone else None
-        # The command is the user's own (S603). There is only one thread, and `first` imports nothing (PLW1509).
-        with subprocess.Popen(words, env=dict(variables), preexec_fn=first) as child:  # noqa: S603, PLW1509
-            for number in early:
+        setup = _create_setup() if is_detached else None
+        # The command is the user's own (S603). There is only one thread, and `setup` imports nothing (PLW1509).
+        with subprocess.Popen(words, env=dict(variables), preexec_fn=setup) as child:  # noqa: S603, PLW1509
+            for number in early_signals:
                 if number == signal.SIGINT:
                     interrupt(child)
                 else:
@@ -178,7 +184,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
 
 
 def _has_terminal() -> bool:
-    """Return whether a terminal controls this process; its Ctrl-C then reaches the command, too."""
+    """Return whether a terminal controls this process, so that Ctrl-C also reaches the command."""
     try:
         os.close(os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY))
     except OSError:
@@ -186,10 +192,10 @@ def _has_terminal() -> bool:
     return True
 
 
-def _detaching() -> Callable[[], None]:
-    """Return a function that the command's process runs before the command.
+def _create_setup() -> Callable[[], None]:
+    """Return a function that the process of the command calls before it runs the command.
 
-    The function leaves our process group and, on Linux, ends the command if our process is killed.
+    The function leaves the process group of its parent. On Linux, it also ends the command if the parent is killed.
     """
     import ctypes
     import signal
@@ -205,11 +211,11 @@ def _detaching() -> Callable[[], None]:
 
 
 def _forwarded_signals() -> list[int]:
-    """Return the numbers of the signals to forward.
+    """Return the numbers of the signals that are forwarded.
 
-    Signals that this process was started to ignore are excluded; the command ignores them, too.
+    A signal that this process ignored from its start is excluded, because the command ignores it too.
     """
     import signal
 
-    known = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    return [number for number in known if signal.getsignal(number) is not signal.SIG_IGN]
+    signals = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    return [signal_number for signal_number in signals if signal.getsignal(signal_number) is not signal.SIG_IGN]

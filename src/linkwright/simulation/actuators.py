@@ -12,8 +12,8 @@ _SERVO_SPEED = 2.0
 """The default speed of a servo in rad/s or m/s."""
 
 
-class Actuated(Protocol):
-    """The part of the interface of `Simulation` that actuators use."""
+class ActuatedSimulation(Protocol):
+    """The attributes and methods of `Simulation` that actuators use."""
 
     @property
     def scene(self) -> Scene:
@@ -29,7 +29,7 @@ class Actuated(Protocol):
 
     @property
     def revision(self) -> int:
-        """The number of times that the model and the data were rebuilt."""
+        """The number of times that the model and the data were rebuilt; a cached index is valid for one revision."""
 
     def renew(self) -> None:
         """Recompile the MuJoCo model if the scene has changed."""
@@ -38,49 +38,49 @@ class Actuated(Protocol):
         """Call `renew`, and update the MuJoCo data that is derived from positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
-        """Return the position, in rad (m), and velocity, in rad/s (m/s), of a joint with one axis."""
+        """Return the position, in rad (or m), and the velocity, in rad/s (or m/s), of a joint with one axis."""
 
 
 class Motor:
     """A motor that keeps a joint at a target velocity."""
 
-    def __init__(self, simulation: Actuated, name: str) -> None:
+    def __init__(self, simulation: ActuatedSimulation, name: str) -> None:
         self._simulation = simulation
         self._name = name
         self._revision = -1
         self._number = -1
-        self._gain = 0.0
+        self._released_gain = 0.0
 
     @property
     def target(self) -> float:
         """The target velocity, in rad/s, or in m/s for a prismatic joint."""
-        number = self._actuator()
-        return float(self._simulation.data.ctrl[number])
+        index = self._actuator_index()
+        return float(self._simulation.data.ctrl[index])
 
     @target.setter
     def target(self, velocity: float) -> None:
-        number = self._actuator()
-        self._simulation.data.ctrl[number] = velocity
-        if self._gain:
-            self._set_gain(number, self._gain)
-            self._gain = 0.0
+        index = self._actuator_index()
+        self._simulation.data.ctrl[index] = velocity
+        if self._released_gain:
+            self._set_gain(index, self._released_gain)
+            self._released_gain = 0.0
 
     def release(self) -> None:
         """Switch the motor off until a target is set.
 
         Rebuilding the model switches the motor on again, so call this after each rebuild.
         """
-        number = self._actuator()
+        number = self._actuator_index()
         gain = float(self._simulation.model.actuator_gainprm[number, 0])
         if gain:
-            self._gain = gain
+            self._released_gain = gain
             self._set_gain(number, 0.0)
 
-    def _set_gain(self, number: int, gain: float) -> None:
+    def _set_gain(self, index: int, gain: float) -> None:
         model = self._simulation.model
-        model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 2] = gain, -gain
+        model.actuator_gainprm[index, 0], model.actuator_biasprm[index, 2] = gain, -gain
 
-    def _actuator(self) -> int:
+    def _actuator_index(self) -> int:
         """Return the index of the actuator in MuJoCo's current model."""
         simulation = self._simulation
         simulation.renew()
@@ -93,16 +93,16 @@ class Motor:
 class Servo:
     """A servo that holds a joint with one axis at a position, and moves the joint to new positions.
 
-    A servo calls `Simulation.renew` on first use, so adding many servos compiles the model only once.
+    `Simulation.renew` runs on first use, so adding many servos compiles the model only once.
 
     Args:
-        simulation: the simulation.
+        simulation: the simulation that contains the joint.
         joint: the name of the joint.
         name: the name of the constraint that holds the joint.
-        speed: the maximum speed in rad/s (m/s).
+        speed: the maximum speed in rad/s (or m/s), limited to the joint's speed limit; infinite if there is no limit.
     """
 
-    def __init__(self, simulation: Actuated, joint: str, name: str, speed: float) -> None:
+    def __init__(self, simulation: ActuatedSimulation, joint: str, name: str, speed: float) -> None:
         self._simulation = simulation
         self._joint = joint
         self._name = name
@@ -117,7 +117,7 @@ class Servo:
 
     @property
     def position(self) -> float:
-        """The position at which the joint is held, in rad (m)."""
+        """The position at which the joint is held, in rad (or m)."""
         self._simulation.renew()
         return self._position
 
@@ -135,7 +135,7 @@ class Servo:
     def move(self, target: float, seconds: float) -> None:
         """Move the joint towards a target, by at most the maximum speed times `seconds`.
 
-        The target is a position in rad (m), which is clipped to the joint's limits.
+        The target is a position in rad (or m), which is clipped to the joint's limits.
         """
         self._simulation.renew()
         model = self._simulation.model
@@ -143,14 +143,14 @@ class Servo:
         if model.jnt_limited[joint.id]:
             lower, upper = model.jnt_range[joint.id]
             target = min(max(target, float(lower)), float(upper))
-        way = self._speed * seconds
-        self._position = min(max(target, self._position - way), self._position + way)
+        max_change = self._speed * seconds
+        self._position = min(max(target, self._position - max_change), self._position + max_change)
         self._hold()
 
     def _hold(self) -> None:
         self._simulation.refresh()
         model = self._simulation.model
-        start = model.qpos0[model.joint(self._joint).qposadr[0]]
-        number = model.equality(self._name).id
-        model.eq_data[number, 0] = self._position - start
-        self._simulation.data.eq_active[number] = 1
+        reference_position = model.qpos0[model.joint(self._joint).qposadr[0]]
+        constraint_index = model.equality(self._name).id
+        model.eq_data[constraint_index, 0] = self._position - reference_position
+        self._simulation.data.eq_active[constraint_index] = 1

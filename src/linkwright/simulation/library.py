@@ -1,6 +1,6 @@
 """Access to the MuJoCo library, which the extra ``sim`` installs.
 
-The extra installs version 4, or on Python 3.10 the last version with wheels.
+The extra installs version 4, or on Python 3.10 the newest version that has wheels for it.
 """
 
 from __future__ import annotations

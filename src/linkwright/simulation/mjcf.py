@@ -41,18 +41,18 @@ def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnosti
 
 
 def _replace_textures(spec: Any, model: Any) -> None:
-    """Replace textures by their mean colours, because MJCF can only refer to image files."""
-    means: dict[str, Any] = {}
+    """Remove all textures and multiply the materials' colours by their mean colours: MJCF stores only file names."""
+    mean_colours: dict[str, Any] = {}
     for material in spec.materials:
-        (texture,) = {int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {
-            -1
-        } or {-1}
-        if texture >= 0:
-            means[material.name] = np.array([*mean_colour(model, texture), 1.0])
-            material.rgba = material.rgba * means[material.name]
+        (texture_index,) = {
+            int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])
+        } - {-1} or {-1}
+        if texture_index >= 0:
+            mean_colours[material.name] = np.array([*mean_colour(model, texture_index), 1.0])
+            material.rgba = material.rgba * mean_colours[material.name]
             material.textures = [""] * len(material.textures)
     for geom in spec.geoms:
-        if geom.material in means and list(geom.rgba) != _DEFAULT_RGBA:
-            geom.rgba = geom.rgba * means[geom.material]
-    for texture in list(spec.textures):
-        spec.delete(texture)
+        if geom.material in mean_colours and list(geom.rgba) != _DEFAULT_RGBA:
+            geom.rgba = geom.rgba * mean_colours[geom.material]
+    for texture_index in list(spec.textures):
+        spec.delete(texture_index)

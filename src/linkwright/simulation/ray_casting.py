@@ -10,9 +10,9 @@ from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
 
 GROUPS = 6
-"""The number of MuJoCo's groups of geoms."""
-_SOUND = 4
-"""Before this version, rays that are cast together miss bodies whose centre of mass is not their origin."""
+"""The number of geom groups in MuJoCo."""
+_FIRST_RELIABLE_VERSION = 4
+"""The first major version in which `mj_multiRay` hits bodies whose centre of mass is not their origin."""
 
 
 def cast(
@@ -33,21 +33,21 @@ def cast(
         data: MuJoCo's data.
         origin: the common origin of the rays, shape (3,), in m.
         rays: the directions of the rays as unit vectors, shape (rays, 3).
-        groups: the groups of geoms that the rays can hit, shape (GROUPS,).
-        apart_from: the body whose geoms the rays pass through; -1 for none.
+        groups: for each geom group, 1 if the rays can hit its geoms and 0 otherwise, shape (GROUPS,).
+        apart_from: the index of a body that the rays pass through; -1 for none.
         reach: the maximum length of the rays, in m.
-        normals: if given, receives the normals of the hit surfaces, shape (rays, 3).
+        normals: an array that receives the normals of the hit surfaces, shape (rays, 3); None if they are not needed.
 
     Returns:
-        Distances in m, negative for no hit, and the geoms, -1 for none; both of shape (rays,).
+        The distances in m and the geom indices, both of shape (rays,) and negative for a ray without a hit.
     """
     mujoco = load_mujoco()
     count = len(rays)
     distances, geoms = np.empty(count), np.empty(count, dtype=np.int32)
-    if int(mujoco.__version__.partition(".")[0]) >= _SOUND:
-        flat = None if normals is None else normals.reshape(-1)
+    if int(mujoco.__version__.partition(".")[0]) >= _FIRST_RELIABLE_VERSION:
+        flat_normals = None if normals is None else normals.reshape(-1)
         mujoco.mj_multiRay(
-            model, data, origin, rays.reshape(-1), groups, 1, apart_from, geoms, distances, flat, count, reach
+            model, data, origin, rays.reshape(-1), groups, 1, apart_from, geoms, distances, flat_normals, count, reach
         )
     else:
         for index in range(count):
@@ -55,6 +55,6 @@ def cast(
             distances[index] = mujoco.mj_ray(
                 model, data, origin, rays[index], groups, 1, apart_from, geoms[index : index + 1], normal
             )
-    beyond = distances > reach
-    distances[beyond], geoms[beyond] = -1.0, -1
+    is_too_far = distances > reach
+    distances[is_too_far], geoms[is_too_far] = -1.0, -1
     return distances, geoms

@@ -12,9 +12,9 @@ class Task:
     """A function that is called periodically.
 
     Attributes:
-        period: the nanoseconds from one call to the next.
-        function: the function to call.
-        cancelled: whether the calls have ended.
+        period: the time between two calls, in simulated nanoseconds.
+        function: the function to call, without arguments.
+        cancelled: whether the task was cancelled, so that the function is no longer called.
     """
 
     period: int
@@ -34,7 +34,7 @@ class Schedule:
 
     @property
     def next_time(self) -> int | None:
-        """The time of the next call, in nanoseconds; None if there is none."""
+        """The time of the next call, in nanoseconds; None if there are no tasks."""
         while self._heap and self._heap[0][2].cancelled:
             heappop(self._heap)
         return self._heap[0][0] if self._heap else None
@@ -49,14 +49,14 @@ class Schedule:
     def run(self, now: int) -> None:
         """Call each task whose time has been reached once, even if several of its periods have passed."""
         while self._heap and self._heap[0][0] <= now:
-            due, turn, task = self._heap[0]
+            time, number, task = self._heap[0]
             if task.cancelled:
                 heappop(self._heap)
                 continue
-            next_due = due + task.period
-            if next_due <= now:
-                next_due += ((now - next_due) // task.period + 1) * task.period
-            heapreplace(self._heap, (next_due, turn, task))
+            next_time = time + task.period
+            if next_time <= now:
+                next_time += ((now - next_time) // task.period + 1) * task.period
+            heapreplace(self._heap, (next_time, number, task))
             task.function()
 
     def restart(self) -> None:

@@ -28,10 +28,10 @@ from linkwright.simulation.schedule import Schedule, Task
 from linkwright.simulation.sleep import Sleep
 from linkwright.simulation.solving import Solving
 
-_BEYOND = 1e10
-"""A position or velocity from this on, in m, rad, m/s or rad/s, counts as an explosion, as in MuJoCo."""
-_SURELY = _BEYOND * _BEYOND
-"""A bound of the sum of squares below which no single value is beyond its bound."""
+_MAX_VALUE = 1e10
+"""A position or velocity of at least this value, in m, rad, m/s or rad/s, counts as unstable, as in MuJoCo."""
+_SAFE_SQUARED_SUM = _MAX_VALUE * _MAX_VALUE
+"""If the sum of squares is below this bound, no single value exceeds `_BEYOND`."""
 
 
 class UnstableError(LinkwrightError):
@@ -47,7 +47,7 @@ class Simulation:
     Args:
         world: the world, with its includes resolved.
         finder: the finder of mesh files.
-        step: the time step in s; by default the time step of the world.
+        step: the time step in s; None for the time step of the world.
 
     Attributes:
         world: the parsed world, with its includes resolved and its saved state applied.
@@ -55,7 +55,7 @@ class Simulation:
         scene: the MuJoCo specification of the world, with its models.
         model, data: MuJoCo's current model and data; both are replaced when models are added or removed.
         revision: the number of times that `model` and `data` were rebuilt.
-        time: simulated nanoseconds since the start.
+        time: the simulated time since the start, in nanoseconds.
         step: the time step in nanoseconds.
         schedule: calls functions at simulated times.
     """
@@ -70,14 +70,14 @@ class Simulation:
         self.scene = Scene(self.world, self._meshes, step)
         self.revision = 0
         try:
-            made = compile_scene(self.scene)
+            compiled = compile_scene(self.scene)
         except LinkwrightError:
-            refused = rejected_models(self.world, finder)
-            if not refused:
+            rejected = rejected_models(self.world, finder)
+            if not rejected:
                 raise
             self._meshes = MeshLibrary(finder)
-            self.scene = Scene(self.world, self._meshes, step, refused)
-            made = compile_scene(self.scene)
+            self.scene = Scene(self.world, self._meshes, step, rejected)
+            compiled = compile_scene(self.scene)
         self.step = step_in_nanoseconds(self.scene.step, self.world)
         self.time = 0
         self.schedule = Schedule()
@@ -86,11 +86,11 @@ class Simulation:
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
-        self._arriving: list[Servo] = []  # servos that are not in MuJoCo's model yet
-        self._changed = False  # whether the scene differs from MuJoCo's model
+        self._new_servos: list[Servo] = []  # servos that are not in MuJoCo's model yet
+        self._is_changed = False  # whether the scene differs from MuJoCo's model
         self._is_reshaped = False  # whether the scene's bodies or joints differ from the model
-        self._current = False
-        self._set_model(*made)
+        self._is_current = False
+        self._set_model(*compiled)
 
     @property
     def seconds(self) -> float:
@@ -118,10 +118,10 @@ class Simulation:
         Raises:
             KeyError: there is no model with this name.
         """
-        for held in self.scene.models[name].structure.links:
-            self._pushes.pop(held.link.name, None)
+        for link in self.scene.models[name].structure.links:
+            self._pushes.pop(link.link.name, None)
         self.scene.remove(name)
-        self._arriving = [servo for servo in self._arriving if servo.model != name]
+        self._new_servos = [servo for servo in self._new_servos if servo.model != name]
         self.set_altered()
 
     def set_world(self, world: World, finder: ResourceFinder) -> None:
@@ -133,11 +133,11 @@ class Simulation:
             world: the other world, with its includes resolved.
             finder: the finder of the other world's meshes.
         """
-        before, self.world, self.finder = self.world, with_saved_state(world), finder
+        old_world, self.world, self.finder = self.world, with_saved_state(world), finder
         self._meshes.set_finder(finder)
         self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
-        if _compiled_properties(before) != _compiled_properties(self.world):
+        if _compiled_properties(old_world) != _compiled_properties(self.world):
             self.set_altered()
 
     def separate_simulation(self, world: World, finder: ResourceFinder) -> Simulation:
@@ -161,25 +161,27 @@ class Simulation:
         for name in poses:
             for link in self.free_links(name):
                 joint = self.model.joint(f"{link}#free")
-                start, speed = int(joint.qposadr[0]), int(joint.dofadr[0])
-                self.data.qpos[start : start + 7] = self.model.qpos0[start : start + 7]
-                self.data.qvel[speed : speed + 6] = 0.0
-                self._jumped(self.model.jnt_bodyid[joint.id])
-        self._current = False
+                position_index, velocity_index = int(joint.qposadr[0]), int(joint.dofadr[0])
+                self.data.qpos[position_index : position_index + 7] = self.model.qpos0[
+                    position_index : position_index + 7
+                ]
+                self.data.qvel[velocity_index : velocity_index + 6] = 0.0
+                self._on_jump(self.model.jnt_bodyid[joint.id])
+        self._is_current = False
 
     def set_moved(self) -> None:
         """Record that positions or velocities in `data` were set, so that dependent values are updated."""
-        self._current = False
+        self._is_current = False
 
-    def _jumped(self, body: Any) -> None:
+    def _on_jump(self, body: Any) -> None:
         """Record that a body of MuJoCo's model was placed where it may overlap with other bodies."""
         self._stepper.expect_overlaps()
         self._sleep.stir(int(self.model.body_treeid[body]))
-        self._current = False
+        self._is_current = False
 
     def set_altered(self) -> None:
         """Record that the specification of `scene` was changed, so that it is compiled before its next use."""
-        self._changed = self._is_reshaped = True
+        self._is_changed = self._is_reshaped = True
 
     def free_links(self, name: str) -> list[str]:
         """Return the links of a model that move freely, without a joint to a parent.
@@ -188,7 +190,7 @@ class Simulation:
             KeyError: there is no such model.
         """
         self.refresh()
-        links = [held.link.name for held in self.scene.models[name].structure.links]
+        links = [scene_link.link.name for scene_link in self.scene.models[name].structure.links]
         return [link for link in links if self._is_free(link)]
 
     def _is_free(self, link: str) -> bool:
@@ -196,32 +198,32 @@ class Simulation:
         return body.jntnum[0] == 1 and bool(self.model.jnt_type[body.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> Motor:
-        """Add a motor that holds the velocity of a joint; the arguments are those of the scene's method."""
+        """Add a motor that holds the velocity of a joint; the arguments are those of `Scene.add_velocity_motor`."""
         name = self.scene.add_velocity_motor(joint, gain, limit)
-        self._changed = True
+        self._is_changed = True
         return Motor(self, name)
 
     def let_roll(self, joint: str) -> None:
         """Let a wheel roll without slipping, as driven wheels do."""
         self.scene.let_roll(joint)
-        self._changed = True
+        self._is_changed = True
 
     def let_slide(self, joint: str) -> None:
         """Let a wheel slide in all directions, as if it had rollers; its motor then has no grip."""
         self.scene.let_slide(joint)
-        self._changed = True
+        self._is_changed = True
 
     def add_servo(self, joint: str, speed: float = inf) -> Servo:
         """Add a servo, which holds the position of a joint with one axis.
 
         Args:
             joint: the name of the joint.
-            speed: the maximum speed in rad/s (m/s), unless the limit of the joint is lower. If both are infinite, the
-                maximum is 2.
+            speed: the maximum speed in rad/s (or m/s), limited to the joint's speed limit. If both are infinite, the
+                maximum speed is 2.
         """
         servo = Servo(self, joint, self.scene.add_servo(joint), speed)
-        self._arriving.append(servo)
-        self._changed = True
+        self._new_servos.append(servo)
+        self._is_changed = True
         return servo
 
     def keep_awake(self, link: str) -> None:
@@ -230,9 +232,9 @@ class Simulation:
         Raises:
             KeyError: there is no such link.
         """
-        never = self._mujoco.mjtSleepPolicy.mjSLEEP_NEVER
-        self.scene.keep_awake(link, never)
-        if self._changed:
+        never_policy = self._mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+        self.scene.keep_awake(link, never_policy)
+        if self._is_changed:
             return
         tree = int(self.model.body_treeid[self.model.body(link).id])
         if tree >= 0:
@@ -240,26 +242,26 @@ class Simulation:
 
     def renew(self) -> None:
         """Recompile the MuJoCo model if the scene has changed."""
-        if self._changed:
+        if self._is_changed:
             self._set_model(*compile_scene(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
-            self._changed = self._is_reshaped = self._current = False
+            self._is_changed = self._is_reshaped = self._is_current = False
             self.revision += 1
-            arriving, self._arriving = self._arriving, []
-            for servo in arriving:
+            new_servos, self._new_servos = self._new_servos, []
+            for servo in new_servos:
                 servo.restart()
 
     def refresh(self) -> None:
         """Call `renew`, and update the MuJoCo data that is derived from positions."""
         self.renew()
-        if not self._current:
+        if not self._is_current:
             mujoco, model, data = self._mujoco, self.model, self.data
             move_actors(self.scene.figures, model, data, self.seconds)
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
             mujoco.mj_camlight(model, data)
             mujoco.mj_comVel(model, data)
-            self._current = True
+            self._is_current = True
 
     def _set_model(self, model: Any, data: Any) -> None:
         """Use another MuJoCo model and its data."""
@@ -277,7 +279,7 @@ class Simulation:
         self._stepper.expect_overlaps()
         self._pushes.clear()
         self.time = 0
-        self._current = False
+        self._is_current = False
         self.schedule.restart()
 
     def advance(self, duration: int) -> None:
@@ -292,9 +294,9 @@ class Simulation:
         """
         end = self.time + duration
         while self.time < end:
-            due = self.schedule.next_time
-            until = end if due is None else min(end, max(due, self.time + self.step))
-            self._make_steps(-(-(until - self.time) // self.step))
+            next_task = self.schedule.next_time
+            stop_time = end if next_task is None else min(end, max(next_task, self.time + self.step))
+            self._make_steps(-(-(stop_time - self.time) // self.step))
             self.schedule.run(self.time)
 
     def call_every(self, period: int, function: Callable[[], None]) -> Task:
@@ -303,43 +305,46 @@ class Simulation:
 
     def _make_steps(self, count: int) -> None:
         """Simulate a number of steps, with as little Python code per step as possible."""
-        if self._changed:
+        if self._is_changed:
             self.renew()
         mujoco, (positions, velocities) = self._mujoco, self._state
-        before = positions.tobytes(), velocities.tobytes()  # takes half the time of copying arrays
+        old_state = positions.tobytes(), velocities.tobytes()  # takes half the time of copying arrays
         try:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
             reason = str(error).splitlines()[0]
             raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo failed: {said}", said=foreign(reason)))) from None
-        self._current = False
+        self._is_current = False
         dot = mujoco.mju_dot  # takes half the time of a comparison; numpy's dot warns of overflows
-        if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
-            raise self._unstable_error(count, np.frombuffer(before[0]), np.frombuffer(before[1]))
+        if (
+            not (dot(positions, positions) < _SAFE_SQUARED_SUM and dot(velocities, velocities) < _SAFE_SQUARED_SUM)
+            and not self._is_stable()
+        ):
+            raise self._unstable_error(count, np.frombuffer(old_state[0]), np.frombuffer(old_state[1]))
         self.time += count * self.step
 
-    def _is_sound(self) -> bool:
-        return all(bool((np.abs(state) < _BEYOND).all()) for state in self._state)
+    def _is_stable(self) -> bool:
+        return all(bool((np.abs(state) < _MAX_VALUE).all()) for state in self._state)
 
     def _unstable_error(self, count: int, positions: Array, velocities: Array) -> UnstableError:
         """Return the error for an unstable simulation, and restore the last step before the failure.
 
-        The last good state is simulated again to find this step; the error names the fastest body.
+        The steps since the last good state are simulated again to find this step; the error names the fastest body.
         """
-        mujoco, model, data, before = self._mujoco, self.model, self.data, (positions, velocities)
+        mujoco, model, data, good_state = self._mujoco, self.model, self.data, (positions, velocities)
         for _ in range(count):
-            data.qpos[:], data.qvel[:] = before
+            data.qpos[:], data.qvel[:] = good_state
             self._stepper.make_steps(1)
-            if not self._is_sound():
+            if not self._is_stable():
                 break
-            before = data.qpos.copy(), data.qvel.copy()
+            good_state = data.qpos.copy(), data.qvel.copy()
             self.time += self.step
-        forced = ~np.isfinite(data.xfrc_applied).all(axis=1)
+        has_invalid_force = ~np.isfinite(data.xfrc_applied).all(axis=1)
         failed = np.nan_to_num(np.abs(data.qvel), nan=np.inf)
-        degree = int(np.argmax(np.where(failed == failed.max(), np.abs(before[1]), -1.0)))
-        body = int(np.argmax(forced)) if forced.any() else int(model.dof_bodyid[degree])
+        degree = int(np.argmax(np.where(failed == failed.max(), np.abs(good_state[1]), -1.0)))
+        body = int(np.argmax(has_invalid_force)) if has_invalid_force.any() else int(model.dof_bodyid[degree])
         mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = before
+        data.qpos[:], data.qvel[:] = good_state
         values = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
         message = phrase("the simulation became unstable at {time} s, at link '{link}'", **values)
         hint = phrase("check its mass, its inertia and its overlaps, or make the time step shorter")
@@ -386,21 +391,21 @@ class Simulation:
         return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
-        """Return the radius in m of a wheel's round collisions, the largest of several; None if none is round.
+        """Return the largest radius in m of a wheel's round collisions; None if no collision is round.
 
         Raises:
             KeyError: there is no such link.
         """
         self.refresh()
-        kinds, model, body = self._mujoco.mjtGeom, self.model, self.model.body(link)
+        geom_types, model, body = self._mujoco.mjtGeom, self.model, self.model.body(link)
         radii = []
         for geom in range(body.geomadr[0], body.geomadr[0] + body.geomnum[0]):
             if model.geom_group[geom] != COLLISION_GROUP:
                 continue
             kind = int(model.geom_type[geom])  # An integer of numpy never equals MuJoCo's enum.
-            if kind == kinds.mjGEOM_ELLIPSOID:
+            if kind == geom_types.mjGEOM_ELLIPSOID:
                 radii.append(float(np.median(model.geom_size[geom])))
-            elif kind in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER):
+            elif kind in (geom_types.mjGEOM_SPHERE, geom_types.mjGEOM_CYLINDER):
                 radii.append(float(model.geom_size[geom, 0]))
         return max(radii, default=None)
 
@@ -429,10 +434,10 @@ class Simulation:
         """
         self.refresh()
         scene_model = self.scene.models[name]
-        moved = compose(pose, invert(scene_model.pose))
-        if set_kinematic_poses(scene_model.structure, moved, self.model, self.data):
+        displacement = compose(pose, invert(scene_model.pose))
+        if set_kinematic_poses(scene_model.structure, displacement, self.model, self.data):
             self._stepper.expect_overlaps()
-            self._current = False
+            self._is_current = False
             return
         if not self.moves_freely(name):
             message = phrase("'{name}' is fixed to the world", name=name)
@@ -447,7 +452,7 @@ class Simulation:
         x, y, z, qx, qy, qz, qw = compose(pose, offset)
         joint.qpos[:] = (x, y, z, qw, qx, qy, qz)
         joint.qvel[:] = 0.0
-        self._jumped(self.body(root))
+        self._on_jump(self.body(root))
 
     def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
         """Set the velocity of the first link of a free model, in m/s and rad/s, in the axes of the world.
@@ -457,16 +462,16 @@ class Simulation:
         """
         self.refresh()
         root, _ = self._root(name)
-        turn = self.link_pose(root)[3:]
-        self.data.joint(f"{root}#free").qvel[:] = (*linear, *rotate(quaternion_inverse(turn), angular))
+        rotation = self.link_pose(root)[3:]
+        self.data.joint(f"{root}#free").qvel[:] = (*linear, *rotate(quaternion_inverse(rotation), angular))
         self._sleep.stir(int(self.model.body_treeid[self.body(root)]))
-        self._current = False
+        self._is_current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:
         """Return the name of a model's first link, and the link's pose in the frame of the model."""
         model = self.scene.models[name]
-        first = model.structure.links[0].link
-        return first.name, compose(invert(model.pose), first.pose)
+        first_link = model.structure.links[0].link
+        return first_link.name, compose(invert(model.pose), first_link.pose)
 
     def joint_state(self, name: str) -> tuple[float, float]:
         """Return the position and velocity of a joint with one axis, in rad and rad/s or m and m/s.
@@ -476,19 +481,19 @@ class Simulation:
         """
         if self._is_reshaped:  # Motors do not affect joints, so adding them does not recompile.
             self.renew()
-        place = self._joints.get(name)
-        if place is None:
+        indices = self._joints.get(name)
+        if indices is None:
             joint = self.model.joint(name)
-            place = self._joints[name] = int(joint.qposadr[0]), int(joint.dofadr[0])
+            indices = self._joints[name] = int(joint.qposadr[0]), int(joint.dofadr[0])
         positions, velocities = self._state
-        return positions.item(place[0]), velocities.item(place[1])
+        return positions.item(indices[0]), velocities.item(indices[1])
 
     def set_joint_position(self, name: str, position: float) -> None:
         """Set the position of a joint with one axis, in rad (m), and set its velocity to zero."""
         self.refresh()
         joint = self.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, 0.0
-        self._jumped(self.model.jnt_bodyid[joint.id])
+        self._on_jump(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
         """Set the torque in N m (force in N) on a joint with one axis, which acts until it is set again.
@@ -497,23 +502,28 @@ class Simulation:
         within a step.
         """
         self.refresh()
-        self.data.joint(name).qfrc_applied[0] = self._bounded(name, force)
+        self.data.joint(name).qfrc_applied[0] = self._clipped_force(name, force)
 
-    def _bounded(self, name: str, force: float) -> float:
+    def _clipped_force(self, name: str, force: float) -> float:
         """Return a joint force or torque clipped to the joint's limits, as in gz's engine DART.
 
         Limits of 0 or less are ignored.
         """
         model, speed_limit = self.model, self.scene.speed_limit(name)
-        number = model.joint(name).id
-        if model.jnt_actfrclimited[number]:
-            lower, upper = model.jnt_actfrcrange[number].tolist()
+        joint_id = model.joint(name).id
+        if model.jnt_actfrclimited[joint_id]:
+            lower, upper = model.jnt_actfrcrange[joint_id].tolist()
             force = min(max(force, lower), upper)
         if isfinite(speed_limit):
             _, speed = self.joint_state(name)
-            mass = 1.0 / float(model.dof_invweight0[model.jnt_dofadr[number]])
-            needed = mass * NANOSECONDS_PER_SECOND / self.step  # to change the speed by 1 rad/s (1 m/s) within a step
-            force = min(max(force, min(-(speed_limit + speed) * needed, 0.0)), max((speed_limit - speed) * needed, 0.0))
+            mass = 1.0 / float(model.dof_invweight0[model.jnt_dofadr[joint_id]])
+            force_per_speed = (
+                mass * NANOSECONDS_PER_SECOND / self.step
+            )  # to change the speed by 1 rad/s (1 m/s) within a step
+            force = min(
+                max(force, min(-(speed_limit + speed) * force_per_speed, 0.0)),
+                max((speed_limit - speed) * force_per_speed, 0.0),
+            )
         return force
 
     def push(
@@ -529,9 +539,9 @@ class Simulation:
         Force and torque act until they are set again. The forces of several callers add up; `by` identifies the caller.
         """
         self.refresh()
-        acting = self._pushes.setdefault(link, {})
-        acting[by] = np.array((*force, *torque))
-        self.data.body(link).xfrc_applied[:] = sum(acting.values())
+        forces = self._pushes.setdefault(link, {})
+        forces[by] = np.array((*force, *torque))
+        self.data.body(link).xfrc_applied[:] = sum(forces.values())
 
     def set_gravity(self, gravity: Vector3) -> None:
         """Set the gravity in m/s2, in the axes of the world."""

@@ -1,4 +1,4 @@
-"""Decides when bodies may fall asleep; MuJoCo skips sleeping bodies, whose velocity is zero.
+"""Decides when bodies may fall asleep: MuJoCo skips sleeping bodies, and their velocity is zero.
 
 MuJoCo lets bodies sleep as soon as they are slow for ten steps. However, a pendulum is slow at its turning point, and
 so is any body that starts to move under a small force. Here a body may only sleep if its pose has not changed for a
@@ -16,14 +16,14 @@ from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.schedule import Schedule, Task
 
-_PERIOD = 50_000_000
-"""Nanoseconds from one look to the next."""
-_LOOKS = 5
-"""The number of looks in a row that must find a body at rest."""
-_LYING, _FREE = 3e-4, 1e-6
-"""The speeds in m/s or rad/s above which a body moves: with contacts, and free of them."""
+_CHECK_PERIOD = 50_000_000
+"""The time between two checks, in nanoseconds."""
+_MIN_CALM_CHECKS = 5
+"""The number of successive checks that must find a body at rest."""
+_MAX_CONTACT_SPEED, _MAX_FREE_SPEED = 3e-4, 1e-6
+"""The maximum speeds of a body at rest, in m/s or rad/s: with contacts, and without contacts."""
 _WAKING_SPEED = 1e-30
-"""A speed at which nothing gets anywhere, and for which MuJoCo wakes a tree up before its next step."""
+"""A negligible speed that makes MuJoCo wake a tree before the next step."""
 
 
 class Sleep:
@@ -44,69 +44,69 @@ class Sleep:
         """Use another model and its data, and wake all bodies.
 
         Args:
-            model: MuJoCo's model.
-            data: MuJoCo's data.
+            model: MuJoCo's model, whose sleep policies are set here.
+            data: MuJoCo's data of the model.
             now: the simulated time in nanoseconds.
             step: the time step in nanoseconds.
         """
         self._model, self._data = model, data
         policies = self._mujoco.mjtSleepPolicy
-        self._may: Any = model.tree_sleep_policy == policies.mjSLEEP_AUTO_ALLOWED
-        self._seconds = step * max(1, round(_PERIOD / step)) * 1e-9
-        self._calm = np.zeros(model.ntree, dtype=np.int64)
-        self._before: Array = data.qpos.copy()
+        self._may_sleep: Any = model.tree_sleep_policy == policies.mjSLEEP_AUTO_ALLOWED
+        self._seconds = step * max(1, round(_CHECK_PERIOD / step)) * 1e-9
+        self._calm_checks = np.zeros(model.ntree, dtype=np.int64)
+        self._last_positions: Array = data.qpos.copy()
         if self._task is not None:
             self._task.cancelled, self._task = True, None
-        if self._may.any():
+        if self._may_sleep.any():
             self._task = self._schedule.add(round(self._seconds * 1e9), self._look, now)
             lengths: Array = np.array(model.dof_length)
             self._lengths = np.where(lengths > 0.0, lengths, 1.0)
-            self._tree_of: Any = model.dof_treeid
+            self._tree_indices: Any = model.dof_treeid
         self.wake()
 
     def rouse(self) -> None:
         """Wake all bodies; a body at rest can fall asleep again after MuJoCo's ten steps."""
         data = self._data
         if self._model.nv:
-            resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
-            data.qvel[resting] = _WAKING_SPEED
+            is_resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
+            data.qvel[is_resting] = _WAKING_SPEED
 
     def wake(self) -> None:
         """Wake all bodies, and keep them awake until they have been at rest for a while."""
         self.rouse()
-        self._calm[:] = 0
+        self._calm_checks[:] = 0
         self._set_policies()
 
     def stir(self, tree: int) -> None:
         """Wake a tree that was moved or set in motion; -1, for a static body without a tree, has no effect."""
         if tree >= 0:
-            self._calm[tree] = 0
+            self._calm_checks[tree] = 0
             self._set_policies()
             self.rouse()
 
     def keep_awake(self, tree: int) -> None:
         """Wake a tree, and prevent it from falling asleep again."""
-        self._may[tree] = False
+        self._may_sleep[tree] = False
         self.wake()
 
     def _set_policies(self) -> None:
         policies = self._mujoco.mjtSleepPolicy
-        allowed = self._may & (self._calm >= _LOOKS)
+        allowed = self._may_sleep & (self._calm_checks >= _MIN_CALM_CHECKS)
         self._model.tree_sleep_policy[:] = np.where(allowed, policies.mjSLEEP_AUTO_ALLOWED, policies.mjSLEEP_NEVER)
 
     def _look(self) -> None:
         model, data = self._model, self._data
         if not data.ntree_awake:
             return
-        way, now = np.empty(model.nv), data.qpos
-        self._mujoco.mj_differentiatePos(model, way, self._seconds, self._before, now)
-        self._before[:] = now
-        lying = np.zeros(model.ntree)
-        np.maximum.at(lying, self._tree_of, np.abs(way) * self._lengths)
-        free = np.zeros(model.ntree)
-        np.maximum.at(free, self._tree_of, np.maximum(np.abs(way), np.abs(data.qvel)))
-        rests = np.where(self._are_touching(), lying < _LYING, free < _FREE)
-        self._calm = np.where(rests, self._calm + 1, 0)
+        velocity, positions = np.empty(model.nv), data.qpos
+        self._mujoco.mj_differentiatePos(model, velocity, self._seconds, self._last_positions, positions)
+        self._last_positions[:] = positions
+        contact_speed = np.zeros(model.ntree)
+        np.maximum.at(contact_speed, self._tree_indices, np.abs(velocity) * self._lengths)
+        free_speed = np.zeros(model.ntree)
+        np.maximum.at(free_speed, self._tree_indices, np.maximum(np.abs(velocity), np.abs(data.qvel)))
+        is_at_rest = np.where(self._are_touching(), contact_speed < _MAX_CONTACT_SPEED, free_speed < _MAX_FREE_SPEED)
+        self._calm_checks = np.where(is_at_rest, self._calm_checks + 1, 0)
         self._set_policies()
 
     def _are_touching(self) -> Any:

@@ -13,17 +13,17 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.schedule import Schedule, Task
 from linkwright.simulation.sleep import Sleep
 
-_MOTORS, _TREES = 16, 8
-"""The least motors and trees of bodies with which it may be worth it."""
-_MOTORS_AN_ISLAND, _MOTORS_ASLEEP = 80, 300
+_MIN_MOTORS, _MIN_TREES = 16, 8
+"""The minimum numbers of motors and trees for which solving all bodies together may be faster."""
+_ISLAND_COST, _AWAKE_COST = 80, 300
 """Costs of an island besides its motors, and of a tree that is not asleep; in motors that are iterated over.
 
 Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor; mbot itself, as a box, 9 us.
 """
-_LOOK = 20
-"""Steps between two checks: resting bodies may fall asleep within half as many."""
-_TOGETHER = 50
-"""The number of checks for which all are solved for together before resting bodies are looked for again."""
+_CHECK_STEPS = 20
+"""The number of steps between two checks; resting bodies may fall asleep within half as many."""
+_CHECKS_TOGETHER = 50
+"""The number of checks during which all bodies are solved together, before islands are tried again."""
 
 
 class Solving:
@@ -40,7 +40,7 @@ class Solving:
         self._schedule = schedule
         self._sleep = sleep
         self._task: Task | None = None
-        self._left = 0
+        self._remaining_checks = 0
         self._model: Any = None
         self._data: Any = None
 
@@ -48,42 +48,42 @@ class Solving:
         """Use another model and its data, which is initially solved by islands.
 
         Args:
-            model: MuJoCo's model.
-            data: MuJoCo's data.
+            model: MuJoCo's model, whose options are set here.
+            data: MuJoCo's data of the model.
             now: the simulated time in nanoseconds.
             step: the time step in nanoseconds.
         """
-        self._model, self._data, self._left = model, data, 0
+        self._model, self._data, self._remaining_checks = model, data, 0
         if self._task is not None:
             self._task.cancelled, self._task = True, None
-        if model.nu >= _MOTORS and model.ntree >= _TREES:
-            self._task = self._schedule.add(_LOOK * step, self._look, now)
+        if model.nu >= _MIN_MOTORS and model.ntree >= _MIN_TREES:
+            self._task = self._schedule.add(_CHECK_STEPS * step, self._look, now)
 
     def restart(self) -> None:
         """Return to solving by islands, because the simulation restarts."""
-        if self._left:
-            self._set(together=False)
+        if self._remaining_checks:
+            self._select(together=False)
 
     def _look(self) -> None:
-        if self._left:
-            self._left -= 1
-            if not self._left:
-                self._set(together=False)
+        if self._remaining_checks:
+            self._remaining_checks -= 1
+            if not self._remaining_checks:
+                self._select(together=False)
             return
         model, data = self._model, self._data
         asleep = model.ntree - data.ntree_awake
-        if (model.nu + _MOTORS_AN_ISLAND) * data.nisland > _MOTORS_ASLEEP * asleep:
-            self._set(together=True)
+        if (model.nu + _ISLAND_COST) * data.nisland > _AWAKE_COST * asleep:
+            self._select(together=True)
 
-    def _set(self, *, together: bool) -> None:
+    def _select(self, *, together: bool) -> None:
         mujoco, option = load_mujoco(), self._model.opt
         sleep, islands = mujoco.mjtEnableBit.mjENBL_SLEEP.value, mujoco.mjtDisableBit.mjDSBL_ISLAND.value
         if together:
-            self._left = _TOGETHER
+            self._remaining_checks = _CHECKS_TOGETHER
             option.enableflags &= ~sleep
             option.disableflags |= islands
         else:
-            self._left = 0
+            self._remaining_checks = 0
             self._sleep.rouse()
             option.enableflags |= sleep
             option.disableflags &= ~islands

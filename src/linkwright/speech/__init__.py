@@ -1,1 +1,1 @@
-"""Voice commands: from sound to words, and from words to a robot's actions, without ROS."""
+"""Turn speech into words, and words into a robot's actions, without ROS."""

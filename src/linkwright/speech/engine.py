@@ -23,12 +23,12 @@ class Heard:
     """A result of an engine, partial or final.
 
     Attributes:
-        text: the phrase, as in the options; empty for speech that does not match any phrase.
+        text: one of the phrases of the options; empty for speech that does not match any phrase.
         confidence: the confidence of the least certain word, 0 to 1.
-        final: whether the utterance is over; otherwise the result may change.
+        final: whether the utterance is over; a partial result may still change.
         start: the start of the utterance, in seconds of sound since the engine was created.
-        end: the end of the recognized sound, in the same seconds.
-        nearest: if the text is empty, the most similar phrase; empty if none is similar.
+        end: the end of the recognized sound, on the same time scale.
+        nearest: if the text is empty, the most similar phrase; empty if no phrase is similar.
     """
 
     text: str
@@ -41,12 +41,12 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class EngineOptions:
-    """Options of an engine.
+    """The options of an engine.
 
     Attributes:
-        phrases: all phrases to recognize; no other text may be returned.
+        phrases: all phrases to recognize; the engine must not return any other text.
         language: ``en``, ``zh`` or another BCP 47 tag, for engines that depend on the language.
-        model: the file or folder of the model, for engines that have one; None for the engine's default location.
+        model: the file or folder of the model, for engines that need one; None for the engine's default.
     """
 
     phrases: tuple[str, ...]
@@ -55,22 +55,22 @@ class EngineOptions:
 
 
 class SpeechEngine(ABC):
-    """Recognises phrases in a stream of sound; all calls are made by one thread at a time."""
+    """Recognises phrases in a stream of sound. Only one thread at a time may call it."""
 
     @abstractmethod
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process the next block of the stream, of any length, and return new results in order."""
+        """Process the next samples of the stream, any number of them, and return new results in order."""
 
     @abstractmethod
     def finish(self) -> Sequence[Heard]:
         """End the utterance, for example when a button is released, and return its final results.
 
-        The stream may continue.
+        More samples may follow.
         """
 
     @property
     def problem(self) -> Diagnostic | None:
-        """The reason why the engine recognises less than it should, or None."""
+        """Why the engine recognises less than it should; None if it works fully."""
         return None
 
     def close(self) -> None:  # noqa: B027 - few engines hold anything
@@ -88,9 +88,9 @@ def make_engine(name: str, options: EngineOptions) -> SpeechEngine:
     Raises:
         LinkwrightError: VOICE101, there is no such engine; or an error of the engine itself.
     """
-    found = extensions(_GROUP).get(name)
-    if found is None:
+    entry_point = extensions(_GROUP).get(name)
+    if entry_point is None:
         message = phrase("there is no speech engine '{name}'", name=name)
         raise LinkwrightError(Diagnostic("VOICE101", message, hint=did_you_mean(name, engine_names())))
-    engine: SpeechEngine = found.load()(options)
+    engine: SpeechEngine = entry_point.load()(options)
     return engine

@@ -1,4 +1,4 @@
-"""Modules that have the names and interfaces of ROS 2 modules, which need not be installed."""
+"""Stand-ins: modules with the names and interfaces of ROS 2 modules, for use where ROS 2 is not installed."""
 
 from linkwright.standins.activation import activate
 

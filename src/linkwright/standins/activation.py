@@ -1,4 +1,4 @@
-"""Makes our modules importable as ``launch``, ``rclpy`` and so on."""
+"""Makes the stand-ins importable as ``launch``, ``rclpy`` and so on."""
 
 from __future__ import annotations
 
@@ -12,22 +12,25 @@ from types import ModuleType
 from linkwright.standins import modules
 
 LAUNCH_MODULES = ("launch", "launch_ros", "ament_index_python", "xacro")
-"""The modules that launch files import. When Linkwright runs a launch file, these are always ours, even with a sourced
-ROS: the real ones would need their own launcher."""
+"""The modules that launch files import.
+
+When Linkwright runs a launch file, these modules are always stand-ins, even if ROS is sourced, because the modules of
+ROS need the launcher of ROS.
+"""
 
 
 def activate() -> None:
     """Make the modules for launch files importable; may be called repeatedly.
 
-    The folder of the tables is last on ``sys.path``. An installed module therefore takes precedence over ours, unless
-    its package is in `LAUNCH_MODULES`. The stand-ins are also importable in the processes that launch files start.
+    The folder of the tables is last on ``sys.path``. An installed module therefore precedes a stand-in, unless its
+    package is in `LAUNCH_MODULES`. The stand-ins are also importable in the processes that launch files start.
     """
     modules.install()
     if modules.FOLDER not in sys.path:
         sys.path.append(modules.FOLDER)
     if not any(isinstance(finder, _LazyInterfaceFinder) for finder in sys.meta_path):
-        sys.meta_path += [_ModulesOfWorkspace(), _LazyInterfaceFinder()]
-    _provide_for_processes()
+        sys.meta_path += [_WorkspaceModuleFinder(), _LazyInterfaceFinder()]
+    _register_for_processes()
     missing = [name for name in LAUNCH_MODULES if not modules.is_ours(sys.modules.get(name))]
     if not missing:
         return
@@ -54,7 +57,7 @@ class _LazyInterfaceFinder:
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
         """Return the spec of an interface module, or None for another module."""
-        if not _may_be_interfaces(fullname):
+        if not _may_contain_interfaces(fullname):
             return None
         from linkwright.standins import interfaces
 
@@ -64,7 +67,7 @@ class _LazyInterfaceFinder:
         return interfaces.find_spec(fullname)
 
 
-class _ModulesOfWorkspace:
+class _WorkspaceModuleFinder:
     """Finds Python modules of the workspace's packages for users' launch files and modules."""
 
     def find_spec(
@@ -77,12 +80,12 @@ class _ModulesOfWorkspace:
         from linkwright.packages.active import active_finder
 
         finder = active_finder()
-        asking = None if finder is None or path is not None else _importing_file()
-        if finder is None or asking is None:
+        importing_file = None if finder is None or path is not None else _importing_file()
+        if finder is None or importing_file is None:
             return None
         from linkwright.packages.programs.python_modules import find_module
 
-        return find_module(finder, fullname, asking.parent)
+        return find_module(finder, fullname, importing_file.parent)
 
 
 def _importing_file() -> Path | None:
@@ -90,16 +93,16 @@ def _importing_file() -> Path | None:
 
     The result is None if a library runs the import, because a library may import a module optionally.
     """
-    from linkwright.packages.programs.code_files import is_users
+    from linkwright.packages.programs.code_files import is_user_file
 
     frame = sys._getframe(2)
     while frame.f_back is not None and frame.f_code.co_filename.startswith("<frozen importlib"):
         frame = frame.f_back
-    return Path(frame.f_code.co_filename) if is_users(frame.f_code.co_filename) else None
+    return Path(frame.f_code.co_filename) if is_user_file(frame.f_code.co_filename) else None
 
 
-def _may_be_interfaces(name: str) -> bool:
-    """Return whether a module may contain interfaces, so that the interface finder must be asked."""
+def _may_contain_interfaces(name: str) -> bool:
+    """Return whether a module may contain interfaces and the interface finder must search for it."""
     package, _, kind = name.partition(".")
     if kind:
         return kind in ("msg", "srv", "action")
@@ -109,8 +112,8 @@ def _may_be_interfaces(name: str) -> bool:
     return package.endswith(("_msgs", "_interfaces", "_srvs"))
 
 
-def _provide_for_processes() -> None:
-    """Make our modules importable in processes that launch files start."""
+def _register_for_processes() -> None:
+    """Make the stand-ins importable in processes that launch files start."""
     from linkwright.packages.programs import child_python as surroundings
 
     surroundings.register_launcher(_environment, _python_command)

@@ -43,9 +43,9 @@ class CvBridge:
     """Converts between sensor_msgs images and numpy arrays.
 
     Attributes:
-        cvtype_to_name: OpenCV's type number -> type name without ``CV_``, such as ``8UC3``.
-        cvdepth_to_numpy_depth: OpenCV's depth number -> name of the numpy type.
-        numpy_type_to_cvtype: name of the numpy type -> OpenCV's depth name, and vice versa.
+        cvtype_to_name: OpenCV's names of pixel types without ``CV_``, such as ``8UC3``, by OpenCV's type number.
+        cvdepth_to_numpy_depth: the names of numpy types, by OpenCV's depth number.
+        numpy_type_to_cvtype: OpenCV's depth names by the name of the numpy type, and vice versa.
     """
 
     def __init__(self) -> None:
@@ -86,7 +86,7 @@ class CvBridge:
         """Convert a sensor_msgs/msg/Image to an array of pixels.
 
         Args:
-            img_msg: the message.
+            img_msg: the image message.
             desired_encoding: the encoding of the result; ``passthrough`` to keep the encoding of the message.
 
         Returns:
@@ -100,9 +100,9 @@ class CvBridge:
         dtype = np.dtype(name).newbyteorder(">" if img_msg.is_bigendian else "<")
         columns = img_msg.step // dtype.itemsize // channels
         shape = (img_msg.height, columns) if channels == 1 else (img_msg.height, columns, channels)
-        padded: NDArray[Any] = np.ndarray(shape, dtype, buffer=bytes(img_msg.data))
-        image = np.ascontiguousarray(padded[:, : img_msg.width]).astype(dtype.newbyteorder("="))
-        return self._converted(image, img_msg.encoding, desired_encoding)
+        padded_pixels: NDArray[Any] = np.ndarray(shape, dtype, buffer=bytes(img_msg.data))
+        image = np.ascontiguousarray(padded_pixels[:, : img_msg.width]).astype(dtype.newbyteorder("="))
+        return self._convert(image, img_msg.encoding, desired_encoding)
 
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
         """Convert an array to a sensor_msgs/msg/Image.
@@ -128,8 +128,8 @@ class CvBridge:
             message.encoding = encoding
             if self.cvtype_to_name.get(self.encoding_to_cvtype2(encoding)) != type_name:
                 raise CvBridgeError(f"encoding specified as {encoding}, but image has incompatible type {type_name}")
-        swapped = cvim.dtype.byteorder == ">" or (cvim.dtype.byteorder == "=" and sys.byteorder == "big")
-        message.is_bigendian = int(swapped)
+        is_big_endian = cvim.dtype.byteorder == ">" or (cvim.dtype.byteorder == "=" and sys.byteorder == "big")
+        message.is_bigendian = int(is_big_endian)
         message.data = cvim.tobytes()
         message.step = len(message.data) // message.height if message.height else 0
         return message
@@ -138,9 +138,9 @@ class CvBridge:
         """Decode a sensor_msgs/msg/CompressedImage to an array of 8-bit pixels.
 
         Args:
-            cmprs_img_msg: the message.
-            desired_encoding: the encoding to convert to from ``bgr8``; ``passthrough`` for the channels of the file,
-                which are grey, or blue, green and red.
+            cmprs_img_msg: the compressed image message.
+            desired_encoding: the encoding of the result; ``passthrough`` for ``mono8`` or ``bgr8``, depending on the
+                file.
 
         Raises:
             CvBridgeError: the data is not an image, or the image cannot be converted.
@@ -148,13 +148,13 @@ class CvBridge:
         from PIL import Image, UnidentifiedImageError  # an optional dependency, imported only when needed
 
         try:
-            with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as opened:
-                grey = opened.mode in ("1", "L", "LA", "I", "I;16", "F")
-                pixels = np.asarray(opened.convert("L" if grey else "RGB"))
+            with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as pillow_image:
+                is_grey = pillow_image.mode in ("1", "L", "LA", "I", "I;16", "F")
+                pixels = np.asarray(pillow_image.convert("L" if is_grey else "RGB"))
         except (UnidentifiedImageError, OSError, SyntaxError) as error:
             raise CvBridgeError(f"the data of the compressed image cannot be read: {error}") from error
-        image = pixels.copy() if grey else np.ascontiguousarray(pixels[..., ::-1])
-        return self._converted(image, "mono8" if grey else "bgr8", desired_encoding)
+        image = pixels.copy() if is_grey else np.ascontiguousarray(pixels[..., ::-1])
+        return self._convert(image, "mono8" if is_grey else "bgr8", desired_encoding)
 
     def cv2_to_compressed_imgmsg(self, cvim: Any, dst_format: str = "jpg") -> Any:
         """Encode an array as a sensor_msgs/msg/CompressedImage.
@@ -170,23 +170,23 @@ class CvBridge:
         _check_array(cvim)
         message = get_message("sensor_msgs/msg/CompressedImage")()
         message.format = dst_format
-        into = io.BytesIO()
+        buffer = io.BytesIO()
         try:
-            opened = _pillow_image(cvim)
-            kind = _PILLOW_FORMATS.get(dst_format.lower(), dst_format.upper())
-            if kind == "JPEG" and opened.mode == "RGBA":
-                opened = opened.convert("RGB")
-            opened.save(into, kind, quality=_JPEG_QUALITY)
+            pillow_image = _pillow_image(cvim)
+            pillow_format = _PILLOW_FORMATS.get(dst_format.lower(), dst_format.upper())
+            if pillow_format == "JPEG" and pillow_image.mode == "RGBA":
+                pillow_image = pillow_image.convert("RGB")
+            pillow_image.save(buffer, pillow_format, quality=_JPEG_QUALITY)
         except (KeyError, OSError, ValueError, TypeError) as error:
             raise CvBridgeError(f"the image cannot be written as '{dst_format}': {error}") from error
-        message.data = into.getvalue()
+        message.data = buffer.getvalue()
         return message
 
-    def _converted(self, image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
-        if wanted == "passthrough":
+    def _convert(self, image: NDArray[Any], source_encoding: str, desired_encoding: str) -> NDArray[Any]:
+        if desired_encoding == "passthrough":
             return image
         try:
-            return convert_image(image, source, wanted)
+            return convert_image(image, source_encoding, desired_encoding)
         except ConversionError as error:
             raise CvBridgeError(error) from error
 

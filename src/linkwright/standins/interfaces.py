@@ -67,24 +67,24 @@ def install() -> None:
 
 def find_spec(name: str) -> ModuleSpec | None:
     """Return the spec of an interface module (``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``), or None."""
-    package, *rest = name.split(".")
-    if len(rest) > 2 or (rest and rest[0] not in KINDS) or not is_package_name(package):
+    package, *submodules = name.split(".")
+    if len(submodules) > 2 or (submodules and submodules[0] not in KINDS) or not is_package_name(package):
         return None
     names = (
-        _interfaces(package, rest[0])
-        if rest
+        _interfaces(package, submodules[0])
+        if submodules
         else [interface for kind in KINDS for interface in _interfaces(package, kind)]
     )
     if not names:
         return None
     loader: Loader
-    if len(rest) < 2:
-        loader = _KindLoader(names) if rest else _PackageLoader()
+    if len(submodules) < 2:
+        loader = _KindLoader(names) if submodules else _PackageLoader()
         return ModuleSpec(name, loader, origin="Linkwright", is_package=True)
-    interface = next((name for name in names if "_" + snake_case(name) == rest[1]), None)
+    interface = next((name for name in names if "_" + snake_case(name) == submodules[1]), None)
     if interface is None:
         return None
-    return ModuleSpec(name, _InterfaceLoader(f"{package}/{rest[0]}/{interface}"), origin="Linkwright")
+    return ModuleSpec(name, _InterfaceLoader(f"{package}/{submodules[0]}/{interface}"), origin="Linkwright")
 
 
 def _interfaces(package: str, kind: str) -> list[str]:
@@ -92,8 +92,8 @@ def _interfaces(package: str, kind: str) -> list[str]:
 
     Packages that are part of Linkwright are not searched for on disk.
     """
-    shipped = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
-    return sorted(shipped) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
+    shipped_names = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
+    return sorted(shipped_names) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
 
 
 class _PackageLoader(Loader):
@@ -130,7 +130,7 @@ class _KindLoader(Loader):
             if not name[:1].isupper():
                 raise AttributeError(f"module '{module.__name__}' has no attribute '{name}'")
             try:
-                found = get_interface(f"{package}/{kind}/{name}")
+                interface = get_interface(f"{package}/{kind}/{name}")
             except InterfaceNotFoundError:
                 # as in 'from std_msgs.msg import Strng', for which Python's own message does not suggest a name
                 hint = did_you_mean(name, names) or "it has " + ", ".join(names)
@@ -138,8 +138,8 @@ class _KindLoader(Loader):
                 raise ImportError(message, name=module.__name__) from None
             except LinkwrightError as error:  # the error names the file and the line, so omit the traceback
                 raise ImportError(str(error), name=module.__name__) from None
-            setattr(module, name, found)
-            return found
+            setattr(module, name, interface)
+            return interface
 
         module.__doc__ = f"The {kind} interfaces of {package}."
         own_names = {"__getattr__": load, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562

@@ -1,7 +1,7 @@
 """The ament linters that the tests of a new Python package call.
 
 These are ``ament_flake8``, ``ament_pep257`` and ``ament_copyright``. The first two run flake8 and pydocstyle with the
-settings of ``ament_lint``. If the program is not installed, the test is skipped, with a reason that names the program.
+settings of ``ament_lint``. If flake8 or pydocstyle is not installed, the test is skipped with this reason.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-_LINE_LENGTH = 99
-_UNCHECKED_DOCSTRINGS = ("D100", "D101", "D102", "D103", "D104", "D105", "D106", "D107", "D203", "D212", "D404")
-"""Rules that ament disables: missing docstrings, and one of each contradictory pair."""
-_UNCHECKED_STYLE = ("B902", "C816", "I202", *_UNCHECKED_DOCSTRINGS)
-_SOURCES = frozenset({".c", ".cc", ".cmake", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx", ".py"})
+_MAX_LINE_LENGTH = 99
+_IGNORED_DOCSTRING_RULES = ("D100", "D101", "D102", "D103", "D104", "D105", "D106", "D107", "D203", "D212", "D404")
+"""The docstring rules that ament disables: missing docstrings, and one rule of each contradictory pair."""
+_IGNORED_STYLE_RULES = ("B902", "C816", "I202", *_IGNORED_DOCSTRING_RULES)
+_SOURCE_SUFFIXES = frozenset({".c", ".cc", ".cmake", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx", ".py"})
 _HEADER_LENGTH = 4000
-"""Characters at the beginning of a file to search for its copyright notice and licence."""
+"""The number of characters at the start of a file in which its copyright notice and licence are searched for."""
 _COPYRIGHT = re.compile(r"copyright.*\d{4}|SPDX-FileCopyrightText:", re.IGNORECASE)
 _LICENSE = re.compile(
     r"licensed under|SPDX-License-Identifier:|permission is hereby granted|redistribution and use|GNU \w* ?general",
@@ -40,19 +40,23 @@ def flake8(argv: Sequence[str] | None = None) -> int:
 
 def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str]]:
     """Run flake8 on a package, and return the exit status and one line per finding."""
-    parser = _parser("ament_flake8")
+    parser = _create_parser("ament_flake8")
     parser.add_argument("--config")
     parser.add_argument("--linelength", type=int)
     options = parser.parse_args(argv)
     if options.config:
         settings = [f"--config={options.config}"]
     else:
-        settings = ["--isolated", f"--extend-ignore={','.join(_UNCHECKED_STYLE)}", f"--max-line-length={_LINE_LENGTH}"]
+        settings = [
+            "--isolated",
+            f"--extend-ignore={','.join(_IGNORED_STYLE_RULES)}",
+            f"--max-line-length={_MAX_LINE_LENGTH}",
+        ]
         if find_spec("flake8_import_order") is not None:
             settings.append("--import-order-style=google")
     if options.linelength:
         settings.append(f"--max-line-length={options.linelength}")
-    return _run("flake8", settings, [path for path in _files(options) if path.suffix == ".py"])
+    return _run("flake8", settings, [path for path in _source_files(options) if path.suffix == ".py"])
 
 
 def pep257(argv: Sequence[str] | None = None) -> int:
@@ -61,7 +65,7 @@ def pep257(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: options and paths of the command ``ament_pep257``; None for the arguments of this process.
     """
-    parser = _parser("ament_pep257")
+    parser = _create_parser("ament_pep257")
     for name in ("--ignore", "--select", "--add-ignore", "--add-select"):
         parser.add_argument(name, nargs="+", default=[])
     parser.add_argument("--convention", default="ament")
@@ -69,11 +73,11 @@ def pep257(argv: Sequence[str] | None = None) -> int:
     if options.select:
         settings = [f"--select={','.join(options.select)}"]
     elif options.ignore or options.convention == "ament":
-        settings = [f"--ignore={','.join(options.ignore or _UNCHECKED_DOCSTRINGS)}"]
+        settings = [f"--ignore={','.join(options.ignore or _IGNORED_DOCSTRING_RULES)}"]
     else:
         settings = [f"--convention={options.convention}"]
-    settings += [f"--{name}={','.join(codes)}" for name, codes in _more_codes(options)]
-    return _run("pydocstyle", settings, [path for path in _files(options) if path.suffix == ".py"])[0]
+    settings += [f"--{name}={','.join(codes)}" for name, codes in _additional_codes(options)]
+    return _run("pydocstyle", settings, [path for path in _source_files(options) if path.suffix == ".py"])[0]
 
 
 def copyright_headers(argv: Sequence[str] | None = None) -> int:
@@ -82,7 +86,11 @@ def copyright_headers(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: paths and options of the command ``ament_copyright``; None for the arguments of this process.
     """
-    files = [path for path in _files(_parser("ament_copyright").parse_args(argv)) if not _is_setup_of_package(path)]
+    files = [
+        path
+        for path in _source_files(_create_parser("ament_copyright").parse_args(argv))
+        if not _is_setup_of_package(path)
+    ]
     findings = []
     for path in files:
         header = path.read_text(encoding="utf-8", errors="replace")[:_HEADER_LENGTH]
@@ -94,34 +102,34 @@ def copyright_headers(argv: Sequence[str] | None = None) -> int:
     return int(bool(findings))
 
 
-def _parser(name: str) -> argparse.ArgumentParser:
+def _create_parser(name: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(name)
     parser.add_argument("paths", nargs="*", type=Path, default=[Path()])
     parser.add_argument("--exclude", nargs="*", type=Path, default=[])
     return parser
 
 
-def _more_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
+def _additional_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
     for name in ("add_ignore", "add_select"):
         if codes := getattr(options, name):
             yield name.replace("_", "-"), codes
 
 
-def _files(options: argparse.Namespace) -> list[Path]:
-    """Return the source files below the paths.
+def _source_files(options: argparse.Namespace) -> list[Path]:
+    """Return the source files in the paths of the options.
 
     Excluded files, hidden folders and folders with ``AMENT_IGNORE`` are skipped.
     """
-    excluded = {path.resolve() for path in options.exclude}
-    found: set[Path] = set()
-    for start in options.paths:
-        if start.is_file():
-            found.add(start)
-        for folder, folders, names in os.walk(start):
+    excluded_paths = {path.resolve() for path in options.exclude}
+    paths: set[Path] = set()
+    for root in options.paths:
+        if root.is_file():
+            paths.add(root)
+        for folder, folders, names in os.walk(root):
             folders[:] = [] if "AMENT_IGNORE" in names else [name for name in folders if name[0] not in "._"]
-            found.update(Path(folder, name) for name in names if "AMENT_IGNORE" not in names)
-    kept = (path for path in found if path.suffix in _SOURCES)
-    return sorted(path for path in kept if excluded.isdisjoint((path.resolve(), *path.resolve().parents)))
+            paths.update(Path(folder, name) for name in names if "AMENT_IGNORE" not in names)
+    source_paths = (path for path in paths if path.suffix in _SOURCE_SUFFIXES)
+    return sorted(path for path in source_paths if excluded_paths.isdisjoint((path.resolve(), *path.resolve().parents)))
 
 
 def _is_setup_of_package(path: Path) -> bool:
@@ -131,18 +139,18 @@ def _is_setup_of_package(path: Path) -> bool:
 def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[int, list[str]]:
     """Run a linter on files, and return the exit status and the lines of its output.
 
-    If the linter is not installed, the running test is skipped.
+    If the linter is not installed, skip the current test.
     """
     if not files:
         return 0, []
     if find_spec(module) is None:
         _skip(f"{module} is not installed beside pytest")
-    # The files belong to the user, and the user installed the program.
+    # Running this command is safe: the files belong to the user, and the user installed the program.
     command = [sys.executable, "-m", module, *settings, *map(str, files)]
-    ended = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)  # noqa: S603
-    print(ended.stdout, end="")
-    print(ended.stderr, end="", file=sys.stderr)
-    return int(ended.returncode != 0), ended.stdout.splitlines()
+    completed = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)  # noqa: S603
+    print(completed.stdout, end="")
+    print(completed.stderr, end="", file=sys.stderr)
+    return int(completed.returncode != 0), completed.stdout.splitlines()
 
 
 def _skip(reason: str) -> None:

@@ -14,7 +14,7 @@ from linkwright.graph.time.clock import ROSClock
 from linkwright.graph.time.values import Duration, Time
 from linkwright.standins.rclpy_api.logging import get_logger
 
-_HEADERLESS = (
+_HEADERLESS_WARNING = (
     "can not use message filters messages without timestamp infomation when 'allow_headerless' is disabled. "
     "auto assign ROSTIME to headerless messages once enabling constructor option of 'allow_headerless'."
 )
@@ -48,7 +48,7 @@ class SimpleFilter:
 
 
 class Subscriber(SimpleFilter):
-    """A subscription as the first filter of a chain, with the attributes of the subscription.
+    """The first filter of a chain, which subscribes to a topic and also has the attributes of the subscription.
 
     Args:
         node: the node that subscribes.
@@ -101,7 +101,7 @@ class Cache(SimpleFilter):
 
     def add(self, msg: Any) -> None:
         """Add a message, and drop the oldest one if the cache is full."""
-        stamp = _time_of(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
+        stamp = _message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
         if stamp is None:
             return
         self.cache_msgs.append(msg)
@@ -170,9 +170,9 @@ class TimeSynchronizer(SimpleFilter):
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
         """Add a message of one of the filters, and output a set if the message completes one."""
         with self.lock:
-            self._store(msg, my_queue, _time(msg.header.stamp).nanoseconds)
-            common = set(self.queues[0]).intersection(*self.queues[1:])
-            matches = [[queue.pop(stamp) for queue in self.queues] for stamp in sorted(common)]
+            self._store(msg, my_queue, _to_time(msg.header.stamp).nanoseconds)
+            common_stamps = set(self.queues[0]).intersection(*self.queues[1:])
+            matches = [[queue.pop(stamp) for queue in self.queues] for stamp in sorted(common_stamps)]
         for match in matches:
             self.signalMessage(*match)
 
@@ -211,7 +211,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if self.sync_arrival_time:
             time: Time | None = ROSClock().now()
         else:
-            time = _time_of(msg, allow_headerless=self.allow_headerless, logger="message_filters_approx")
+            time = _message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_approx")
         if time is None:
             return
         with self.lock:
@@ -221,17 +221,19 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if match is not None:
             self.signalMessage(*match)
 
-    def _match(self, stamp: int, own: int | None) -> tuple[int, ...] | None:
+    def _match(self, stamp: int, own_index: int | None) -> tuple[int, ...] | None:
         """Return the stamps of the messages that match a new message, in the order of the filters.
 
         The result is None if a filter has no matching message.
         """
         slop = self.slop.nanoseconds
-        choices = []
+        candidates_by_filter = []
         for index, queue in enumerate(self.queues):
-            near = [stamp] if index == own else [candidate for candidate in queue if abs(candidate - stamp) <= slop]
-            choices.append(sorted(near, key=lambda candidate: abs(candidate - stamp)))
-        for stamps in itertools.product(*choices):
+            close_stamps = (
+                [stamp] if index == own_index else [candidate for candidate in queue if abs(candidate - stamp) <= slop]
+            )
+            candidates_by_filter.append(sorted(close_stamps, key=lambda candidate: abs(candidate - stamp)))
+        for stamps in itertools.product(*candidates_by_filter):
             if max(stamps) - min(stamps) < slop and all(
                 candidate in queue for candidate, queue in zip(stamps, self.queues, strict=True)
             ):
@@ -239,19 +241,19 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return None
 
 
-def _time_of(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
+def _message_time(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
     """Return the stamp of a message, or its time of arrival if `allow_headerless` is set.
 
     If neither is available, a warning is logged and the result is None.
     """
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
     if stamp is not None:
-        return _time(stamp)
+        return _to_time(stamp)
     if allow_headerless:
         return ROSClock().now()
-    get_logger(logger).warning(_HEADERLESS)
+    get_logger(logger).warning(_HEADERLESS_WARNING)
     return None
 
 
-def _time(stamp: Any) -> Time:
+def _to_time(stamp: Any) -> Time:
     return stamp if isinstance(stamp, Time) else Time.from_msg(stamp)

@@ -24,22 +24,22 @@ FOLDER = str(table.FOLDER)
 
 def install() -> None:
     """Make Python find the modules of `FOLDER`; may be called repeatedly."""
-    if _finder_of not in sys.path_hooks:
-        sys.path_hooks.insert(0, _finder_of)
+    if _finder_for_path not in sys.path_hooks:
+        sys.path_hooks.insert(0, _finder_for_path)
         for path in [path for path in sys.path_importer_cache if path.startswith(FOLDER)]:
             del sys.path_importer_cache[path]
 
 
 def find_spec(name: str) -> ModuleSpec | None:
     """Return the spec of a module, or None if no table describes the module."""
-    found = table.find(name)
-    if found is None:
+    module_entries = table.find(name)
+    if module_entries is None:
         return None
     spec = ModuleSpec(
         name,
-        _Loader(found),  # type: ignore[arg-type]  # a loader by its methods: the class takes long to import
+        _Loader(module_entries),  # type: ignore[arg-type]  # a loader by its methods: the class takes long to import
         origin=str(table.FOLDER / f"{name.partition('.')[0]}.txt"),
-        is_package=bool(found.submodules) or "." not in name,
+        is_package=bool(module_entries.submodules) or "." not in name,
     )
     spec.has_location = True
     if spec.submodule_search_locations is not None:
@@ -52,7 +52,7 @@ def is_ours(module: ModuleType | None) -> bool:
     return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
 
 
-def _finder_of(path: str) -> _Finder:
+def _finder_for_path(path: str) -> _Finder:
     """Return the finder for an entry of ``sys.path``, as a path hook of Python.
 
     Raises:
@@ -75,21 +75,21 @@ class _Finder:
 
     def iter_modules(self, prefix: str = "") -> Iterator[tuple[str, bool]]:
         """Yield the name of each module and whether it is a package, for `pkgutil`."""
-        found = table.find(self._package)
-        names = table.packages() if found is None else found.submodules
+        package_entries = table.find(self._package)
+        names = table.packages() if package_entries is None else package_entries.submodules
         for name in names:
-            below = table.find(f"{self._package}.{name}" if self._package else name)
-            yield prefix + name, bool(below and below.submodules) or not self._package
+            submodule_entries = table.find(f"{self._package}.{name}" if self._package else name)
+            yield prefix + name, bool(submodule_entries and submodule_entries.submodules) or not self._package
 
 
 class _Loader:
     """Creates a module that imports its names on first use."""
 
-    def __init__(self, described: table.Module) -> None:
-        self._described = described
+    def __init__(self, entries: table.Module) -> None:
+        self._described = entries
 
     def homes(self, name: str) -> list[str]:
-        """Return the modules that provide a name, for the error message if another module lacks it."""
+        """Return the modules that provide a name, for the error message when it is imported from another module."""
         return table.modules_providing(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
@@ -98,33 +98,33 @@ class _Loader:
 
     def exec_module(self, module: ModuleType) -> None:
         """Fill the module with functions that import its names on first use."""
-        described = self._described
-        module.__doc__ = f"A stand-in for ``{described.name}``."
-        names = {**dict.fromkeys(described.names), **dict.fromkeys(described.submodules)}
+        entries = self._described
+        module.__doc__ = f"A stand-in for ``{entries.name}``."
+        names = {**dict.fromkeys(entries.names), **dict.fromkeys(entries.submodules)}
 
         def look_up(name: str) -> Any:
-            if name in described.names:
-                value = value_of(described, name)
-            elif name in described.submodules:
-                value = importlib.import_module(f"{described.name}.{name}")
-            elif described.others:
-                origin, _, function = described.others.rpartition(".")
+            if name in entries.names:
+                value = value_of(entries, name)
+            elif name in entries.submodules:
+                value = importlib.import_module(f"{entries.name}.{name}")
+            elif entries.others:
+                origin, _, function = entries.others.rpartition(".")
                 return getattr(importlib.import_module(origin), function)(name)
             else:
-                raise AttributeError(f"module '{described.name}' has no attribute '{name}'", name=name, obj=module)
+                raise AttributeError(f"module '{entries.name}' has no attribute '{name}'", name=name, obj=module)
             setattr(module, name, value)
             return value
 
         own_names = {"__getattr__": look_up, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
-        vars(module).update(own_names, __all__=described.public)
-        for name in described.submodules:
-            if name in described.names and described.names[name].origin != table.IMPORT:
-                # If a function has the name of its submodule, import the submodule first. Otherwise a later import of
-                # the submodule would replace the function with the module.
-                importlib.import_module(f"{described.name}.{name}")
-                setattr(module, name, value_of(described, name))
-        if described.setup:
-            origin, _, function = described.setup.rpartition(".")
+        vars(module).update(own_names, __all__=entries.public)
+        for name in entries.submodules:
+            if name in entries.names and entries.names[name].origin != table.IMPORT:
+                # If a function has the name of its submodule, import the submodule first. If not, a later import of the
+                # submodule would replace the function with the module.
+                importlib.import_module(f"{entries.name}.{name}")
+                setattr(module, name, value_of(entries, name))
+        if entries.setup:
+            origin, _, function = entries.setup.rpartition(".")
             getattr(importlib.import_module(origin), function)()
 
 
@@ -135,10 +135,10 @@ def value_of(module: table.Module, name: str) -> Any:
         ImportError: the module that defines the name cannot be imported.
         AttributeError: that module does not define the name.
     """
-    found = module.names[name]
-    if found.origin == table.IMPORT:
-        inside = found.name in module.submodules
-        return importlib.import_module(f"{module.name}.{found.name}" if inside else found.name)
-    if found.origin == table.VALUE:
-        return literal_eval(found.name)
-    return getattr(importlib.import_module(found.origin), found.name)
+    entry = module.names[name]
+    if entry.origin == table.IMPORT:
+        is_submodule = entry.name in module.submodules
+        return importlib.import_module(f"{module.name}.{entry.name}" if is_submodule else entry.name)
+    if entry.origin == table.VALUE:
+        return literal_eval(entry.name)
+    return getattr(importlib.import_module(entry.origin), entry.name)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from linkwright.messages import get_message
 
-_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-"""numpy's names of the constants of sensor_msgs/msg/PointField."""
+_NUMPY_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+"""numpy's type names by the datatype constants of sensor_msgs/msg/PointField."""
 
 _FLOAT32 = 7
 
@@ -21,22 +21,22 @@ _FLOAT32 = 7
 def dtype_from_fields(
     fields: Iterable[Any], point_step: int | None = None, *, is_bigendian: bool = False
 ) -> np.dtype[Any]:
-    """Return the structured numpy type of a point.
+    """Return the structured numpy type for one point.
 
     Args:
-        fields: the fields of a point (sensor_msgs/msg/PointField). A field with a count of n becomes n fields.
+        fields: the fields of a point (sensor_msgs/msg/PointField); a field with count n > 1 becomes n fields.
         point_step: the distance between two points, in bytes; None for the size of the fields.
         is_bigendian: whether numbers are big-endian.
     """
     order = ">" if is_bigendian else "<"
     names, formats, offsets = [], [], []
     for index, field in enumerate(fields):
-        format_ = np.dtype(order + _TYPES[field.datatype])
+        format_ = np.dtype(order + _NUMPY_TYPES[field.datatype])
         name = field.name or f"unnamed_field_{index}"
-        for part in range(field.count):
-            names.append(name if field.count == 1 else f"{name}_{part}")
+        for component in range(field.count):
+            names.append(name if field.count == 1 else f"{name}_{component}")
             formats.append(format_)
-            offsets.append(field.offset + part * format_.itemsize)
+            offsets.append(field.offset + component * format_.itemsize)
     layout: Any = {"names": names, "formats": formats, "offsets": offsets}
     if point_step is not None:
         layout["itemsize"] = point_step
@@ -58,22 +58,22 @@ def read_points(
         field_names: the fields to read; None for all.
         skip_nans: whether to skip points with NaN in one of the fields.
         uvs: the points to read, as indices or as pairs of column and row; None for all.
-        reshape_organized_cloud: whether to return an array of width by height for an organized cloud.
+        reshape_organized_cloud: whether to return an array of shape (width, height) for an organized cloud.
 
     Raises:
         AssertionError: the cloud lacks one of the fields.
     """
     dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
-    points: NDArray[Any] = _rows(cloud, dtype)
+    points: NDArray[Any] = _flat_points(cloud, dtype)
     if field_names is not None:
-        missing = [name for name in field_names if name not in _names(dtype)]
+        missing = [name for name in field_names if name not in _field_names(dtype)]
         if missing:
-            raise AssertionError(f"the point cloud has no field {missing}; it has {list(_names(dtype))}")
+            raise AssertionError(f"the point cloud has no field {missing}; it has {list(_field_names(dtype))}")
         points = points[list(field_names)]
     if uvs is not None:
-        points = points[_numbers(uvs, cloud.width)]
+        points = points[_point_indices(uvs, cloud.width)]
     if skip_nans:
-        points = points[_has_numbers(points)]
+        points = points[_is_not_nan(points)]
     if reshape_organized_cloud and cloud.height > 1 and points.size == cloud.width * cloud.height:
         points = points.reshape(cloud.width, cloud.height)
     return points
@@ -92,7 +92,7 @@ def read_points_numpy(
         AssertionError: the fields have different types, or a field is missing.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
-    if len({points.dtype[name] for name in _names(points.dtype)}) > 1:
+    if len({points.dtype[name] for name in _field_names(points.dtype)}) > 1:
         raise AssertionError("the fields of the points are of several types: name those that are wanted")
     return structured_to_unstructured(points)
 
@@ -102,7 +102,7 @@ def read_points_list(
 ) -> list[Any]:
     """Return the points of a cloud as named tuples; see `read_points`."""
     points = read_points(cloud, field_names, skip_nans, uvs)
-    point = namedtuple("Point", _names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
+    point = namedtuple("Point", _field_names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
     return [point._make(values) for values in points.tolist()]
 
 
@@ -114,7 +114,7 @@ def create_cloud(
     Args:
         header: the stamp and frame of the cloud (std_msgs/msg/Header).
         fields: the fields of a point (sensor_msgs/msg/PointField).
-        points: rows with a value for each field, or a structured array; an array of width by height becomes an
+        points: rows with a value for each field, or a structured array; an array of shape (width, height) becomes an
             organized cloud.
         step: the distance between two points, in bytes; None for the size of the fields.
 
@@ -122,7 +122,7 @@ def create_cloud(
         AssertionError: the points do not have these fields.
     """
     dtype = dtype_from_fields(fields, step)
-    rows = _structured(points, dtype)
+    rows = _as_structured(points, dtype)
     if rows.ndim > 2:
         raise AssertionError("points have a width and a height at most")
     width, height = rows.shape[0], rows.shape[1] if rows.ndim == 2 else 1
@@ -143,16 +143,16 @@ def create_cloud(
 def create_cloud_xyz32(header: Any, points: Iterable[Any] | NDArray[Any], step: int | None = None) -> Any:
     """Create a point cloud with x, y and z as float32; see `create_cloud`."""
     field = get_message("sensor_msgs/msg/PointField")
-    fields = [field(name=name, offset=4 * at, datatype=_FLOAT32, count=1) for at, name in enumerate("xyz")]
+    fields = [field(name=name, offset=4 * index, datatype=_FLOAT32, count=1) for index, name in enumerate("xyz")]
     return create_cloud(header, fields, points, step)
 
 
-def _names(dtype: np.dtype[Any]) -> tuple[str, ...]:
+def _field_names(dtype: np.dtype[Any]) -> tuple[str, ...]:
     return dtype.names or ()
 
 
-def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return the points of a cloud as a flat array, without the padding at the ends of rows."""
+def _flat_points(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Return the points of a cloud as a one-dimensional array, without the padding at the ends of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
     if height > 1 and cloud.row_step > width * dtype.itemsize:
@@ -161,35 +161,37 @@ def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
     return np.frombuffer(data, dtype, count=width * height)
 
 
-def _numbers(uvs: Iterable[Any], width: int) -> NDArray[np.intp]:
-    wanted = np.array(list(uvs), dtype=np.intp)
-    return wanted[:, 1] * width + wanted[:, 0] if wanted.ndim == 2 else wanted
+def _point_indices(uvs: Iterable[Any], width: int) -> NDArray[np.intp]:
+    indices = np.array(list(uvs), dtype=np.intp)
+    return indices[:, 1] * width + indices[:, 0] if indices.ndim == 2 else indices
 
 
-def _has_numbers(points: NDArray[Any]) -> NDArray[np.bool_]:
-    valid = np.ones(points.shape, np.bool_)
-    for name in _names(points.dtype):
+def _is_not_nan(points: NDArray[Any]) -> NDArray[np.bool_]:
+    is_valid = np.ones(points.shape, np.bool_)
+    for name in _field_names(points.dtype):
         if points.dtype[name].kind == "f":
-            valid &= ~np.isnan(points[name])
-    return valid
+            is_valid &= ~np.isnan(points[name])
+    return is_valid
 
 
-def _structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+def _as_structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
     if not isinstance(points, np.ndarray):
-        return _filled([tuple(point) for point in points], dtype)
+        return _without_gaps([tuple(point) for point in points], dtype)
     if points.dtype.names is None:
-        if points.shape[-1] != len(_names(dtype)):
-            raise AssertionError(f"points have {points.shape[-1]} values, but there are {len(_names(dtype))} fields")
-        return _filled(unstructured_to_structured(points, dtype), dtype)
-    if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _names(dtype)):
+        if points.shape[-1] != len(_field_names(dtype)):
+            raise AssertionError(
+                f"points have {points.shape[-1]} values, but there are {len(_field_names(dtype))} fields"
+            )
+        return _without_gaps(unstructured_to_structured(points, dtype), dtype)
+    if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _field_names(dtype)):
         raise AssertionError(f"points are {points.dtype}, but the fields say {dtype}")
-    return _filled(points, dtype)
+    return _without_gaps(points, dtype)
 
 
-def _filled(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Convert points to a structured array whose gaps between fields are zero.
+def _without_gaps(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Convert points to a structured array with zeros in the gaps between fields.
 
-    numpy does not initialise these gaps.
+    numpy does not initialise these gaps itself.
     """
     rows = np.zeros(np.shape(points)[:1] if isinstance(points, list) else points.shape, dtype)
     rows[...] = points

@@ -1,4 +1,4 @@
-"""Commands and environments for users' programs, in which ``import rclpy`` finds our module.
+"""Commands and environments for users' programs, in which ``import rclpy`` imports the stand-in.
 
 An installed rclpy takes precedence.
 """
@@ -14,9 +14,9 @@ from pathlib import Path
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.standins import table
 
-_STARTUP = Path(__file__).parent / "startup"
+_STARTUP_FOLDER = Path(__file__).parent / "startup"
 
-_NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh", "xxhash")
+_REQUIRED_PACKAGES = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh", "xxhash")
 """The packages that the stand-ins import, for programs in another environment."""
 
 
@@ -26,7 +26,7 @@ def standin_path() -> str:
     The folder contains only ``linkwright_pytest``, which pytest loads, and a ``sitecustomize``, which also runs the
     next ``sitecustomize`` on the path.
     """
-    return str(_STARTUP)
+    return str(_STARTUP_FOLDER)
 
 
 def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -39,11 +39,10 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
         A copy with `standin_path` first on ``PYTHONPATH``. ``LINKWRIGHT_SITE`` names the folders of the packages that
         the stand-ins need, for interpreters that do not have these packages. Applying this function to its
         result changes nothing. Source folders of a package that has a stand-in, such as a clone of rclpy in the
-        workspace, are removed
-        unless the user added them: they are not built, and would hide the stand-in.
+        workspace, are removed unless the user added them, because unbuilt sources would hide the stand-in.
     """
     result = dict(os.environ if base is None else base)
-    _leave_out_hiding_sources(result)
+    _remove_hiding_sources(result)
     _prepend(result, "PYTHONPATH", [standin_path()])
     result["LINKWRIGHT_SITE"] = os.pathsep.join(_site_folders())
     return result
@@ -57,31 +56,33 @@ def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = No
         base: the environment of the program; None for the environment of this process.
 
     Returns:
-        The interpreter, followed by the arguments. The interpreter of the active virtual environment is used if it has
-        the same Python version as ours, because the stand-ins need compiled libraries that are built for one version.
-        Otherwise our interpreter is used.
+        The interpreter, followed by the arguments. It is the interpreter of the active virtual environment if that has
+        the Python version of this process, because the compiled libraries of the stand-ins are built for one version.
+        If not, it is the interpreter of this process.
     """
     variables = os.environ if base is None else base
     return [_interpreter(variables), *arguments]
 
 
 def _interpreter(variables: Mapping[str, str]) -> str:
-    active = variables.get("VIRTUAL_ENV") or variables.get("CONDA_PREFIX")
-    if active and Path(active) != Path(sys.prefix):
+    active_environment = variables.get("VIRTUAL_ENV") or variables.get("CONDA_PREFIX")
+    if active_environment and Path(active_environment) != Path(sys.prefix):
         version = f"python{sys.version_info.major}.{sys.version_info.minor}"
         folder, suffix = ("Scripts", ".exe") if os.name == "nt" else ("bin", "")
-        candidate = Path(active) / folder / f"{version}{suffix}"
+        candidate = Path(active_environment) / folder / f"{version}{suffix}"
         if candidate.exists():
             return str(candidate)
     return sys.executable
 
 
-def _leave_out_hiding_sources(variables: dict[str, str]) -> None:
-    wanted = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+def _remove_hiding_sources(variables: dict[str, str]) -> None:
+    user_entries = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     entries = variables.get("PYTHONPATH", "").split(os.pathsep)
-    hiding = [entry for entry in entries if entry and entry not in wanted and _hides_stand_in(Path(entry))]
-    if hiding:
-        variables["PYTHONPATH"] = os.pathsep.join(entry for entry in entries if entry not in hiding)
+    hiding_entries = [
+        entry for entry in entries if entry and entry not in user_entries and _hides_stand_in(Path(entry))
+    ]
+    if hiding_entries:
+        variables["PYTHONPATH"] = os.pathsep.join(entry for entry in entries if entry not in hiding_entries)
 
 
 def _hides_stand_in(folder: Path) -> bool:
@@ -90,13 +91,13 @@ def _hides_stand_in(folder: Path) -> bool:
 
 
 def _prepend(variables: dict[str, str], name: str, folders: Sequence[str]) -> None:
-    present = [entry for entry in variables.get(name, "").split(os.pathsep) if entry and entry not in folders]
-    variables[name] = os.pathsep.join([*folders, *present])
+    existing = [entry for entry in variables.get(name, "").split(os.pathsep) if entry and entry not in folders]
+    variables[name] = os.pathsep.join([*folders, *existing])
 
 
 def _site_folders() -> list[str]:
     folders: list[str] = []
-    for package in _NEEDED:
+    for package in _REQUIRED_PACKAGES:
         spec = find_spec(package)
         if spec is not None and spec.origin is not None:
             folder = str(Path(spec.origin).parent.parent)

@@ -18,7 +18,7 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass(slots=True)
 class StorageOptions:
-    """The location and the storage format of a recording, and how to split it into files."""
+    """Where and in which format a recording is stored, and when it is split into files."""
 
     uri: str
     storage_id: str = ""
@@ -43,7 +43,7 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """A filter that selects topics by name and by regular expression, or all topics by default."""
+    """Selects topics by name and by regular expression; by default, all topics."""
 
     topics: list[str] = field(default_factory=list)
     topics_regex: str = ""
@@ -56,12 +56,14 @@ class StorageFilter:
 
     def admits(self, topic: str) -> bool:
         """Return whether the filter includes a topic."""
-        named, pattern = [*self.topics, *self.services_events], self.regex or self.topics_regex
-        wanted = not (named or pattern) or topic in named or bool(pattern and re.search(pattern, topic))
-        left_out = self.regex_to_exclude or self.topics_regex_to_exclude
+        selected_names, pattern = [*self.topics, *self.services_events], self.regex or self.topics_regex
+        is_selected = (
+            not (selected_names or pattern) or topic in selected_names or bool(pattern and re.search(pattern, topic))
+        )
+        exclude_pattern = self.regex_to_exclude or self.topics_regex_to_exclude
         if topic in self.exclude_topics or topic in self.exclude_service_events:
             return False
-        return wanted and not (left_out and re.search(left_out, topic))
+        return is_selected and not (exclude_pattern and re.search(exclude_pattern, topic))
 
 
 class ReadOrderSortBy(enum.Enum):
@@ -94,8 +96,8 @@ class MessageDefinition:
 class TopicMetadata:
     """The metadata of a topic in a recording.
 
-    Pass all arguments except the name by keyword: in Humble there is no ``id``, and the QoS profiles are one string
-    instead of a list.
+    Programs should pass all arguments except the name by keyword: Humble has no ``id``, and a string instead of a list
+    of QoS profiles.
     """
 
     id: int = 0
@@ -109,15 +111,15 @@ class TopicMetadata:
         names = ["id", "name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash"]
         if args and isinstance(args[0], str):
             names.remove("id")
-        given = dict(zip(names, args, strict=False)) | kwargs
-        unknown = given.keys() - {"id", *names}
-        if unknown or len(args) > len(names):
-            raise TypeError(f"TopicMetadata() got unexpected arguments: {', '.join(sorted(unknown)) or args}")
-        for name, value in given.items():
+        arguments = dict(zip(names, args, strict=False)) | kwargs
+        unexpected_names = arguments.keys() - {"id", *names}
+        if unexpected_names or len(args) > len(names):
+            raise TypeError(f"TopicMetadata() got unexpected arguments: {', '.join(sorted(unexpected_names)) or args}")
+        for name, value in arguments.items():
             setattr(self, name, value)
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Return whether the metadata of two topics are equal."""
+        """Return whether the metadata of another topic are equal."""
         return self == other
 
 
@@ -129,13 +131,13 @@ class TopicInformation:
     message_count: int
 
 
-def _at(stamp_ns: int) -> Time:
+def _time_at(stamp_ns: int) -> Time:
     return Time(nanoseconds=stamp_ns, clock_type=ClockType.SYSTEM_TIME)
 
 
 @dataclass(slots=True)
 class FileInformation:
-    """A file of a recording."""
+    """The time range and the number of messages of one file of a recording."""
 
     path: str
     starting_time: Time
@@ -153,7 +155,7 @@ class BagMetadata:
     relative_file_paths: list[str] = field(default_factory=list)
     files: list[FileInformation] = field(default_factory=list)
     duration: Duration = field(default_factory=Duration)
-    starting_time: Time = field(default_factory=lambda: _at(0))
+    starting_time: Time = field(default_factory=lambda: _time_at(0))
     message_count: int = 0
     topics_with_message_count: list[TopicInformation] = field(default_factory=list)
     compression_format: str = ""
@@ -166,10 +168,14 @@ class BagMetadata:
         start = self.starting_time.nanoseconds
         topics = [
             BagTopic(
-                topic_metadata.name, topic_metadata.type, counted.message_count, topic_metadata.serialization_format, ()
+                topic_metadata.name,
+                topic_metadata.type,
+                information.message_count,
+                topic_metadata.serialization_format,
+                (),
             )
-            for counted in self.topics_with_message_count
-            for topic_metadata in [counted.topic_metadata]
+            for information in self.topics_with_message_count
+            for topic_metadata in [information.topic_metadata]
         ]
         end = start + self.duration.nanoseconds
         return layout(self.relative_file_paths, self.bag_size, self.storage_identifier, (start, end), topics)
@@ -194,23 +200,23 @@ class MetadataIo:
 
         folder = Path(uri)
         try:
-            found = _metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
+            metadata = _metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
         except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
             raise RuntimeError(f"Exception on parsing info file: {error}") from error
-        found.bag_size = sum(path.stat().st_size for path in folder.iterdir() if path.is_file())
-        return found
+        metadata.bag_size = sum(path.stat().st_size for path in folder.iterdir() if path.is_file())
+        return metadata
 
     def write_metadata(self, uri: str, metadata: BagMetadata) -> None:
         """Write ``metadata.yaml`` into a folder."""
         from linkwright.bag.parts import write_information
 
-        write_information(Path(uri), _information(metadata))
+        write_information(Path(uri), _metadata_as_yaml(metadata))
 
     def serialize_metadata(self, metadata: BagMetadata) -> str:
         """Return the contents of a ``metadata.yaml`` without the root key."""
         import yaml
 
-        return yaml.safe_dump(_information(metadata), sort_keys=False, allow_unicode=True)
+        return yaml.safe_dump(_metadata_as_yaml(metadata), sort_keys=False, allow_unicode=True)
 
     def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
         """Parse the output of `serialize_metadata`.
@@ -227,7 +233,7 @@ class MetadataIo:
 
 
 def get_default_storage_id() -> str:
-    """Return the name of the storage format that new recordings have by default."""
+    """Return the default storage format of new recordings."""
     return STORAGES[0]
 
 
@@ -237,59 +243,60 @@ def to_rclcpp_qos_vector(serialized: str, version: int) -> list[QoSProfile]:  # 
 
 
 def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
-    """Return the profile unchanged, because the profiles of recordings are already rclpy profiles."""
+    """Return the profile unchanged, because recordings already have rclpy profiles."""
     return qos_input
 
 
-def _metadata(found: Mapping[str, Any]) -> BagMetadata:
-    """Return the metadata for a parsed ``metadata.yaml``, with defaults for keys that old versions lack."""
+def _metadata(content: Mapping[str, Any]) -> BagMetadata:
+    """Return the metadata from a parsed ``metadata.yaml``, with defaults for keys that older versions lack."""
     topics = []
-    for entry in found["topics_with_message_count"]:
-        known = dict(entry["topic_metadata"])
-        known["offered_qos_profiles"] = from_text(known.get("offered_qos_profiles", ""))
-        topics.append(TopicInformation(TopicMetadata(**known), entry["message_count"]))
+    for entry in content["topics_with_message_count"]:
+        arguments = dict(entry["topic_metadata"])
+        arguments["offered_qos_profiles"] = from_text(arguments.get("offered_qos_profiles", ""))
+        topics.append(TopicInformation(TopicMetadata(**arguments), entry["message_count"]))
     files = [
-        FileInformation(entry["path"], *_span(entry), entry["message_count"]) for entry in found.get("files") or ()
+        FileInformation(entry["path"], *_time_range(entry), entry["message_count"])
+        for entry in content.get("files") or ()
     ]
-    starting_time, duration = _span(found)
+    starting_time, duration = _time_range(content)
     return BagMetadata(
-        version=found["version"],
-        storage_identifier=found["storage_identifier"],
-        relative_file_paths=list(found["relative_file_paths"]),
+        version=content["version"],
+        storage_identifier=content["storage_identifier"],
+        relative_file_paths=list(content["relative_file_paths"]),
         files=files,
         duration=duration,
         starting_time=starting_time,
-        message_count=found["message_count"],
+        message_count=content["message_count"],
         topics_with_message_count=topics,
-        compression_format=found.get("compression_format") or "",
-        compression_mode=found.get("compression_mode") or "",
-        custom_data=dict(found.get("custom_data") or {}),
-        ros_distro=found.get("ros_distro") or "",
+        compression_format=content.get("compression_format") or "",
+        compression_mode=content.get("compression_mode") or "",
+        custom_data=dict(content.get("custom_data") or {}),
+        ros_distro=content.get("ros_distro") or "",
     )
 
 
-def _span(found: Mapping[str, Any]) -> tuple[Time, Duration]:
-    start, duration = found["starting_time"]["nanoseconds_since_epoch"], found["duration"]["nanoseconds"]
-    return _at(start), Duration(nanoseconds=duration)
+def _time_range(entry: Mapping[str, Any]) -> tuple[Time, Duration]:
+    start, duration = entry["starting_time"]["nanoseconds_since_epoch"], entry["duration"]["nanoseconds"]
+    return _time_at(start), Duration(nanoseconds=duration)
 
 
-def _information(metadata: BagMetadata) -> dict[str, Any]:
+def _metadata_as_yaml(metadata: BagMetadata) -> dict[str, Any]:
     from linkwright.bag.parts import VERSION
 
-    def span(what: BagMetadata | FileInformation) -> dict[str, Any]:
+    def span(owner: BagMetadata | FileInformation) -> dict[str, Any]:
         return {
-            "starting_time": {"nanoseconds_since_epoch": what.starting_time.nanoseconds},
-            "duration": {"nanoseconds": what.duration.nanoseconds},
-            "message_count": what.message_count,
+            "starting_time": {"nanoseconds_since_epoch": owner.starting_time.nanoseconds},
+            "duration": {"nanoseconds": owner.duration.nanoseconds},
+            "message_count": owner.message_count,
         }
 
     topics = []
     for topic_information in metadata.topics_with_message_count:
-        known = asdict(topic_information.topic_metadata)
-        del known["id"]
+        topic_entry = asdict(topic_information.topic_metadata)
+        del topic_entry["id"]
         profiles = topic_information.topic_metadata.offered_qos_profiles
-        known["offered_qos_profiles"] = profiles if isinstance(profiles, str) else to_text(profiles)
-        topics.append({"topic_metadata": known, "message_count": topic_information.message_count})
+        topic_entry["offered_qos_profiles"] = profiles if isinstance(profiles, str) else to_text(profiles)
+        topics.append({"topic_metadata": topic_entry, "message_count": topic_information.message_count})
     return {
         "version": VERSION,
         "storage_identifier": metadata.storage_identifier,

@@ -28,11 +28,11 @@ from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.recording_storage import StorageOptions
 from linkwright.standins.recordings import writer_for
 
-_LOOK_SECONDS = 0.1
+_POLL_SECONDS = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
-    """The introspection events from which playback takes service requests: service or client events."""
+    """Whether playback takes service requests from the introspection events of services or of clients."""
 
     SERVICE_INTROSPECTION = 0
     CLIENT_INTROSPECTION = 1
@@ -100,30 +100,30 @@ class RecordOptions:
     use_sim_time: bool = False
     disable_keyboard_controls: bool = False
     all: bool = False
-    """Humble's name of `all_topics`."""
+    """The name of `all_topics` in Humble."""
     exclude: str = ""
-    """Humble's name of `exclude_regex`."""
+    """The name of `exclude_regex` in Humble."""
 
     @property
     def selection(self) -> TopicSelection:
         """The selection of topics; as in ``ros2bag``, a service is selected by its event topic."""
         return TopicSelection(
             everything=self.all_topics or self.all,
-            names=_absolute(self.topics),
+            names=_absolute_names(self.topics),
             types=self.topic_types,
             pattern=self.regex,
-            without_names=_absolute(self.exclude_topics),
+            without_names=_absolute_names(self.exclude_topics),
             without_types=self.exclude_topic_types,
             without_pattern=self.exclude_regex or self.exclude,
             hidden=self.include_hidden_topics,
             every_service=self.all_services,
-            services=_services(self.services),
-            without_services=_services(self.exclude_service_events),
+            services=_service_names(self.services),
+            without_services=_service_names(self.exclude_service_events),
         )
 
 
 class _Transport:
-    """The base class of recorders and players, which run a node in a context of their own."""
+    """The base class of recorders and players, each of which runs a node in a separate context."""
 
     _cancelled: ClassVar[threading.Event]
 
@@ -131,7 +131,7 @@ class _Transport:
         cls._cancelled = threading.Event()
 
     def __init__(self, log_level: str = "info") -> None:
-        """Prepare a run with a log level.
+        """Create a recorder or player with a log level.
 
         Raises:
             RuntimeError: there is no such level.
@@ -143,7 +143,7 @@ class _Transport:
 
     @classmethod
     def cancel(cls) -> None:
-        """Cancel the current run; may be called from any thread."""
+        """Cancel the current run, from any thread."""
         cls._cancelled.set()
 
     @contextmanager
@@ -165,7 +165,7 @@ class _Transport:
 
             def spin_until(is_done: Callable[[], bool]) -> None:
                 while not (is_done() or self._cancelled.is_set()) and context.ok():
-                    executor.spin_once(timeout_sec=_LOOK_SECONDS)
+                    executor.spin_once(timeout_sec=_POLL_SECONDS)
 
             yield node, spin_until
         except LinkwrightError as error:
@@ -226,15 +226,22 @@ class Player(_Transport):
         """
         self._play(storage_options, play_options, num_messages)
 
-    def _play(self, storage_options: StorageOptions, options: PlayOptions, burst: int | None) -> None:
-        rules = [word for rule in options.topic_remapping_options for word in _remapping(rule)]
-        with self._running("rosbag2_player", *rules) as (node, spin_until), BagReader(storage_options.uri) as bag:
-            player = _Playing(node, bag, _how_to_play(options, paused=options.start_paused or burst is not None))
+    def _play(self, storage_options: StorageOptions, options: PlayOptions, burst_count: int | None) -> None:
+        remapping_arguments = [
+            argument for rule in options.topic_remapping_options for argument in _remapping_arguments(rule)
+        ]
+        with (
+            self._running("rosbag2_player", *remapping_arguments) as (node, spin_until),
+            BagReader(storage_options.uri) as bag,
+        ):
+            player = _Playing(
+                node, bag, _bag_play_options(options, paused=options.start_paused or burst_count is not None)
+            )
             PlayerServices(node, player)
             try:
                 player.start()
-                if burst is not None:
-                    player.burst(burst)
+                if burst_count is not None:
+                    player.burst(burst_count)
                 spin_until(lambda: player.finished)
             finally:
                 player.close()
@@ -249,7 +256,7 @@ class Reindexer:
         """Rebuild the ``metadata.yaml`` of a recording from its files.
 
         Raises:
-            RuntimeError: the folder contains no files of a recording, or damaged ones.
+            RuntimeError: the folder contains no files of a recording, or a file is damaged.
         """
         try:
             reindex(Path(storage_options.uri))
@@ -258,7 +265,7 @@ class Reindexer:
 
 
 def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str) -> None:
-    """Rewrite recordings as a YAML file with the key ``output_bags`` requests.
+    """Rewrite recordings as the key ``output_bags`` of a YAML file specifies.
 
     Raises:
         RuntimeError: a recording cannot be read or created, or the structure of the file is invalid.
@@ -271,16 +278,16 @@ def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str
         raise RuntimeError(str(error)) from error
 
 
-def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
+def _bag_play_options(options: PlayOptions, *, paused: bool) -> _HowToPlay:
     return _HowToPlay(
         rate=options.rate,
-        topics=_absolute(options.topics_to_filter),
-        without=[*_absolute(options.exclude_topics_to_filter), *options.exclude_service_events_to_filter],
+        topics=_absolute_names(options.topics_to_filter),
+        without=[*_absolute_names(options.exclude_topics_to_filter), *options.exclude_service_events_to_filter],
         pattern=options.regex_to_filter,
         without_pattern=options.exclude_regex_to_filter,
         loop=options.loop,
         clock_hz=options.clock_publish_frequency,
-        clock_topics=_absolute(options.clock_topics),
+        clock_topics=_absolute_names(options.clock_topics),
         clock_before_all=options.clock_publish_on_topic_publish and not options.clock_topics,
         delay=options.delay,
         start_offset=options.start_offset,
@@ -291,17 +298,17 @@ def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
     )
 
 
-def _remapping(rule: str) -> list[str]:
+def _remapping_arguments(rule: str) -> list[str]:
     """Convert a remapping option to command-line arguments.
 
-    ``--ros-args`` and ``--remap``, which rosbag2 also accepts in the option, are dropped.
+    ``--ros-args`` and ``--remap``, which rosbag2 also accepts in this option, are ignored.
     """
     return [] if rule.startswith("-") else ["--remap", rule]
 
 
-def _absolute(names: Sequence[str]) -> list[str]:
+def _absolute_names(names: Sequence[str]) -> list[str]:
     return [f"/{name.lstrip('/')}" for name in names]
 
 
-def _services(topics: Sequence[str]) -> list[str]:
-    return [name.removesuffix(EVENT_TOPIC_SUFFIX) for name in _absolute(topics)]
+def _service_names(topics: Sequence[str]) -> list[str]:
+    return [name.removesuffix(EVENT_TOPIC_SUFFIX) for name in _absolute_names(topics)]

@@ -30,8 +30,8 @@ from linkwright.standins.recording_storage import (
 
 _Message = tuple[str, int, bytes]
 
-_STEP_NS = NANOSECONDS_PER_SECOND
-"""The size of a block when messages are read backwards."""
+_BLOCK_NS = NANOSECONDS_PER_SECOND
+"""The duration in nanoseconds of the block that is loaded at a time when messages are read backwards."""
 
 
 class CompressionMode(enum.Enum):
@@ -228,12 +228,12 @@ def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> 
 
     If `last_ns` is None, begin at the end of the recording.
     """
-    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _STEP_NS
+    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _BLOCK_NS
     while stop_ns > bag.start_ns:
         found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
         yield from reversed(found)
         stop_ns -= step_ns
-        step_ns = _STEP_NS if found else 2 * step_ns
+        step_ns = _BLOCK_NS if found else 2 * step_ns
 
 
 def _files(bag: BagReader) -> list[FileInformation]:

@@ -1,4 +1,4 @@
-"""The parts of ros2cli's packages that programs use: ``ros2pkg.api`` and ``ros2topic.api``."""
+"""The functions of ros2cli's packages that programs use, from ``ros2pkg.api`` and ``ros2topic.api``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _POLL_SECONDS = 0.1
 
 
 class PackageNotFound(Exception):
-    """Raised when there is no such package."""
+    """Raised when a package does not exist."""
 
     def __init__(self, package_name: str) -> None:
         super().__init__(package_name)
@@ -24,7 +24,7 @@ class PackageNotFound(Exception):
 
 
 def get_package_names() -> KeysView[str]:
-    """Return the names of all packages."""
+    """Return the names of all installed packages."""
     return get_packages_with_prefixes().keys()
 
 
@@ -37,7 +37,7 @@ def get_prefix_path(package_name: str) -> str | None:
 
 
 def get_executable_paths(*, package_name: str) -> list[str]:
-    """Return the paths of a package's executables, which are below ``lib`` in its prefix.
+    """Return the paths of a package's executables in the folder ``lib`` of its install prefix.
 
     Raises:
         PackageNotFound: there is no such package.
@@ -45,18 +45,18 @@ def get_executable_paths(*, package_name: str) -> list[str]:
     prefix = get_prefix_path(package_name)
     if prefix is None:
         raise PackageNotFound(package_name)
-    found: list[str] = []
-    for folder, inside, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - strings, as in ros2pkg
-        inside[:] = sorted(subfolder for subfolder in inside if not subfolder.startswith("."))
+    executables: list[str] = []
+    for folder, subfolders, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - strings, as in ros2pkg
+        subfolders[:] = sorted(subfolder for subfolder in subfolders if not subfolder.startswith("."))
         paths = (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118
-        found += [path for path in paths if os.access(path, os.X_OK)]
-    return found
+        executables += [path for path in paths if os.access(path, os.X_OK)]
+    return executables
 
 
 def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> list[tuple[str, list[str]]]:
     """Return the topics that a node has discovered, with their types."""
-    found: list[tuple[str, list[str]]] = node.get_topic_names_and_types()
-    return [topic for topic in found if include_hidden_topics or not topic_or_service_is_hidden(topic[0])]
+    topics: list[tuple[str, list[str]]] = node.get_topic_names_and_types()
+    return [topic for topic in topics if include_hidden_topics or not topic_or_service_is_hidden(topic[0])]
 
 
 def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[str]:
@@ -67,18 +67,18 @@ def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[s
 def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False) -> Any:
     """Return the message class of a topic.
 
-    If the topic does not have a type yet, wait for one if `blocking` is set, or else return None.
+    If the topic does not have a type yet, wait for one if `blocking` is True, and otherwise return None.
 
     Raises:
         RuntimeError: the name is invalid, or the topic has several types.
     """
-    found = _get_msg_class(node, topic, include_hidden_topics)
-    if found is None:
+    message_class = _get_msg_class(node, topic, include_hidden_topics)
+    if message_class is None:
         print(f"WARNING: topic [{topic}] does not appear to be published yet")
-    while found is None and blocking and ok():
+    while message_class is None and blocking and ok():
         time.sleep(_POLL_SECONDS)
-        found = _get_msg_class(node, topic, include_hidden_topics)
-    return found
+        message_class = _get_msg_class(node, topic, include_hidden_topics)
+    return message_class
 
 
 def _get_msg_class(node: Any, topic: str, include_hidden_topics: bool) -> Any:
@@ -92,8 +92,8 @@ def _get_msg_class(node: Any, topic: str, include_hidden_topics: bool) -> Any:
     if types is None:
         return None
     if len(types) > 1:
-        listed = ", ".join(types)
-        raise RuntimeError(f"Cannot echo topic '{topic}', as it contains more than one type: [{listed}]")
+        type_names = ", ".join(types)
+        raise RuntimeError(f"Cannot echo topic '{topic}', as it contains more than one type: [{type_names}]")
     return get_message(types[0])
 
 
@@ -104,7 +104,7 @@ def unsigned_int(string: str) -> int:
         ArgumentTypeError: the number is negative.
         ValueError: the string is not an integer.
     """
-    return _at_least(0, string, "value must be non-negative integer")
+    return _parse_bounded_int(0, string, "value must be non-negative integer")
 
 
 def positive_int(string: str) -> int:
@@ -114,13 +114,13 @@ def positive_int(string: str) -> int:
         ArgumentTypeError: the number is not positive.
         ValueError: the string is not an integer.
     """
-    return _at_least(1, string, "value must be a positive integer")
+    return _parse_bounded_int(1, string, "value must be a positive integer")
 
 
-def _at_least(least: int, string: str, problem: str) -> int:
+def _parse_bounded_int(minimum: int, string: str, error_message: str) -> int:
     from argparse import ArgumentTypeError
 
     value = int(string)
-    if value < least:
-        raise ArgumentTypeError(problem)
+    if value < minimum:
+        raise ArgumentTypeError(error_message)
     return value

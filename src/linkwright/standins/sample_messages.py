@@ -11,26 +11,30 @@ from linkwright.messages import Message, get_message
 _SEQUENCE = re.compile(r"sequence<(?P<item>[^,]+)(?:, (?P<bound>\d+))?>")
 _ARRAY = re.compile(r"(?P<item>.+)\[(?P<length>\d+)\]")
 _INTEGER = re.compile(r"(?P<sign>u?)int(?P<bits>\d+)")
-_REALS = {"float": (0.0, 1.125, -2.125), "double": (0.0, 1.125, -1.5e300)}
-_TEXTS = ("", "Hello world!", "¡Hola, 世界! ñ")
-_LENGTHS = (0, 2, 3)
-_KINDS = 3
+_FLOAT_VALUES = {"float": (0.0, 1.125, -2.125), "double": (0.0, 1.125, -1.5e300)}
+_TEXT_VALUES = ("", "Hello world!", "¡Hola, 世界! ñ")
+_SEQUENCE_LENGTHS = (0, 2, 3)
+_SAMPLE_COUNT = 3
 
 
 def samples(name: str) -> list[Message]:
-    """Return sample messages of a type of ``test_msgs``, with default, small and extreme values.
+    """Return three sample messages of a type of ``test_msgs``: with default, small and extreme values.
 
-    A type without fields has only one sample, the default.
+    For a type without fields, return only the default message.
 
     Args:
         name: the name of the type, such as ``BasicTypes``.
     """
     cls = get_message(f"test_msgs/msg/{name}")
     has_fields = bool(cls.get_fields_and_field_types())
-    return [cls(), *(_filled(cls, kind) for kind in range(1, _KINDS))] if has_fields else [cls()]
+    return (
+        [cls(), *(_filled_message(cls, sample_index) for sample_index in range(1, _SAMPLE_COUNT))]
+        if has_fields
+        else [cls()]
+    )
 
 
-def _filled(cls: type[Message], kind: int) -> Message:
+def _filled_message(cls: type[Message], kind: int) -> Message:
     message = cls()
     for field, type_name in cls.get_fields_and_field_types().items():
         setattr(message, field, _value(type_name, kind))
@@ -39,22 +43,22 @@ def _filled(cls: type[Message], kind: int) -> Message:
 
 def _value(type_name: str, kind: int) -> Any:
     if array := _ARRAY.fullmatch(type_name):
-        return [_value(array["item"], (kind + place) % _KINDS) for place in range(int(array["length"]))]
+        return [_value(array["item"], (kind + index) % _SAMPLE_COUNT) for index in range(int(array["length"]))]
     if sequence := _SEQUENCE.fullmatch(type_name):
-        return [_value(sequence["item"], place % _KINDS) for place in range(_LENGTHS[kind])]
+        return [_value(sequence["item"], place % _SAMPLE_COUNT) for place in range(_SEQUENCE_LENGTHS[kind])]
     if integer := _INTEGER.fullmatch(type_name):
         bits = int(integer["bits"])
         return (0, 23, 2**bits - 1 if integer["sign"] else -(2 ** (bits - 1)))[kind]
-    if type_name in _REALS:
-        return _REALS[type_name][kind]
+    if type_name in _FLOAT_VALUES:
+        return _FLOAT_VALUES[type_name][kind]
     if type_name.startswith(("string", "wstring")):
-        return _TEXTS[kind]
+        return _TEXT_VALUES[kind]
     if type_name == "boolean":
         return kind == 1
     if type_name == "octet":
         return bytes([(0, 23, 255)[kind]])
     package, _, name = type_name.partition("/")
-    return _filled(get_message(f"{package}/msg/{name}"), kind)
+    return _filled_message(get_message(f"{package}/msg/{name}"), kind)
 
 
 def get_test_msg(message_name: str) -> list[Message]:
@@ -63,12 +67,12 @@ def get_test_msg(message_name: str) -> list[Message]:
     Raises:
         ValueError: there is no such type.
     """
-    if message_name not in _FIXTURES:
-        raise ValueError(f"test_msgs has no samples of '{message_name}'; it has them of {', '.join(_FIXTURES)}")
+    if message_name not in _SAMPLED_TYPES:
+        raise ValueError(f"test_msgs has no samples of '{message_name}'; it has them of {', '.join(_SAMPLED_TYPES)}")
     return samples(message_name)
 
 
-_FIXTURES = (
+_SAMPLED_TYPES = (
     "Arrays",
     "BasicTypes",
     "BoundedSequences",

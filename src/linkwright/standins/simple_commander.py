@@ -1,4 +1,4 @@
-"""Sends goals to nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
+"""A node that sends goals to nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from linkwright.standins.rclpy_api.action import ActionClient
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.session import spin_once, spin_until_future_complete
 
-_WAIT = 1.0
+_LOG_PERIOD = 1.0
 """Seconds between log messages about a missing server."""
-_STEP = 0.1
-_ACTIVE = "active"
+_SPIN_TIMEOUT = 0.1
+_ACTIVE_STATE = "active"
 
 
 class TaskResult(Enum):
@@ -28,12 +28,12 @@ class TaskResult(Enum):
     FAILED = 3
 
 
-_RESULTS = {
+_RESULTS_BY_STATUS = {
     GoalStatus.SUCCEEDED: TaskResult.SUCCEEDED,
     GoalStatus.ABORTED: TaskResult.FAILED,
     GoalStatus.CANCELED: TaskResult.CANCELED,
 }
-_ACTIONS = {
+_ACTION_TYPES = {
     "navigate_to_pose": "NavigateToPose",
     "navigate_through_poses": "NavigateThroughPoses",
     "follow_waypoints": "FollowWaypoints",
@@ -108,11 +108,11 @@ class BasicNavigator(Node):
 
     def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
         """Drive straight back, in m and m/s; return whether the goal was accepted."""
-        return self._straight("backup", backup_dist, backup_speed, time_allowance)
+        return self._drive_straight("backup", backup_dist, backup_speed, time_allowance)
 
     def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
         """Drive straight ahead, in m and m/s; return whether the goal was accepted."""
-        return self._straight("drive_on_heading", dist, speed, time_allowance)
+        return self._drive_straight("drive_on_heading", dist, speed, time_allowance)
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
         """Allow teleoperation with collision avoidance; return whether the goal was accepted."""
@@ -132,11 +132,11 @@ class BasicNavigator(Node):
         """
         if self.result_future is None:
             return True
-        spin_until_future_complete(self, self.result_future, timeout_sec=_STEP)
-        answer = self.result_future.result() if self.result_future.done() else None
-        if answer is None:
+        spin_until_future_complete(self, self.result_future, timeout_sec=_SPIN_TIMEOUT)
+        response = self.result_future.result() if self.result_future.done() else None
+        if response is None:
             return False
-        self.status = answer.status
+        self.status = response.status
         if self.status != GoalStatus.SUCCEEDED:
             self.debug(f"Task with failed with status code: {self.status}")
         return True
@@ -147,7 +147,7 @@ class BasicNavigator(Node):
 
     def getResult(self) -> TaskResult:
         """Return the result of the task."""
-        return _RESULTS.get(GoalStatus(self.status or 0), TaskResult.UNKNOWN)
+        return _RESULTS_BY_STATUS.get(GoalStatus(self.status or 0), TaskResult.UNKNOWN)
 
     # --- waiting ------------------------------------------------------------------------------------------------------
 
@@ -169,28 +169,30 @@ class BasicNavigator(Node):
             The path (nav_msgs/Path), or None if planning failed.
         """
         request = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
-        return getattr(self._done("compute_path_to_pose", **request), "path", None)
+        return getattr(self._run_to_result("compute_path_to_pose", **request), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
         """Plan a path through several poses; see `getPath`."""
         request = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
-        return getattr(self._done("compute_path_through_poses", **request), "path", None)
+        return getattr(self._run_to_result("compute_path_through_poses", **request), "path", None)
 
     def smoothPath(
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
         """Return a smoothed path (nav_msgs/Path), or None if smoothing failed."""
         request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
-        return getattr(self._done("smooth_path", **request, check_for_collisions=check_for_collision), "path", None)
+        return getattr(
+            self._run_to_result("smooth_path", **request, check_for_collisions=check_for_collision), "path", None
+        )
 
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 
     def changeMap(self, map_filepath: str) -> bool:
         """Load another map; return whether the map was loaded."""
-        answer = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
-        if answer.result != answer.RESULT_SUCCESS:
+        response = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
+        if response.result != response.RESULT_SUCCESS:
             self.error("Change map request failed!")
-        return bool(answer.result == answer.RESULT_SUCCESS)
+        return bool(response.result == response.RESULT_SUCCESS)
 
     def clearAllCostmaps(self) -> None:
         """Clear the local and the global costmap."""
@@ -225,23 +227,23 @@ class BasicNavigator(Node):
 
     # --- internals ----------------------------------------------------------------------------------------------------
 
-    def _straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
+    def _drive_straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
         target = get_message("geometry_msgs/msg/Point")(x=float(distance))
         return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
 
     def _begin(self, name: str, **goal: Any) -> bool:
         """Send the goal of a task without waiting for its result; return whether it was accepted."""
         self.feedback, self.status, self.result_future = None, None, None
-        self.goal_handle = self._sent(name, goal, self._feedbackCallback)
+        self.goal_handle = self._send_goal(name, goal, self._feedbackCallback)
         if not self.goal_handle.accepted:
             self.error(f"{name} was rejected!")
             return False
         self.result_future = self.goal_handle.get_result_async()
         return True
 
-    def _done(self, name: str, **goal: Any) -> Any:
+    def _run_to_result(self, name: str, **goal: Any) -> Any:
         """Send a goal and wait for its result; return None unless the goal succeeded."""
-        handle = self._sent(name, goal, None)
+        handle = self._send_goal(name, goal, None)
         if not handle.accepted:
             self.error(f"{name} was rejected!")
             return None
@@ -253,14 +255,14 @@ class BasicNavigator(Node):
             return None
         return future.result().result
 
-    def _sent(self, name: str, goal: dict[str, Any], on_feedback: Any) -> Any:
-        kind = get_action(f"nav2_msgs/action/{_ACTIONS[name]}")
+    def _send_goal(self, name: str, goal: dict[str, Any], on_feedback: Any) -> Any:
+        action_class = get_action(f"nav2_msgs/action/{_ACTION_TYPES[name]}")
         if name not in self._actions:
-            self._actions[name] = ActionClient(self, kind, name)
+            self._actions[name] = ActionClient(self, action_class, name)
         client = self._actions[name]
-        while not client.wait_for_server(timeout_sec=_WAIT):
+        while not client.wait_for_server(timeout_sec=_LOG_PERIOD):
             self.info(f"'{name}' action server not available, waiting...")
-        future = client.send_goal_async(kind.Goal(**goal), on_feedback)
+        future = client.send_goal_async(action_class.Goal(**goal), on_feedback)
         spin_until_future_complete(self, future)
         return future.result()
 
@@ -268,7 +270,7 @@ class BasicNavigator(Node):
         service = get_service(kind)
         client = self.create_client(service, name)
         try:
-            while not client.wait_for_service(timeout_sec=_WAIT):
+            while not client.wait_for_service(timeout_sec=_LOG_PERIOD):
                 self.info(f"{name} service not available, waiting...")
             future = client.call_async(service.Request(**request))
             spin_until_future_complete(self, future)
@@ -277,26 +279,26 @@ class BasicNavigator(Node):
             self.destroy_client(client)
 
     def _manage(self, command: str) -> None:
-        kind = "nav2_msgs/srv/ManageLifecycleNodes"
-        number = getattr(get_service(kind).Request, command)
+        service_type = "nav2_msgs/srv/ManageLifecycleNodes"
+        command_code = getattr(get_service(service_type).Request, command)
         for name, types in self.get_service_names_and_types():
-            if kind in types:
-                self._call(kind, name, command=number)
+            if service_type in types:
+                self._call(service_type, name, command=command_code)
 
     def _waitForNodeToActivate(self, node_name: str) -> None:
         state = "unknown"
-        while state != _ACTIVE:
+        while state != _ACTIVE_STATE:
             state = self._call("lifecycle_msgs/srv/GetState", f"{node_name}/get_state").current_state.label
             self.debug(f"Result of get_state: {state}")
-            if state != _ACTIVE:
-                spin_once(self, timeout_sec=_STEP)
+            if state != _ACTIVE_STATE:
+                spin_once(self, timeout_sec=_SPIN_TIMEOUT)
 
     def _waitForInitialPose(self) -> None:
         while not self.initial_pose_received:
             self.info("Setting initial pose")
             self._setInitialPose()
             self.info("Waiting for amcl_pose to be received")
-            spin_once(self, timeout_sec=_WAIT)
+            spin_once(self, timeout_sec=_LOG_PERIOD)
 
     def _setInitialPose(self) -> None:
         message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()

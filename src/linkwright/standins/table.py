@@ -1,4 +1,4 @@
-"""The tables of the public names in ROS modules, with the place where each name is implemented.
+"""The tables of the public names in ROS modules, with the module that implements each name.
 
 A table is a text file ``tables/<package>.txt``, in the order of the package's modules::
 
@@ -16,8 +16,8 @@ A table is a text file ``tables/<package>.txt``, in the order of the package's m
     setup: linkwright.some.module.function
     others: linkwright.some.module.function_of_a_name
 
-A line ``origin: names`` means that the module ``origin`` defines these names. In ``ours=theirs``, the name in the
-origin is on the right. The origin can be another stand-in module. ``import`` lists modules; a submodule of the package
+A line ``origin: names`` means that the module ``origin`` defines these names. In ``ours=theirs``, the right name is
+the name in the origin. The origin can be another stand-in module. ``import`` lists modules; a submodule of the package
 takes precedence. ``since`` gives the distribution for names that ROS 2 Humble lacks. Names with a leading underscore,
 and submodules that no line names, are importable but not in ``__all__``. The function ``setup`` is called after the
 module is created. The function ``others`` returns the values of names that are not in the table.
@@ -47,7 +47,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """The reason why a name is missing, or the difference from the real one, in English and Chinese."""
+    """The reason why a name is missing, or how it differs from the name in ROS, in English and Chinese."""
 
     english: str
     chinese: str
@@ -61,8 +61,8 @@ class Module:
         name: the full name of the module.
         since: the ROS 2 distribution that introduced the module, if later than Humble.
         names: the names that can be imported from the module.
-        absent: public names of the real module that our module does not have.
-        differs: names of our module that differ from the real ones.
+        absent: public names of the ROS module that the stand-in does not have.
+        differs: names of the stand-in that behave differently in ROS.
         setup: the full name of a function to call after the module is created.
         others: the full name of a function that returns the value of any other name, or raises AttributeError.
         submodules: the names of the submodules, without the name of the module.
@@ -105,18 +105,20 @@ def find(module: str) -> Module | None:
 
 def modules_providing(name: str) -> list[str]:
     """Return the modules that provide a name, one per package, such as ``rclpy.node`` for ``Node``."""
-    found: dict[str, str] = {}
+    modules_by_package: dict[str, str] = {}
     for package in packages():
-        having = [
+        providers = [
             module.name
             for module in read(package).values()
             if name in module.names and module.names[name].origin.startswith("linkwright.") and "._" not in module.name
         ]
-        having = [module for module in having if module.rpartition(".")[0] not in having]
-        if having:  # of several modules in a package, prefer one whose name is part of the imported name
-            last = {module: module.rpartition(".")[2].replace("_", "") for module in having}
-            found[package] = min(having, key=lambda module: (last[module] not in name.lower(), len(module)))
-    return sorted(found.values())
+        providers = [module for module in providers if module.rpartition(".")[0] not in providers]
+        if providers:  # of several modules in a package, prefer one whose name is part of the imported name
+            base_names = {module: module.rpartition(".")[2].replace("_", "") for module in providers}
+            modules_by_package[package] = min(
+                providers, key=lambda module: (base_names[module] not in name.lower(), len(module))
+            )
+    return sorted(modules_by_package.values())
 
 
 def parse(text: str) -> dict[str, Module]:
@@ -126,37 +128,37 @@ def parse(text: str) -> dict[str, Module]:
         ValueError: a line is invalid; the message quotes the line.
     """
     modules: dict[str, Module] = {}
-    for line in _joined(text):
-        head, colon, rest = line.partition(":")
+    for line in _join_lines(text):
+        key, colon, value_text = line.partition(":")
         if line.startswith("["):
             name, _, since = line[1:].partition("]")
             module = modules[name] = Module(name, since.removeprefix(" since "))
-            parent, _, last = name.rpartition(".")
+            parent, _, base_name = name.rpartition(".")
             if parent:
-                modules[parent].submodules.append(last)
+                modules[parent].submodules.append(base_name)
             continue
-        word, _, what = head.partition(" ")
+        keyword, _, subject = key.partition(" ")
         if not colon or not modules:
             raise ValueError(f"not a line of a table: {line!r}")
-        if word in ("absent", "differs"):
-            english, _, chinese = " ".join(rest.split()).partition(" | ")
-            remarks = module.absent if word == "absent" else module.differs
-            remarks.update(dict.fromkeys(what.split(), Remark(english, chinese)))
-        elif word == "setup":
-            module.setup = rest.strip()
-        elif word == "others":
-            module.others = rest.strip()
-        elif word == VALUE:
-            module.names[what] = Name(VALUE, rest.strip())
+        if keyword in ("absent", "differs"):
+            english, _, chinese = " ".join(value_text.split()).partition(" | ")
+            remarks = module.absent if keyword == "absent" else module.differs
+            remarks.update(dict.fromkeys(subject.split(), Remark(english, chinese)))
+        elif keyword == "setup":
+            module.setup = value_text.strip()
+        elif keyword == "others":
+            module.others = value_text.strip()
+        elif keyword == VALUE:
+            module.names[subject] = Name(VALUE, value_text.strip())
         else:
-            since = what.removeprefix("since ")
-            for pair in rest.split():
-                ours, _, theirs = pair.partition("=")
-                module.names[ours] = Name(word, theirs or ours, since)
+            since = subject.removeprefix("since ")
+            for pair in value_text.split():
+                exported_name, _, origin_name = pair.partition("=")
+                module.names[exported_name] = Name(keyword, origin_name or exported_name, since)
     return modules
 
 
-def _joined(text: str) -> list[str]:
+def _join_lines(text: str) -> list[str]:
     """Return the lines of a table, with continuation lines appended to the line that they continue."""
     lines: list[str] = []
     for line in text.splitlines():

@@ -1,4 +1,4 @@
-"""Replaces markup such as ``@{redf}`` by terminal colours (``osrf_pycommon.terminal_color``)."""
+"""Replaces markup such as ``@{redf}`` with terminal colours (the API of ``osrf_pycommon.terminal_color``)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from string import Template
 from typing import Any
 
 _ESCAPE_SEQUENCE = re.compile(r"\033\[\d{1,2}[m]")
-_STYLES = {
+_STYLE_CODES = {
     "boldon": 1,
     "italicson": 3,
     "ulon": 4,
@@ -17,29 +17,29 @@ _STYLES = {
     "uloff": 24,
     "invoff": 27,
 }
-_COLOURS = ("black", "red", "green", "yellow", "blue", "purple", "cyan", "white")
-_SHORT = {"@!": "@{boldon}", "@/": "@{italicson}", "@_": "@{ulon}", "@|": "@{reset}"}
+_COLOUR_NAMES = ("black", "red", "green", "yellow", "blue", "purple", "cyan", "white")
+_SHORT_FORMS = {"@!": "@{boldon}", "@/": "@{italicson}", "@_": "@{ulon}", "@|": "@{reset}"}
 
 
-def _codes() -> dict[str, str]:
-    numbers = {"reset": 0, **_STYLES}
-    for index, colour in enumerate(_COLOURS):
+def _ansi_codes() -> dict[str, str]:
+    numbers = {"reset": 0, **_STYLE_CODES}
+    for index, colour in enumerate(_COLOUR_NAMES):
         numbers[f"{colour}f"], numbers[f"{colour}b"] = 30 + index, 40 + index
-    made = {name: f"\033[{number}m" for name, number in numbers.items()}
+    sequences = {name: f"\033[{number}m" for name, number in numbers.items()}
     escapes = {"escape": "\033", "atexclamation": "@!", "atfwdslash": "@/", "atunderscore": "@_", "atbar": "@|"}
-    return {**made, **escapes}
+    return {**sequences, **escapes}
 
 
-_ANSI = _codes()
+_SEQUENCES_BY_NAME = _ansi_codes()
 
 
-class _Switch:
-    """The setting whether markup is replaced by escape sequences or removed."""
+class _ColourSetting:
+    """Whether markup is replaced with escape sequences, or removed."""
 
     is_on = True
 
 
-class _Marked(Template):
+class _MarkupTemplate(Template):
     delimiter = "@"
 
 
@@ -55,30 +55,30 @@ def ansi(key: str) -> str:
 
 
 def get_ansi_dict() -> dict[str, str]:
-    """Return all escape sequences, by name."""
-    return dict(_ANSI) if _Switch.is_on else dict.fromkeys(_ANSI, "")
+    """Return the escape sequences of all styles by name; they are empty while colours are disabled."""
+    return dict(_SEQUENCES_BY_NAME) if _ColourSetting.is_on else dict.fromkeys(_SEQUENCES_BY_NAME, "")
 
 
 def enable_ansi_color_substitution_globally() -> None:
-    """Enable colours, so that markup is replaced by escape sequences."""
-    _Switch.is_on = True
+    """Enable colours, so that markup is replaced with escape sequences."""
+    _ColourSetting.is_on = True
 
 
 def disable_ansi_color_substitution_globally() -> None:
     """Disable colours, so that markup is removed."""
-    _Switch.is_on = False
+    _ColourSetting.is_on = False
 
 
 def format_color(msg: str) -> str:
-    """Replace the markup in a string, including short forms such as ``@!``, and append a reset.
+    """Replace the markup in a string, including short forms such as ``@!``, and append the sequence ``reset``.
 
     Raises:
         KeyError: there is no such colour or style.
         ValueError: an ``@`` does not start any markup; `sanitize` escapes it.
     """
-    for short, mark in _SHORT.items():
-        msg = msg.replace(short, mark)
-    return _Marked(msg).substitute(get_ansi_dict()) + ansi("reset")
+    for short_form, long_form in _SHORT_FORMS.items():
+        msg = msg.replace(short_form, long_form)
+    return _MarkupTemplate(msg).substitute(get_ansi_dict()) + ansi("reset")
 
 
 def print_color(*args: Any, **kwargs: Any) -> None:
@@ -107,7 +107,7 @@ def split_by_ansi_escape_sequence(string: str, include_delimiters: bool = False)
     """Split a string at escape sequences.
 
     Args:
-        string: the string.
+        string: the string to split.
         include_delimiters: whether the result contains the escape sequences.
     """
     return re.split(f"({_ESCAPE_SEQUENCE.pattern})" if include_delimiters else _ESCAPE_SEQUENCE, string)

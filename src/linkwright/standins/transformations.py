@@ -20,7 +20,7 @@ Matrix = NDArray[np.float64]
 Vector = NDArray[np.float64]
 
 _EPSILON = 4.0 * float(np.finfo(float).eps)
-_EVEN = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+_EVEN_PERMUTATIONS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 _AXES = {
     f"{frame}{''.join(letters)}"
     for frame in "sr"
@@ -56,15 +56,15 @@ def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None 
     """
     matrix = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
-        fixed = np.asarray(point, dtype=float)[:3]
-        matrix[:3, 3] = fixed - matrix[:3, :3] @ fixed
+        fixed_point = np.asarray(point, dtype=float)[:3]
+        matrix[:3, 3] = fixed_point - matrix[:3, :3] @ fixed_point
     return matrix
 
 
 def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
-    """Return the angle in radians, the axis and a point on the axis of a rotation matrix.
+    """Return the angle in radians, the axis, and a point on the axis of a rotation matrix.
 
-    The point is in homogeneous coordinates.
+    The point has homogeneous coordinates x, y, z, 1.
 
     Raises:
         ValueError: the matrix is not a rotation.
@@ -85,22 +85,22 @@ def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: Arra
     Args:
         factor: the scale factor.
         origin: the fixed point; None for the origin.
-        direction: the direction to scale in; None for all directions.
+        direction: the direction along which to scale; None for all directions.
     """
     matrix = np.eye(4)
     if direction is None:
         matrix[:3, :3] *= factor
     else:
-        unit = unit_vector(np.asarray(direction, dtype=float)[:3])
-        matrix[:3, :3] -= (1.0 - factor) * np.outer(unit, unit)
+        unit_direction = unit_vector(np.asarray(direction, dtype=float)[:3])
+        matrix[:3, :3] -= (1.0 - factor) * np.outer(unit_direction, unit_direction)
     if origin is not None:
-        fixed = np.asarray(origin, dtype=float)[:3]
-        matrix[:3, 3] = fixed - matrix[:3, :3] @ fixed
+        fixed_point = np.asarray(origin, dtype=float)[:3]
+        matrix[:3, 3] = fixed_point - matrix[:3, :3] @ fixed_point
     return matrix
 
 
 def reflection_matrix(point: ArrayLike, normal: ArrayLike) -> Matrix:
-    """Return the matrix of the reflection in a plane, given a point on the plane and its normal."""
+    """Return the matrix of the reflection in the plane through a point with a normal vector."""
     return scale_matrix(-1.0, point, normal)
 
 
@@ -114,15 +114,15 @@ def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
 
 
 def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """Return the Euler angles of a rotation matrix; in gimbal lock, the last angle is 0.
+    """Return the Euler angles of a rotation matrix; in gimbal lock, the last (rotating axes: first) angle is 0.
 
     Raises:
         ValueError: the axes code is invalid.
     """
-    turning, (a, b, c) = _read_axes(axes)
+    are_rotating, (a, b, c) = _read_axes(axes)
     m = np.asarray(matrix, dtype=float)[:3, :3]
     first, second, third = _proper_angles(m, a, b) if a == c else _cardan_angles(m, a, b, c)
-    return (third, second, first) if turning else (first, second, third)
+    return (third, second, first) if are_rotating else (first, second, third)
 
 
 def euler_from_quaternion(quaternion: Sequence[float], axes: str = "sxyz") -> tuple[float, float, float]:
@@ -140,9 +140,11 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
     Raises:
         ValueError: the axes code is invalid.
     """
-    turning, (a, b, c) = _read_axes(axes)
-    first, third = (ak, ai) if turning else (ai, ak)
-    return quaternion_multiply(_about(third, c), quaternion_multiply(_about(aj, b), _about(first, a)))
+    are_rotating, (a, b, c) = _read_axes(axes)
+    first, third = (ak, ai) if are_rotating else (ai, ak)
+    return quaternion_multiply(
+        _rotation_about(third, c), quaternion_multiply(_rotation_about(aj, b), _rotation_about(first, a))
+    )
 
 
 def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
@@ -156,15 +158,15 @@ def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
 def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
     """Return the rotation matrix of a quaternion x y z w, which need not have unit length."""
     x, y, z, w = (float(value) for value in np.asarray(quaternion, dtype=float)[:4])
-    squared = x * x + y * y + z * z + w * w
+    squared_length = x * x + y * y + z * z + w * w
     matrix = np.eye(4)
-    if squared < _EPSILON:
+    if squared_length < _EPSILON:
         return matrix
-    s = 2.0 / squared
+    factor = 2.0 / squared_length
     matrix[:3, :3] = (
-        (1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)),
-        (s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w)),
-        (s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y)),
+        (1.0 - factor * (y * y + z * z), factor * (x * y - z * w), factor * (x * z + y * w)),
+        (factor * (x * y + z * w), 1.0 - factor * (x * x + z * z), factor * (y * z - x * w)),
+        (factor * (x * z - y * w), factor * (y * z + x * w), 1.0 - factor * (x * x + y * y)),
     )
     return matrix
 
@@ -192,7 +194,7 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Vector:
     """Return the product of two quaternions x y z w.
 
-    The product rotates by `quaternion0` first, then by `quaternion1`, about static axes.
+    The product is a rotation by `quaternion0`, followed by a rotation by `quaternion1`, about static axes.
     """
     return arrays.quaternion_multiply(quaternion1, quaternion0)
 
@@ -239,10 +241,15 @@ def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
         rand: three random numbers between 0 and 1; None to draw them.
     """
     u, v, w = np.random.default_rng().random(3) if rand is None else rand
-    outer, inner = math.sqrt(1.0 - u), math.sqrt(u)
-    first, second = 2.0 * math.pi * v, 2.0 * math.pi * w
+    outer_radius, inner_radius = math.sqrt(1.0 - u), math.sqrt(u)
+    first_angle, second_angle = 2.0 * math.pi * v, 2.0 * math.pi * w
     return np.array(
-        [math.sin(first) * outer, math.cos(first) * outer, math.sin(second) * inner, math.cos(second) * inner]
+        [
+            math.sin(first_angle) * outer_radius,
+            math.cos(first_angle) * outer_radius,
+            math.sin(second_angle) * inner_radius,
+            math.cos(second_angle) * inner_radius,
+        ]
     )
 
 
@@ -267,7 +274,7 @@ def inverse_matrix(matrix: ArrayLike) -> Matrix:
 
 
 def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
-    """Return the product of matrices in the given order."""
+    """Return the product of matrices in the order of the arguments."""
     product = np.eye(4)
     for matrix in matrices:
         product = product @ np.asarray(matrix, dtype=float)
@@ -300,9 +307,9 @@ def compose_matrix(
     translate: ArrayLike | None = None,
     perspective: ArrayLike | None = None,
 ) -> Matrix:
-    """Return the matrix of a sequence of transforms.
+    """Return a matrix that scales, shears, rotates, translates and projects, in this order.
 
-    The matrix scales, shears, rotates, translates and projects, in this order.
+    None for an argument omits this step.
 
     Args:
         scale: the factors for x, y and z.
@@ -319,13 +326,13 @@ def compose_matrix(
     if angles is not None:
         matrix = matrix @ euler_matrix(angles[0], angles[1], angles[2])
     if shear is not None:
-        sheared = np.eye(4)
-        sheared[0, 1], sheared[0, 2], sheared[1, 2] = np.asarray(shear, dtype=float)
-        matrix = matrix @ sheared
+        shear_matrix = np.eye(4)
+        shear_matrix[0, 1], shear_matrix[0, 2], shear_matrix[1, 2] = np.asarray(shear, dtype=float)
+        matrix = matrix @ shear_matrix
     if scale is not None:
         matrix = matrix @ np.diag([*np.asarray(scale, dtype=float)[:3], 1.0])
-    motion: Matrix = matrix / matrix[3, 3]
-    return motion
+    normalized: Matrix = matrix / matrix[3, 3]
+    return normalized
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
@@ -360,7 +367,7 @@ def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
     """Parse an axes code.
 
     Returns:
-        Whether the axes rotate, and the indices of the three axes in the order for static axes.
+        Whether the axes rotate, and the indices of the three axes in the equivalent order for static axes.
     """
     if axes not in _AXES:
         raise ValueError(f"unknown axes '{axes}': write s or r and three axes, such as sxyz")
@@ -369,14 +376,14 @@ def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
     return (True, (c, b, a)) if axes[0] == "r" else (False, (a, b, c))
 
 
-def _about(angle: float, axis: int) -> Vector:
+def _rotation_about(angle: float, axis: int) -> Vector:
     quaternion = np.zeros(4)
     quaternion[axis], quaternion[3] = math.sin(angle / 2.0), math.cos(angle / 2.0)
     return quaternion
 
 
 def _cardan_angles(m: Matrix, a: int, b: int, c: int) -> tuple[float, float, float]:
-    sign = 1.0 if (a, b, c) in _EVEN else -1.0
+    sign = 1.0 if (a, b, c) in _EVEN_PERMUTATIONS else -1.0
     cosine = math.hypot(m[a, a], m[b, a])
     second = math.atan2(-sign * m[c, a], cosine)
     if cosine > _EPSILON:
@@ -386,7 +393,7 @@ def _cardan_angles(m: Matrix, a: int, b: int, c: int) -> tuple[float, float, flo
 
 def _proper_angles(m: Matrix, a: int, b: int) -> tuple[float, float, float]:
     c = 3 - a - b
-    sign = 1.0 if (a, b, c) in _EVEN else -1.0
+    sign = 1.0 if (a, b, c) in _EVEN_PERMUTATIONS else -1.0
     sine = math.hypot(m[a, b], m[a, c])
     second = sign * math.atan2(sine, m[a, a])
     if sine > _EPSILON:
@@ -397,8 +404,8 @@ def _proper_angles(m: Matrix, a: int, b: int) -> tuple[float, float, float]:
 def _fixed_vector(matrix: Matrix) -> Vector:
     """Return the real unit eigenvector of a matrix for the eigenvalue 1."""
     values, vectors = np.linalg.eig(matrix)
-    fixed = np.flatnonzero(np.abs(np.real(values) - 1.0) < 1e-8)
-    if not fixed.size:
+    fixed_indices = np.flatnonzero(np.abs(np.real(values) - 1.0) < 1e-8)
+    if not fixed_indices.size:
         raise ValueError("no unit eigenvector corresponding to eigenvalue 1")
-    vector: Vector = np.real(vectors[:, fixed[-1]])
+    vector: Vector = np.real(vectors[:, fixed_indices[-1]])
     return vector

@@ -1,4 +1,4 @@
-"""Sweeps, which run a scenario with several parameter values and seeds and tabulate the results."""
+"""Run a scenario with several parameter values and seeds, and tabulate the results."""
 
 from linkwright.sweep.scenario import Normal, Uniform, scenario
 

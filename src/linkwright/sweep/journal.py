@@ -1,6 +1,6 @@
-"""The finished runs of a sweep, in a file beside the table, so that the sweep can be resumed.
+"""Keep the finished runs of a sweep in a file beside the table, so that the sweep can be resumed.
 
-The file has one line per run.
+The file has a line for the plan, and then one line per run.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from linkwright.sweep.running import Outcome
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-_ENDING = ".unfinished"
+_SUFFIX = ".unfinished"
 
 
 class Journal:
-    """The outcomes of a sweep that is not complete yet.
+    """The outcomes of a sweep that is not complete, in a file.
 
     Args:
-        table: the file of the table.
-        fingerprint: the fingerprint of the plan; a journal of another plan is rejected.
-        resume: whether to resume an existing journal.
+        table: the path of the table's file.
+        fingerprint: the hash of the plan; a journal of another plan is rejected.
+        resume: whether to continue with an existing journal.
 
     Attributes:
-        path: the file of the journal.
+        path: the path of the journal's file.
         outcomes: the outcomes by row number.
 
     Raises:
@@ -40,29 +40,29 @@ class Journal:
     """
 
     def __init__(self, table: Path, fingerprint: str, *, resume: bool) -> None:
-        self.path = table.with_name(f"{table.name}{_ENDING}")
+        self.path = table.with_name(f"{table.name}{_SUFFIX}")
         self.outcomes: dict[int, Outcome] = {}
-        self._head = {"plan": fingerprint}
+        self._plan_entry = {"plan": fingerprint}
         self._file: FileIO | None = None
-        there = self.path.exists()
+        is_present = self.path.exists()
         if resume:
-            if not there:
+            if not is_present:
                 message = phrase("there is no unfinished sweep '{path}'", path=display_path(table))
                 hint = phrase("omit `--resume` to start one")
                 raise LinkwrightError(Diagnostic("SWEEP109", message, hint=hint))
             self._read()
-        elif there:
+        elif is_present:
             message = phrase("the sweep '{path}' is not finished", path=display_path(table))
             hint = phrase("use `--resume` to continue, or remove '{path}' to start again", path=display_path(self.path))
             raise LinkwrightError(Diagnostic("SWEEP107", message, hint=hint))
 
     def __enter__(self) -> Self:
-        known = [self._head, *map(_line, self.outcomes.values())]
+        entries = [self._plan_entry, *map(_to_entry, self.outcomes.values())]
         with reporting_write_errors(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("wb", buffering=0)
         try:
-            for entry in known:
+            for entry in entries:
                 self._write(entry)
         except LinkwrightError:
             self._file.close()
@@ -84,25 +84,27 @@ class Journal:
             LinkwrightError: SWEEP110, the file cannot be written.
         """
         self.outcomes[outcome.row] = outcome
-        self._write(_line(outcome))
+        self._write(_to_entry(outcome))
 
     def remove(self) -> None:
-        """Delete the file after the sweep is complete."""
+        """Delete the file, because the sweep is complete."""
         self.path.unlink()
 
     def _write(self, line: dict[str, Any]) -> None:
         assert self._file is not None, "it was entered"
-        left = f"{json.dumps(line)}\n".encode()
+        remaining = f"{json.dumps(line)}\n".encode()
         with reporting_write_errors(self.path):
-            while left:
-                left = left[self._file.write(left) :]
+            while remaining:
+                remaining = remaining[self._file.write(remaining) :]
 
     def _read(self) -> None:
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
-        entries = [parsed for parsed in map(_parsed, lines) if parsed is not None]
-        if not entries or entries[0] != self._head:
-            message = phrase("the unfinished sweep '{path}' has different runs", path=display_path(self.path))
-            hint = phrase("give the same scenario, values and seeds, or remove that file to start again")
+        entries = [entry for entry in map(_parse_line, lines) if entry is not None]
+        if not entries or entries[0] != self._plan_entry:
+            message = phrase(
+                ("the unfinished sweep '{path}' has other runs than this one"), path=display_path(self.path)
+            )
+            hint = phrase("use the same scenario, values and seeds, or remove the file to start again")
             raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
         for entry in entries[1:]:
             self.outcomes[entry["row"]] = Outcome(**entry)
@@ -110,7 +112,7 @@ class Journal:
 
 @contextmanager
 def reporting_write_errors(path: Path) -> Iterator[None]:
-    """Convert an OSError in the context to a LinkwrightError.
+    """Raise a LinkwrightError for an OSError that occurs in the context.
 
     Raises:
         LinkwrightError: SWEEP110, the file cannot be written.
@@ -124,12 +126,12 @@ def reporting_write_errors(path: Path) -> Iterator[None]:
         raise LinkwrightError(Diagnostic("SWEEP110", message, hint=hint)) from None
 
 
-def _line(outcome: Outcome) -> dict[str, Any]:
+def _to_entry(outcome: Outcome) -> dict[str, Any]:
     return {"row": outcome.row, "results": outcome.results, "error": outcome.error}
 
 
-def _parsed(line: str) -> dict[str, Any] | None:
-    """Parse a line of the journal; return None for a truncated line."""
+def _parse_line(line: str) -> dict[str, Any] | None:
+    """Return the content of a line of the journal; None if the line is truncated."""
     try:
         entry = json.loads(line)
     except ValueError:

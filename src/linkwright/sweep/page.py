@@ -13,8 +13,8 @@ from linkwright.sweep.plots import histogram, scatter
 from linkwright.sweep.running import Result
 from linkwright.sweep.table import Table
 
-_MOST_ROWS = 1000
-"""The most rows that the page lists; the table has all of them."""
+_MAX_ROWS = 1000
+"""The maximum number of rows that the page lists; the table contains all of them."""
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #66758a; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -48,122 +48,129 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
     Args:
         table: the finished runs of the sweep.
         name: the name of the scenario.
-        command: the command line that reruns a row, without the row number.
-        planned: the number of planned runs.
+        command: the command line that runs a row again, without the row's number.
+        planned: the number of planned runs, finished or not.
     """
-    failed = table.failed
+    failed_rows = table.failed
     counts: list[Phrase] = [counted("{count} run", "{count} runs", len(table))]
     if len(table) < planned:
         counts.append(phrase("{count} runs remain", count=planned - len(table)))
     lead = ", ".join(map(localized, counts))
-    if failed:
-        lead += f', <span class="bad">{localized(phrase("{count} failed", count=len(failed)))}</span>'
-    parts = [f"<h1>{escape(name)}</h1>", f'<p class="lead">{lead}</p>', _failures(table, command)]
-    numbers = [result for result in table.results if _finite(table, result)]
-    if numbers:
-        parts += [f"<h2>{_escaped(phrase('Results'))}</h2>", _statistics(table, numbers)]
-        parts.append(
-            '<div class="cards">'
-            f"{''.join(_card(number, histogram(_of(table, number), number)) for number in numbers)}</div>"
-        )
-    for parameter in _varied(table):
-        cards = "".join(_against(table, parameter, result) for result in numbers)
+    if failed_rows:
+        lead += f', <span class="bad">{localized(phrase("{count} failed", count=len(failed_rows)))}</span>'
+    sections = [f"<h1>{escape(name)}</h1>", f'<p class="lead">{lead}</p>', _failures_section(table, command)]
+    numeric_results = [result for result in table.results if _finite_rows(table, result)]
+    if numeric_results:
+        sections += [f"<h2>{_escape(phrase('Results'))}</h2>", _statistics_table(table, numeric_results)]
+        cards = "".join(_card(result, histogram(_finite_values(table, result), result)) for result in numeric_results)
+        sections.append(f'<div class="cards">{cards}</div>')
+    for parameter in _varied_parameters(table):
+        cards = "".join(_scatter_card(table, parameter, result) for result in numeric_results)
         if cards:
-            parts += [
-                f"<h2>{_escaped(phrase('Against {name}', name=parameter))}</h2>",
+            sections += [
+                f"<h2>{_escape(phrase('Against {name}', name=parameter))}</h2>",
                 f'<div class="cards">{cards}</div>',
             ]
-    parts += [f"<h2>{_escaped(phrase('Rows'))}</h2>", _rows(table)]
+    sections += [f"<h2>{_escape(phrase('Rows'))}</h2>", _rows_table(table)]
     return (
         f'<!doctype html>\n<html lang="{language()}"><head><meta charset="utf-8"><meta name="viewport" '
         f'content="width=device-width"><title>{escape(name)}</title><style>{_STYLE}</style></head>'
-        f"<body><main>{''.join(parts)}</main></body></html>\n"
+        f"<body><main>{''.join(sections)}</main></body></html>\n"
     )
 
 
-def _escaped(text: Phrase) -> str:
+def _escape(text: Phrase) -> str:
     return escape(localized(text))
 
 
-def _finite(table: Table, name: str) -> list[int]:
+def _finite_rows(table: Table, name: str) -> list[int]:
     """Return the indices of the rows in which a result is a finite number.
 
-    True and False count as 1 and 0.
+    True and False are numbers: 1 and 0.
     """
     values = table.columns[name]
-    return [place for place, value in enumerate(values) if isinstance(value, int | float) and isfinite(value)]
+    return [index for index, value in enumerate(values) if isinstance(value, int | float) and isfinite(value)]
 
 
-def _of(table: Table, name: str) -> list[float]:
+def _finite_values(table: Table, name: str) -> list[float]:
     values = table.columns[name]
-    return [float(values[place]) for place in _finite(table, name)]  # type: ignore[arg-type]  # they are numbers
+    return [float(values[index]) for index in _finite_rows(table, name)]  # type: ignore[arg-type]  # they are numbers
 
 
-def _varied(table: Table) -> list[str]:
-    """Return the parameters that have several values, or the seed if no parameter has."""
-    varied = [parameter for parameter in table.parameters[:-1] if len(set(table.columns[parameter])) > 1]
-    return varied or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
+def _varied_parameters(table: Table) -> list[str]:
+    """Return the parameters that have several values; the seed if no parameter has, and it has several."""
+    parameters = [parameter for parameter in table.parameters[:-1] if len(set(table.columns[parameter])) > 1]
+    return parameters or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
 
 
-def _against(table: Table, parameter: str, result: str) -> str:
-    places = _finite(table, result)
-    across = [table.columns[parameter][place] for place in places]
-    rows = [table.columns["row"][place] for place in places]
-    return _card(f"{result} – {parameter}", scatter(across, _of(table, result), rows, parameter, result))
+def _scatter_card(table: Table, parameter: str, result: str) -> str:
+    indices = _finite_rows(table, result)
+    parameter_values = [table.columns[parameter][index] for index in indices]
+    rows = [table.columns["row"][place] for place in indices]
+    return _card(
+        f"{result} – {parameter}", scatter(parameter_values, _finite_values(table, result), rows, parameter, result)
+    )
 
 
 def _card(title: str, drawing: str) -> str:
     return f'<div class="card"><h3>{escape(title)}</h3>{drawing}</div>'
 
 
-def _statistics(table: Table, names: Sequence[str]) -> str:
-    heads = [phrase("result"), phrase("runs"), phrase("minimum"), phrase("mean"), phrase("median"), phrase("maximum")]
+def _statistics_table(table: Table, names: Sequence[str]) -> str:
+    headings = [
+        phrase("result"),
+        phrase("runs"),
+        phrase("minimum"),
+        phrase("mean"),
+        phrase("median"),
+        phrase("maximum"),
+    ]
     lines = []
     for name in names:
-        values = _of(table, name)
-        figures = (min(values), fmean(values), median(values), max(values), pstdev(values))
-        lines.append([name, str(len(values)), *(f"{figure:.6g}" for figure in figures)])
-    return _html_table([localized(head) for head in (*heads, phrase("standard deviation"))], lines)
+        values = _finite_values(table, name)
+        statistics = (min(values), fmean(values), median(values), max(values), pstdev(values))
+        lines.append([name, str(len(values)), *(f"{statistic:.6g}" for statistic in statistics)])
+    return _html_table([localized(heading) for heading in (*headings, phrase("standard deviation"))], lines)
 
 
-def _failures(table: Table, command: str) -> str:
-    failed = table.failed[:_MOST_ROWS]
+def _failures_section(table: Table, command: str) -> str:
+    failed = table.failed[:_MAX_ROWS]
     if not failed:
         return ""
     lines = []
-    for place in failed:
-        row = str(table.columns["row"][place])
-        lines.append([row, str(table.columns["error"][place]), f"{command} --rerun {row}"])
-    heads = [phrase("row"), phrase("error"), phrase("run it again with")]
-    title = f"<h2>{_escaped(phrase('Failed runs'))}</h2>"
-    return title + _html_table([localized(head) for head in heads], lines, text=(1, 2))
+    for index in failed:
+        row = str(table.columns["row"][index])
+        lines.append([row, str(table.columns["error"][index]), f"{command} --rerun {row}"])
+    headings = [phrase("row"), phrase("error"), phrase("run it again with")]
+    title = f"<h2>{_escape(phrase('Failed runs'))}</h2>"
+    return title + _html_table([localized(heading) for heading in headings], lines, text=(1, 2))
 
 
-def _rows(table: Table) -> str:
+def _rows_table(table: Table) -> str:
     names = list(table.columns)
-    shown = min(len(table), _MOST_ROWS)
-    lines = [[_shown(table.columns[name][place]) for name in names] for place in range(shown)]
+    row_count = min(len(table), _MAX_ROWS)
+    lines = [[_format_cell(table.columns[name][index]) for name in names] for index in range(row_count)]
     more = ""
-    if shown < len(table):
-        more = f"<p>{_escaped(phrase('{count} more are in the table', count=len(table) - shown))}</p>"
-    return _html_table(names, lines, text=(len(names) - 1,), targets=True) + more
+    if row_count < len(table):
+        more = f"<p>{_escape(phrase('{count} more are in the table', count=len(table) - row_count))}</p>"
+    return _html_table(names, lines, text=(len(names) - 1,), has_targets=True) + more
 
 
-def _shown(value: Result) -> str:
+def _format_cell(value: Result) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _html_table(
-    heads: Sequence[str], lines: Sequence[Sequence[str]], *, text: Sequence[int] = (), targets: bool = False
+    headings: Sequence[str], lines: Sequence[Sequence[str]], *, text: Sequence[int] = (), has_targets: bool = False
 ) -> str:
     rows = []
     for line in lines:
         cells = "".join(
-            f'<td class="text">{escape(cell)}</td>' if place in text else f"<td>{escape(cell)}</td>"
-            for place, cell in enumerate(line)
+            f'<td class="text">{escape(cell)}</td>' if column in text else f"<td>{escape(cell)}</td>"
+            for column, cell in enumerate(line)
         )
-        rows.append(f'<tr id="row-{line[0]}">{cells}</tr>' if targets else f"<tr>{cells}</tr>")
-    head = "".join(f"<th>{escape(head)}</th>" for head in heads)
+        rows.append(f'<tr id="row-{line[0]}">{cells}</tr>' if has_targets else f"<tr>{cells}</tr>")
+    head = "".join(f"<th>{escape(header_cells)}</th>" for header_cells in headings)
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'

@@ -1,4 +1,4 @@
-"""The runs of a scenario, each with parameter values and a seed."""
+"""Plan the runs of a scenario, each with parameter values and a seed."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Run:
 
     Attributes:
         row: the row number, starting at 1.
-        parameters: the values by parameter name.
-        seed: the seed of the random numbers.
+        parameters: the value of each parameter.
+        seed: the seed for random numbers.
     """
 
     row: int
@@ -32,18 +32,18 @@ class Run:
 
 
 def plan_runs(scenario: Scenario) -> list[Run]:
-    """Return all runs of a scenario; runs with the same values and different seeds are adjacent.
+    """Return all runs of a scenario. Runs with the same listed values and different seeds are adjacent.
 
-    A drawn value depends only on the seed and the name of the parameter. It does not change if other parameters or
+    A drawn value depends only on the seed and the name of its parameter. It does not change if other parameters or
     seeds are added.
     """
     lists = {name: values for name, values in scenario.parameters.items() if not isinstance(values, Uniform | Normal)}
-    drawn = {seed: _drawn(scenario, seed) for seed in scenario.seeds}
+    values_by_seed = {seed: _draw_values(scenario, seed) for seed in scenario.seeds}
     runs: list[Run] = []
-    for chosen in product(*lists.values()):
-        together = dict(zip(lists, chosen, strict=True))
+    for combination in product(*lists.values()):
+        listed_values = dict(zip(lists, combination, strict=True))
         for seed in scenario.seeds:
-            values = {**together, **drawn[seed]}
+            values = {**listed_values, **values_by_seed[seed]}
             runs.append(Run(len(runs) + 1, {name: values[name] for name in scenario.parameters}, seed))
     return runs
 
@@ -53,8 +53,8 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
 
     Args:
         scenario: the scenario.
-        texts: for each parameter name, YAML values separated by commas.
-        seeds: the number of seeds; None for the seeds of the file.
+        texts: for the name of each changed parameter, YAML values separated by commas.
+        seeds: the number of seeds, from 0 on; None for the seeds of the file.
 
     Raises:
         LinkwrightError: SWEEP106, there is no such parameter; SWEEP105, the values are not valid.
@@ -69,7 +69,7 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
 
 
 def fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
-    """Return a hash of the scenario's file and runs."""
+    """Return a hash of the scenario's file and of its runs."""
     plan = json.dumps([(run.parameters, run.seed) for run in runs])
     return hashlib.sha256(scenario.path.read_bytes() + plan.encode()).hexdigest()
 
@@ -83,12 +83,12 @@ def _values(name: str, text: str) -> list[Value]:
     return list(values)
 
 
-def _drawn(scenario: Scenario, seed: int) -> dict[str, float]:
+def _draw_values(scenario: Scenario, seed: int) -> dict[str, float]:
     values = {}
-    for name, law in scenario.parameters.items():
-        random = np.random.default_rng([seed, crc32(name.encode())])
-        if isinstance(law, Uniform):
-            values[name] = float(random.uniform(law.low, law.high))
-        elif isinstance(law, Normal):
-            values[name] = float(random.normal(law.mean, law.stddev))
+    for name, distribution in scenario.parameters.items():
+        generator = np.random.default_rng([seed, crc32(name.encode())])
+        if isinstance(distribution, Uniform):
+            values[name] = float(generator.uniform(distribution.low, distribution.high))
+        elif isinstance(distribution, Normal):
+            values[name] = float(generator.normal(distribution.mean, distribution.stddev))
     return values

@@ -1,4 +1,4 @@
-"""Executes single runs of a scenario."""
+"""Execute single runs of a scenario."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import numpy as np
 
 from linkwright.standins import activate
 from linkwright.sweep.plan import Run
-from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, described, line_of, load_scenario
+from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, described, line_in_traceback, load_scenario
 
 Result = bool | int | float | str | None
-"""The types of values that a scenario may return."""
+"""The types of the values that a scenario may return."""
 
-_SEEDS = 1 << 32
-"""The number of seeds of numpy's legacy generator."""
+_MAX_NUMPY_SEEDS = 1 << 32
+"""The number of seeds that NumPy's legacy generator accepts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +27,8 @@ class Outcome:
 
     Attributes:
         row: the row number of the run.
-        results: the results by name that the scenario returned.
-        error: the reason why there are no results; empty if the run succeeded.
+        results: the results that the scenario returned, by name.
+        error: why there are no results; empty if the run succeeded.
     """
 
     row: int
@@ -37,11 +37,11 @@ class Outcome:
 
 
 class BadResultError(Exception):
-    """Raised when a scenario returns a value that a table cannot store."""
+    """Raised if a scenario returns a value that a table cannot contain."""
 
 
-def prepare(path: Path) -> Scenario:
-    """Load a scenario, and change to the scenario's folder, to run it in this process.
+def load_into_process(path: Path) -> Scenario:
+    """Load a scenario and change to its folder, so that this process can run it.
 
     The scenario can import ROS modules, such as ``rclpy`` and ``geometry_msgs.msg``.
 
@@ -55,40 +55,40 @@ def prepare(path: Path) -> Scenario:
 
 
 def run_once(scenario: Scenario, run: Run) -> Outcome:
-    """Run a scenario, and return the outcome; an exception becomes the outcome's error."""
+    """Run a scenario, and return the outcome. An exception becomes the outcome's error."""
     try:
-        return Outcome(run.row, results_of(scenario, run))
+        return Outcome(run.row, run_scenario(scenario, run))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
-        line = line_of(scenario.path, error)
-        place = f" ({scenario.path.name}:{line})" if line else ""
-        return Outcome(run.row, error=f"{described(error)}{place}")
+        line = line_in_traceback(scenario.path, error)
+        location = f" ({scenario.path.name}:{line})" if line else ""
+        return Outcome(run.row, error=f"{described(error)}{location}")
 
 
-def results_of(scenario: Scenario, run: Run) -> dict[str, Result]:
-    """Run a scenario and return its results, after checking that a table can store them.
+def run_scenario(scenario: Scenario, run: Run) -> dict[str, Result]:
+    """Run a scenario, and return its results after checking that a table can contain them.
 
     ``random`` and ``numpy.random`` are seeded before the run.
 
     Raises:
-        BadResultError: a table cannot store the results.
+        BadResultError: a table cannot contain the results.
         Exception: any exception that the scenario raises.
     """
     random.seed(run.seed)
-    np.random.seed(run.seed % _SEEDS)
+    np.random.seed(run.seed % _MAX_NUMPY_SEEDS)
     seed = {SEED: run.seed} if scenario.takes_seed else {}
     returned = scenario.function(**run.parameters, **seed)
     if not isinstance(returned, Mapping):
         raise BadResultError(f"the scenario must return a dict, not {type(returned).__name__}")
-    taken = {*COLUMNS, *run.parameters}
+    used_names = {*COLUMNS, *run.parameters}
     results: dict[str, Result] = {}
     for name, value in returned.items():
-        if not isinstance(name, str) or name in taken:
+        if not isinstance(name, str) or name in used_names:
             raise BadResultError(f"a result cannot be called {name!r}: that is a column already, or no text")
-        results[name] = _plain(name, value)
+        results[name] = _to_result(name, value)
     return results
 
 
-def _plain(name: str, value: object) -> Result:
+def _to_result(name: str, value: object) -> Result:
     if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0):
         value = value.item()
     if value is None or isinstance(value, bool | int | float | str):

@@ -1,4 +1,4 @@
-"""Declaration of scenarios, and loading of a scenario from its file."""
+"""Declare scenarios, and load a scenario from its file."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ Value = bool | int | float | str
 
 F = TypeVar("F", bound=Callable[..., Mapping[str, object]])
 
-_DECLARED = "__linkwright_scenario__"
-_MODULE = "linkwright_scenario"
+_DECLARATION_ATTRIBUTE = "__linkwright_scenario__"
+_MODULE_NAME = "linkwright_scenario"
 SEED = "seed"
 COLUMNS = ("row", SEED, "error")
-"""Names of columns that every table has; no parameter or result has them."""
+"""The names of the columns that every table has; no parameter or result can have these names."""
 
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """A parameter value that is drawn for each seed, uniformly distributed from `low` to `high`."""
+    """A distribution from which a parameter's value is drawn for each seed: uniform, from `low` to `high`."""
 
     low: float
     high: float
@@ -46,14 +46,14 @@ class Uniform:
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A parameter value that is drawn for each seed from a normal distribution."""
+    """A distribution from which a parameter's value is drawn for each seed: normal, with `mean` and `stddev`."""
 
     mean: float
     stddev: float
 
 
 Values = Sequence[Value] | Uniform | Normal
-"""The values that a parameter is run over: a list, or a distribution from which each seed draws one."""
+"""The values of a parameter: a list, or a distribution from which one value is drawn for each seed."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,10 @@ class Scenario:
 
     Attributes:
         path: the file of the scenario.
-        function: takes the parameters by name, and ``seed`` if it has such a parameter; returns results by name.
-        parameters: the values by parameter name.
-        seeds: the seeds.
+        function: called with the parameters by name, and with ``seed`` if it has such a parameter; returns results by
+            name.
+        parameters: the values of each parameter.
+        seeds: the seeds of the runs.
     """
 
     path: Path
@@ -88,7 +89,8 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
             ...
             return {"distance": ..., "arrived": ...}
 
-    This function is run forty times: for each friction with each seed, and with a mass that is drawn for the seed.
+    This function is run forty times: for each friction with each of 20 seeds, and with a mass that is drawn for the
+        seed.
 
     Args:
         seeds: the number of seeds, starting at 0, or the seeds themselves.
@@ -96,42 +98,50 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
     """
 
     def declare(function: F) -> F:
-        setattr(function, _DECLARED, (seeds, parameters))
+        setattr(function, _DECLARATION_ATTRIBUTE, (seeds, parameters))
         return function
 
     return declare
 
 
 def load_scenario(path: Path) -> Scenario:
-    """Load a scenario by running its file as a module, which can import modules from its folder.
+    """Load a scenario by running its file as a module; the module can import others from its folder.
 
     Raises:
         LinkwrightError: SWEEP101, the file cannot be read; SWEEP102, the file cannot be run; SWEEP103, the file does
             not contain exactly one scenario; SWEEP104, the declared parameters are not those of the
             function; SWEEP105, the values are not valid.
     """
-    module = _loaded(path)
-    found = [candidate for candidate in vars(module).values() if callable(candidate) and hasattr(candidate, _DECLARED)]
-    if len(found) != 1:
-        lines = [_span(path, candidate.__code__.co_firstlineno) for candidate in found]
+    module = _load_module(path)
+    functions = [
+        candidate
+        for candidate in vars(module).values()
+        if callable(candidate) and hasattr(candidate, _DECLARATION_ATTRIBUTE)
+    ]
+    if len(functions) != 1:
+        spans = [_span(path, candidate.__code__.co_firstlineno) for candidate in functions]
         message = (
-            phrase("there are {count} scenarios in '{path}'", count=len(found), path=display_path(path))
-            if found
-            else phrase("there is no scenario in '{path}'", path=display_path(path))
+            phrase(
+                ("'{path}' contains {count} scenarios, but must contain one"),
+                count=len(functions),
+                path=display_path(path),
+            )
+            if functions
+            else phrase("no function in '{path}' is a scenario", path=display_path(path))
         )
         hint = phrase("decorate one function with @scenario(...) of `linkwright.sweep`")
-        raise LinkwrightError(Diagnostic("SWEEP103", message, lines[1] if lines else None, hint=hint))
-    function = found[0]
-    seeds, parameters = getattr(function, _DECLARED)
+        raise LinkwrightError(Diagnostic("SWEEP103", message, spans[1] if spans else None, hint=hint))
+    function = functions[0]
+    seeds, parameters = getattr(function, _DECLARATION_ATTRIBUTE)
     span = _span(path, function.__code__.co_firstlineno)
     _check_names(function, parameters, span)
     for name, values in parameters.items():
         check_values(name, values, span)
-    return Scenario(path, function, parameters, _seeds(seeds, span))
+    return Scenario(path, function, parameters, _parse_seeds(seeds, span))
 
 
 def check_values(name: str, values: object, span: Span | None = None) -> None:
-    """Check that the values of a parameter can be varied by a sweep.
+    """Raise if a sweep cannot vary a parameter over some values.
 
     Raises:
         LinkwrightError: SWEEP105, the values are not valid.
@@ -140,25 +150,25 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
         numbers = (values.low, values.high) if isinstance(values, Uniform) else (values.mean, values.stddev)
         if all(isinstance(number, int | float) and abs(number) < float("inf") for number in numbers):
             return
-        wrong: Phrase = phrase("parameter '{name}': the numbers of its distribution must be finite", name=name)
+        problem: Phrase = phrase("the distribution of parameter '{name}' must have finite numbers", name=name)
     elif isinstance(values, str) or not isinstance(values, Sequence):
-        wrong = phrase("parameter '{name}' needs a list of values, a Uniform or a Normal", name=name)
+        problem = phrase("the values of parameter '{name}' must be a list, a Uniform or a Normal", name=name)
     elif not values:
-        wrong = phrase("parameter '{name}' has no values", name=name)
+        problem = phrase("parameter '{name}' has no values", name=name)
     else:
-        bad = [value for value in values if not isinstance(value, bool | int | float | str)]
-        if not bad:
+        invalid_values = [value for value in values if not isinstance(value, bool | int | float | str)]
+        if not invalid_values:
             return
-        kind = type(bad[0]).__name__
-        wrong = phrase(
-            "a value of parameter '{name}' must be a number, text, True or False, not {kind}", name=name, kind=kind
+        type_name = type(invalid_values[0]).__name__
+        problem = phrase(
+            "a value of parameter '{name}' must be a number, text, True or False, not {kind}", name=name, kind=type_name
         )
     raise LinkwrightError(
-        Diagnostic("SWEEP105", wrong, span, hint=phrase("write for example {name}=[0.5, 1.0]", name=name))
+        Diagnostic("SWEEP105", problem, span, hint=phrase("write for example {name}=[0.5, 1.0]", name=name))
     )
 
 
-def _seeds(seeds: object, span: Span) -> Sequence[int]:
+def _parse_seeds(seeds: object, span: Span) -> Sequence[int]:
     if isinstance(seeds, int) and not isinstance(seeds, bool) and seeds > 0:
         return range(seeds)
     if isinstance(seeds, Sequence) and seeds and all(isinstance(seed, int) and seed >= 0 for seed in seeds):
@@ -170,18 +180,22 @@ def _seeds(seeds: object, span: Span) -> Sequence[int]:
 
 
 def _check_names(function: Callable[..., object], parameters: Mapping[str, object], span: Span) -> None:
-    taken = inspect.signature(function).parameters
-    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-    needed = [
+    function_parameters = inspect.signature(function).parameters
+    keyword_kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    required = [
         name
-        for name, declared in taken.items()
-        if declared.default is declared.empty
-        and declared.kind in (*kinds, inspect.Parameter.POSITIONAL_ONLY)
+        for name, parameter in function_parameters.items()
+        if parameter.default is parameter.empty
+        and parameter.kind in (*keyword_kinds, inspect.Parameter.POSITIONAL_ONLY)
         and name != SEED
     ]
-    takes_all = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in taken.values())
-    unknown = [name for name in parameters if not takes_all and (name not in taken or taken[name].kind not in kinds)]
-    missing = [name for name in needed if name not in parameters]
+    takes_all = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in function_parameters.values())
+    unknown = [
+        name
+        for name in parameters
+        if not takes_all and (name not in function_parameters or function_parameters[name].kind not in keyword_kinds)
+    ]
+    missing = [name for name in required if name not in parameters]
     reserved = [name for name in parameters if name in COLUMNS]
     if reserved:
         message = phrase(
@@ -205,8 +219,8 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
     raise LinkwrightError(Diagnostic("SWEEP104", message, span, hint=hint))
 
 
-def _loaded(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(_MODULE, path)
+def _load_module(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(_MODULE_NAME, path)
     if path.suffix != ".py" or spec is None or spec.loader is None or not path.is_file():
         message = phrase("there is no scenario '{path}'", path=display_path(path))
         hint = phrase("name a Python file, such as drive.py")
@@ -215,35 +229,35 @@ def _loaded(path: Path) -> ModuleType:
     folder = str(path.parent)
     if folder not in sys.path:
         sys.path.insert(0, folder)
-    sys.modules[_MODULE] = module
+    sys.modules[_MODULE_NAME] = module
     linecache.checkcache(str(path))
     try:
         spec.loader.exec_module(module)
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
-        place = Span(display_path(Path(error.filename or path)), line, column, line, column)
+        span = Span(display_path(Path(error.filename or path)), line, column, line, column)
         message = phrase("this is not valid Python: {reason}", reason=foreign(error.msg))
-        raise LinkwrightError(Diagnostic("SWEEP102", message, place)) from None
+        raise LinkwrightError(Diagnostic("SWEEP102", message, span)) from None
     except OSError as error:
         if error.filename != str(path):
-            raise _cannot_run(path, error) from None
+            raise _load_error(path, error) from None
         message = phrase("cannot read '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror))
         raise LinkwrightError(Diagnostic("SWEEP101", message)) from None
     except LinkwrightError:
         raise
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
-        raise _cannot_run(path, error) from None
+        raise _load_error(path, error) from None
     return module
 
 
-def _cannot_run(path: Path, error: BaseException) -> LinkwrightError:
-    line = line_of(path, error)
+def _load_error(path: Path, error: BaseException) -> LinkwrightError:
+    line = line_in_traceback(path, error)
     message = phrase("the scenario cannot be loaded: {reason}", reason=foreign(described(error)))
     return LinkwrightError(Diagnostic("SWEEP102", message, _span(path, line) if line else None))
 
 
-def line_of(path: Path, error: BaseException) -> int | None:
-    """Return the last line of a file in the traceback of an error, or None if the file is not in it."""
+def line_in_traceback(path: Path, error: BaseException) -> int | None:
+    """Return the last line of a file in the traceback of an error; None if the file is not in it."""
     lines = [
         frame_summary.lineno
         for frame_summary in traceback.extract_tb(error.__traceback__)
@@ -253,10 +267,14 @@ def line_of(path: Path, error: BaseException) -> int | None:
 
 
 def described(error: BaseException) -> str:
-    """Format an error in one line."""
+    """Return an error as one line of text."""
     if isinstance(error, LinkwrightError):
-        first = error.diagnostics[0]
-        return f"{first.code} {first.span}: {first.message}" if first.span else f"{first.code} {first.message}"
+        diagnostic = error.diagnostics[0]
+        return (
+            f"{diagnostic.code} {diagnostic.span}: {diagnostic.message}"
+            if diagnostic.span
+            else f"{diagnostic.code} {diagnostic.message}"
+        )
     message = " ".join(str(error).split())
     return f"{type(error).__name__}: {message}" if message else type(error).__name__
 

@@ -1,4 +1,4 @@
-"""Runs a sweep from its plan to its table."""
+"""Run a sweep from its plan to its table."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from linkwright.sweep.scenario import Scenario
 from linkwright.sweep.table import Table, table_bytes
 
 Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
-"""Makes runs and reports each when it is done."""
+"""Executes runs, and calls a function with the outcome of each run when it has finished."""
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """A scenario with the files for the results.
+    """A scenario, with the files for its results.
 
     Attributes:
         scenario: the scenario.
-        table: the file of the table, whose extension selects the format.
-        words: the command line that runs the sweep, which the summary page shows for reruns.
+        table: the file of the table; its extension selects the format.
+        words: the command line of the sweep; the summary page shows it for reruns.
     """
 
     scenario: Scenario
@@ -40,20 +40,20 @@ class Sweep:
         return self.table.with_suffix(".html")
 
     def run(self, runner: Runner, *, resume: bool, progress: Callable[[int, int, int], None]) -> Table:
-        """Execute all runs that have no outcome yet, and write the table and the summary page.
+        """Execute all runs without an outcome, and write the table and the summary page.
 
-        The files are also written after an interruption.
+        After an interruption by Ctrl-C they are written as well.
 
         Args:
             runner: executes the runs.
-            resume: whether to resume an incomplete sweep.
+            resume: whether to resume an unfinished sweep.
             progress: called with the numbers of finished, planned and failed runs.
 
         Returns:
-            The table, which lacks the runs that an interruption prevented.
+            The table; after an interruption, without the remaining runs.
 
         Raises:
-            LinkwrightError: an error of the journal, see `Journal`; SWEEP110, a file cannot be written.
+            LinkwrightError: an error of `Journal`; or SWEEP110, a file cannot be written.
         """
         runs = plan_runs(self.scenario)
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:

@@ -25,8 +25,8 @@ class Table:
     Attributes:
         parameters: the names of parameters, and ``seed``.
         results: the names of results, in the order of their first occurrence.
-        columns: by name, a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for a value that
-            a row does not have.
+        columns: the columns by name, with a value for each row: ``row``, parameters, ``seed``, results, ``error``. A
+            value that a row does not have is None.
     """
 
     parameters: tuple[str, ...]
@@ -36,15 +36,15 @@ class Table:
     @classmethod
     def of(cls, runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> Table:
         """Return the table of the finished runs."""
-        done = [(run, outcomes[run.row]) for run in runs if run.row in outcomes]
-        names = tuple(dict.fromkeys(name for _, outcome in done for name in outcome.results))
+        finished = [(run, outcomes[run.row]) for run in runs if run.row in outcomes]
+        result_names = tuple(dict.fromkeys(name for _, outcome in finished for name in outcome.results))
         parameters = tuple(runs[0].parameters) if runs else ()
-        columns: dict[str, list[Result]] = {"row": [run.row for run, _ in done]}
-        columns |= {name: [run.parameters[name] for run, _ in done] for name in parameters}
-        columns[SEED] = [run.seed for run, _ in done]
-        columns |= {name: [outcome.results.get(name) for _, outcome in done] for name in names}
-        columns["error"] = [outcome.error for _, outcome in done]
-        return cls((*parameters, SEED), names, columns)
+        columns: dict[str, list[Result]] = {"row": [run.row for run, _ in finished]}
+        columns |= {name: [run.parameters[name] for run, _ in finished] for name in parameters}
+        columns[SEED] = [run.seed for run, _ in finished]
+        columns |= {name: [outcome.results.get(name) for _, outcome in finished] for name in result_names}
+        columns["error"] = [outcome.error for _, outcome in finished]
+        return cls((*parameters, SEED), result_names, columns)
 
     def __len__(self) -> int:
         return len(self.columns["row"])
@@ -52,66 +52,66 @@ class Table:
     @property
     def failed(self) -> list[int]:
         """The indices in the columns of the rows that have an error."""
-        return [place for place, error in enumerate(self.columns["error"]) if error]
+        return [index for index, error in enumerate(self.columns["error"]) if error]
 
 
 def check_format(path: Path) -> None:
-    """Check that a table can be written to a file of this format, before the first run.
+    """Raise if a table cannot be written to a file; called before the first run.
 
     Raises:
         LinkwrightError: SWEEP110, the extension is not supported; SWEEP111, pyarrow is not installed.
     """
     if path.suffix not in FORMATS or path.is_dir():
-        message = phrase("'{path}' cannot be the file of a table", path=str(path))
+        message = phrase("a table cannot be written to '{path}'", path=str(path))
         raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("its name must end in .csv or .parquet")))
     if path.suffix == ".parquet":
-        _pyarrow()
+        _load_pyarrow()
 
 
 def table_bytes(table: Table, path: Path) -> bytes:
-    """Serialize the table in the format that the file's extension selects."""
-    return _parquet(table) if path.suffix == ".parquet" else _csv(table)
+    """Return the table in the format that the extension of a path selects."""
+    return _to_parquet(table) if path.suffix == ".parquet" else _to_csv(table)
 
 
-def _csv(table: Table) -> bytes:
-    """Serialize the table as CSV with a header line; floats are written without loss of precision."""
+def _to_csv(table: Table) -> bytes:
+    """Return the table as CSV with a header line; floats keep their full precision."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)
-    writer.writerows([_cell(value) for value in row] for row in zip(*table.columns.values(), strict=True))
+    writer.writerows([_format_cell(value) for value in row] for row in zip(*table.columns.values(), strict=True))
     return text.getvalue().encode()
 
 
-def _cell(value: Result) -> str:
+def _format_cell(value: Result) -> str:
     if value is None:
         return ""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _parquet(table: Table) -> bytes:
-    arrow = _pyarrow()
+def _to_parquet(table: Table) -> bytes:
+    arrow = _load_pyarrow()
     import pyarrow.parquet as pq  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
-    columns = {name: arrow.array(_alike(values)) for name, values in table.columns.items()}
+    columns = {name: arrow.array(_to_one_type(values)) for name, values in table.columns.items()}
     file = io.BytesIO()
     pq.write_table(arrow.table(columns), file)
     return file.getvalue()
 
 
-def _alike(values: Sequence[Result]) -> list[Result]:
-    """Convert values to one type, as a Parquet column requires.
+def _to_one_type(values: Sequence[Result]) -> list[Result]:
+    """Return values converted to one type, as a Parquet column requires.
 
     Integers and floats become floats; other mixed types become strings.
     """
-    kinds = {type(value) for value in values if value is not None}
-    if len(kinds) < 2:
+    types = {type(value) for value in values if value is not None}
+    if len(types) < 2:
         return list(values)
-    if kinds == {int, float}:
+    if types == {int, float}:
         return [None if value is None else float(value) for value in values]
-    return [None if value is None else _cell(value) for value in values]
+    return [None if value is None else _format_cell(value) for value in values]
 
 
-def _pyarrow() -> Any:
+def _load_pyarrow() -> Any:
     try:
         import pyarrow as pa  # type: ignore[import-not-found, import-untyped, unused-ignore]
     except ModuleNotFoundError as error:

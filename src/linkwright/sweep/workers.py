@@ -1,4 +1,4 @@
-"""Runs a scenario in processes on this machine."""
+"""Run a scenario in processes on this machine."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.sweep.plan import Run
-from linkwright.sweep.running import Outcome, prepare, run_once
+from linkwright.sweep.running import Outcome, load_into_process, run_once
 from linkwright.sweep.scenario import described
 
-MOST_ATTEMPTS = 2
-"""Attempts for a run whose process dies."""
+MAX_ATTEMPTS = 2
+"""The maximum number of attempts for a run whose process dies."""
 
 _PATIENCE = 10.0
-"""Seconds that a process may take to end before it is killed."""
+"""The seconds that a process has to exit before it is killed."""
 
 Report = Callable[[Outcome], None]
 
@@ -33,73 +33,73 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
     If a process dies, it is replaced, and its run is repeated once.
 
     Args:
-        path: the scenario's file.
+        path: the file of the scenario.
         runs: the runs to execute.
         workers: the number of parallel processes.
-        report: called with the outcome of each run, in the order in which the runs finish.
+        report: called with the outcome of each run when it has finished.
     """
-    waiting = deque(runs)
+    pending = deque(runs)
     attempts: dict[int, int] = {}
-    busy: dict[Connection, _Worker] = {}
-    idle: list[_Worker] = []
+    busy_workers: dict[Connection, _Worker] = {}
+    idle_workers: list[_Worker] = []
     try:
-        while waiting or busy:
-            while waiting and len(busy) < workers:
-                worker = idle.pop() if idle else _Worker(path)
-                worker.start_run(waiting.popleft())
-                busy[worker.connection] = worker
-            for ready in wait(list(busy)):
-                worker = busy.pop(ready)  # type: ignore[call-overload]  # connections only were waited for
+        while pending or busy_workers:
+            while pending and len(busy_workers) < workers:
+                worker = idle_workers.pop() if idle_workers else _Worker(path)
+                worker.start_run(pending.popleft())
+                busy_workers[worker.connection] = worker
+            for connection in wait(list(busy_workers)):
+                worker = busy_workers.pop(connection)  # type: ignore[call-overload]  # connections only were waited for
                 outcome = worker.outcome()
                 if outcome is not None:
-                    idle.append(worker)
+                    idle_workers.append(worker)
                     report(outcome)
                     continue
-                run, died = worker.run, worker.end()
+                run, exit_description = worker.run, worker.end()
                 attempts[run.row] = attempts.get(run.row, 0) + 1
-                if attempts[run.row] < MOST_ATTEMPTS:
-                    waiting.appendleft(run)
+                if attempts[run.row] < MAX_ATTEMPTS:
+                    pending.appendleft(run)
                 else:
-                    report(Outcome(run.row, error=f"the process that ran it {died}, twice"))
+                    report(Outcome(run.row, error=f"the process that ran it {exit_description}, twice"))
     finally:
-        for worker in (*busy.values(), *idle):
+        for worker in (*busy_workers.values(), *idle_workers):
             worker.stop()
-        for worker in (*busy.values(), *idle):
+        for worker in (*busy_workers.values(), *idle_workers):
             worker.end()
 
 
 class _Worker:
-    """A process that executes runs one after another, and the connection to this process."""
+    """A process that executes one run after another, with a connection to it."""
 
     def __init__(self, path: Path) -> None:
         spawn = multiprocessing.get_context("spawn")
-        self.connection, theirs = spawn.Pipe()
+        self.connection, child_connection = spawn.Pipe()
         self.run = Run(0, {}, 0)
-        self._process = spawn.Process(target=_serve, args=(path, theirs), daemon=True)
-        with _no_interrupt():
+        self._process = spawn.Process(target=_run_worker, args=(path, child_connection), daemon=True)
+        with _block_interrupts():
             self._process.start()
-        theirs.close()
+        child_connection.close()
 
     def start_run(self, run: Run) -> None:
-        """Send a run to the process, which executes it."""
+        """Send a run to the process for execution."""
         self.run = run
         with suppress(OSError):  # the process has died, as the caller learns when waiting for the outcome
             self.connection.send(run)
 
     def outcome(self) -> Outcome | None:
-        """Receive the outcome of the run; return None if the process has died."""
+        """Return the outcome of the run; None if the process has died."""
         try:
-            outcome: Outcome = self.connection.recv()
+            receive_outcome: Outcome = self.connection.recv()
         except (EOFError, OSError):
             return None
-        return outcome
+        return receive_outcome
 
     def stop(self) -> None:
         """Terminate the process, even during a run."""
         self._process.terminate()
 
     def end(self) -> str:
-        """Wait until the process has ended, and return a description of its exit status."""
+        """Wait until the process has ended, and return how it ended, as a clause without a subject."""
         self.connection.close()
         self._process.join(_PATIENCE)
         if self._process.is_alive():
@@ -110,14 +110,14 @@ class _Worker:
         return f"was ended by {signal.Signals(-status).name}" if status < 0 else f"ended with status {status}"
 
 
-def _serve(path: Path, connection: Connection) -> None:
-    """Execute the runs received from the connection, as the main function of a worker."""
+def _run_worker(path: Path, connection: Connection) -> None:
+    """Execute the runs that arrive on the connection, in a worker process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
     with suppress(EOFError, OSError):
         try:
-            scenario = prepare(path)
+            scenario = load_into_process(path)
         except LinkwrightError as error:
             while True:
                 run: Run = connection.recv()
@@ -126,8 +126,8 @@ def _serve(path: Path, connection: Connection) -> None:
             connection.send(run_once(scenario, connection.recv()))
 
 
-def _end_with_parent() -> None:
-    """Make this process end when its parent ends for any reason, so that no run outlives the parent."""
+def _exit_with_parent() -> None:
+    """Exit this process when its parent ends for any reason, so that no run outlives the parent."""
     parent = multiprocessing.parent_process()
     assert parent is not None, "it is a process of a pool"
     parent.join()
@@ -135,16 +135,16 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _no_interrupt() -> Iterator[None]:
-    """Block Ctrl-C in the context, in which a process is started.
+def _block_interrupts() -> Iterator[None]:
+    """Block Ctrl-C while a process is started in the context.
 
     The new process inherits the blocked signal.
     """
     if sys.platform == "win32":
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    previous_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)

@@ -1,4 +1,4 @@
-"""Records the messages that are published on a topic during a test."""
+"""Recording of the messages that are published on a topic during a test."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from linkwright.graph import (
 
 
 class Recording:
-    """The messages of a topic in the order of arrival, created by ``record`` of a stepped graph.
+    """The messages of a topic in the order of arrival; the method ``record`` of a stepped graph creates it.
 
-    The subscription is created as soon as the topic's type is known, that is, when a node publishes or subscribes to
-    the topic. A recording can therefore be created before the node under test. The messages that a transient local
-    publisher stores are included.
+    The subscription is created when a node first publishes or subscribes to the topic, which determines its type. A
+    recording can therefore be created before the node under test. Messages that a transient local publisher stores are
+    included.
 
     Attributes:
         topic: the absolute name of the topic.
@@ -80,14 +80,14 @@ class Recording:
 
     def _subscribe(self, msg_type: Any) -> None:
         self._graph.unwatch(self._look)
-        offered = [publisher.qos_profile.durability for publisher in self._graph.bus.publishers(self.topic)]
-        keeps = bool(offered) and all(
-            durability_policy is DurabilityPolicy.TRANSIENT_LOCAL for durability_policy in offered
+        durabilities = [publisher.qos_profile.durability for publisher in self._graph.bus.publishers(self.topic)]
+        are_stored = bool(durabilities) and all(
+            durability_policy is DurabilityPolicy.TRANSIENT_LOCAL for durability_policy in durabilities
         )
         qos = QoSProfile(
             history=HistoryPolicy.KEEP_ALL,
             reliability=ReliabilityPolicy.BEST_EFFORT,
-            durability=DurabilityPolicy.TRANSIENT_LOCAL if keeps else DurabilityPolicy.VOLATILE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if are_stored else DurabilityPolicy.VOLATILE,
         )
         self._subscription = self._node.create_subscription(msg_type, self.topic, self._receive, qos)
 

@@ -1,4 +1,4 @@
-"""Loads worlds and robots for simulations, and caches them until their files change."""
+"""Loading of worlds and robots for simulations, which are cached until their files change."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.models import Model
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 
-_MOST = 64
-"""The most worlds and robots that are kept; a sweep over arguments makes one for each value."""
+_MAX_CACHED_SCENES = 64
+"""The maximum number of cached worlds and robots; a test over many arguments loads a robot for each value."""
 
 
 class _CacheEntry(NamedTuple):
@@ -36,7 +36,7 @@ def read_world(name: str | Path) -> LoadedWorld:
         loaded = load_world(str(name))
         return loaded, loaded.files
 
-    world: LoadedWorld = _read_once(("world", str(Path.cwd()), name), read)
+    world: LoadedWorld = _read_cached(("world", str(Path.cwd()), name), read)
     return world
 
 
@@ -49,32 +49,32 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
 
     def read() -> tuple[Model, tuple[Path, ...]]:
         finder = PackageFinder(start=[path.parent, Path.cwd()])
-        converted = as_sdf(path, finder, arguments=dict(arguments), folder=Path.cwd())
-        if converted.sdf is None or not converted.sdf.models:
-            message = phrase("there is no model in '{path}'", path=str(path))
-            hint = phrase("a robot must be URDF, xacro, or SDF with a <model>")
-            raise LinkwrightError(*converted.diagnostics or [Diagnostic("SIM142", message, hint=hint)])
-        return converted.sdf.models[0], converted.files
+        conversion = as_sdf(path, finder, arguments=dict(arguments), folder=Path.cwd())
+        if conversion.sdf is None or not conversion.sdf.models:
+            message = phrase("the file '{path}' contains no model", path=str(path))
+            hint = phrase("use a URDF or xacro file, or an SDF file with a <model>")
+            raise LinkwrightError(*conversion.diagnostics or [Diagnostic("SIM142", message, hint=hint)])
+        return conversion.sdf.models[0], conversion.files
 
     key = ("model", str(Path.cwd()), str(path), *sorted(arguments.items()))
-    model: Model = _read_once(key, read)
+    model: Model = _read_cached(key, read)
     return model
 
 
-def _read_once(key: tuple[object, ...], read: Callable[[], tuple[Any, tuple[Path, ...]]]) -> Any:
+def _read_cached(key: tuple[object, ...], read: Callable[[], tuple[Any, tuple[Path, ...]]]) -> Any:
     entry = _cache.pop(key, None)
-    if entry is None or entry.states != tuple(map(_state, entry.files)):
+    if entry is None or entry.states != tuple(map(_file_state, entry.files)):
         value, files = read()
-        entry = _CacheEntry(value, tuple(map(_state, files)), files)
+        entry = _CacheEntry(value, tuple(map(_file_state, files)), files)
     _cache[key] = entry
-    if len(_cache) > _MOST:
+    if len(_cache) > _MAX_CACHED_SCENES:
         del _cache[next(iter(_cache))]
     return entry.value
 
 
-def _state(path: Path) -> object:
+def _file_state(path: Path) -> object:
     try:
-        facts = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return facts.st_mtime_ns, facts.st_size, facts.st_ino
+    return status.st_mtime_ns, status.st_size, status.st_ino

@@ -62,27 +62,29 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         strict: bool = True,
     ) -> None:
         super().__init__(start=start, strict=strict)
-        self._path = None if robot is None else _path(robot)
-        self._loaded = read_world(str(world))
+        self._path = None if robot is None else _resolve_path(robot)
+        self._loaded_world = read_world(str(world))
         if friction is not None:
-            self._loaded = self._loaded._replace(world=_gripping(self._loaded.world, friction))
+            self._loaded_world = self._loaded_world._replace(
+                world=_with_world_friction(self._loaded_world.world, friction)
+            )
         self._model: Model | None = None
         self._description: str | None = None
         if self._path is not None:
             if robot_state_publisher:
-                self._description = _described(self._path, arguments or {})
-            model = _model(self._path, arguments or {})
+                self._description = _read_description(self._path, arguments or {})
+            model = _read_robot(self._path, arguments or {})
             model = model if mass == 1.0 else with_mass(model, mass)
             self._model = model if noise == 1.0 else with_noise(model, noise)
-        self._pose = _transform(pose)
+        self._pose = _transform_from_rpy(pose)
         self._options = ServerOptions(seed, usual_names=True)
         self._folders = [
             Path.cwd(),
             *([] if self._path is None else [self._path.parent]),
             Path(world).absolute().parent,
         ]
-        self._period = round(period * NANOSECONDS_PER_SECOND)
-        self._left = 0
+        self._period_ns = round(period * NANOSECONDS_PER_SECOND)
+        self._remaining_ns = 0
         self._server: SimulationServer | None = None
 
     async def __aenter__(self) -> Self:
@@ -101,14 +103,14 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         await super().__aexit__(kind, error, trace)
 
     def _begin(self) -> None:
-        simulation = Simulation(self._loaded.world, ResourceFinder(PackageFinder(start=self._folders)))
+        simulation = Simulation(self._loaded_world.world, ResourceFinder(PackageFinder(start=self._folders)))
         node = self.graph.create_node(_NODE)
         self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
-        own = SteppedNode(node, self._server.exchange, owned=False)
+        server_node = SteppedNode(node, self._server.exchange, owned=False)
         self._progress = _Progress(simulation)
-        Services(self._server, self._progress, own, self._loaded, DescriptionLibrary())
+        Services(self._server, self._progress, server_node, self._loaded_world, DescriptionLibrary())
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
@@ -143,8 +145,8 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         arguments: Mapping[str, object] | None = None,
     ) -> str:
         """Spawn another robot in the world; see `SteppedSimulation.spawn`."""
-        model = _model(_path(robot), arguments or {})
-        self.server.spawn(model, name or model.name, _transform(pose), namespace)
+        model = _read_robot(_resolve_path(robot), arguments or {})
+        self.server.spawn(model, name or model.name, _transform_from_rpy(pose), namespace)
         return name or model.name
 
     def delete(self, name: str) -> None:
@@ -163,9 +165,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self.publish(topic, message)
 
     async def settle(self) -> None:
-        """Run all ready callbacks of the graph and the simulation, and callbacks that these cause.
+        """Run all ready callbacks of the graph and the simulation, and the callbacks that these cause.
 
-        Time does not pass.
+        Time does not advance.
 
         Raises:
             Exception: the error of a callback.
@@ -182,24 +184,24 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 
         Raises:
             UnstableError: a value in the simulation is no longer finite.
-            Exception: the error of a callback; the time has advanced nevertheless.
+            Exception: the error of a callback; time has advanced even then.
         """
         await self.settle()
-        self._left += round(seconds * NANOSECONDS_PER_SECOND)
+        self._remaining_ns += round(seconds * NANOSECONDS_PER_SECOND)
         server, simulation = self.server, self.simulation
-        while self._left > 0:
+        while self._remaining_ns > 0:
             server.exchange.run_commands()
-            passed = min(self._period, self._left)
+            step_ns = min(self._period_ns, self._remaining_ns)
             if not self._progress.paused:
-                before = simulation.time
-                simulation.advance(passed)
-                passed = simulation.time - before
-            self._left -= passed
-            await self.clock.advance(passed / NANOSECONDS_PER_SECOND, is_settled=True)
+                time_before_ns = simulation.time
+                simulation.advance(step_ns)
+                step_ns = simulation.time - time_before_ns
+            self._remaining_ns -= step_ns
+            await self.clock.advance(step_ns / NANOSECONDS_PER_SECOND, is_settled=True)
             self._publish_time()
             server.exchange.deliver()
             await self.graph.settle()
-        self._raise()
+        self._raise_callback_error()
 
     async def reset(self) -> None:
         """Restore the initial state of the world, of simulated time and of the noise.
@@ -207,7 +209,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         Nodes and recorded messages remain, and the time of day is not reset.
         """
         self.server.reset()
-        self._left = 0
+        self._remaining_ns = 0
         self._publish_time()
         await self.settle()
 
@@ -217,18 +219,18 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         )
 
 
-def _taking_what(
-    make: Callable[_P, AsyncSteppedSimulation],
+def _with_arguments_of(
+    factory: Callable[_P, AsyncSteppedSimulation],
 ) -> Callable[[Callable[[_T, AsyncSteppedSimulation], None]], Callable[Concatenate[_T, _P], None]]:
     """Return a decorator that gives an ``__init__`` the signature of the asynchronous class.
 
-    The decorated method receives an instance of that class instead of the arguments.
+    The decorated method receives an instance of the asynchronous class instead of the arguments.
     """
 
     def decorate(init: Callable[[_T, AsyncSteppedSimulation], None]) -> Callable[Concatenate[_T, _P], None]:
         @wraps(AsyncSteppedSimulation.__init__)
         def make_both(self: _T, /, *args: _P.args, **kwargs: _P.kwargs) -> None:
-            init(self, make(*args, **kwargs))
+            init(self, factory(*args, **kwargs))
 
         return make_both
 
@@ -245,14 +247,14 @@ class SteppedSimulation(SteppedGraph):
     ...     1.0 < odometry.last.pose.pose.position.x < 1.25
     True
 
-    Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the timers whose time
-    has come, publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks
-    that these cause. After that the world moves again, with the commands that were received in the meantime. The
-    results of a test are therefore bit-identical in each run. Nodes written for rclpy run in the graph after
-    `init_rclpy`, and follow simulated time if the parameter ``use_sim_time`` is set.
+    Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the timers that have
+    expired, publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that
+    these messages cause. After that the world moves again, with the commands that it has received. The results of a
+    test are therefore bit-identical in each run. Nodes written for rclpy run in the graph after `init_rclpy`, and
+    follow simulated time if the parameter ``use_sim_time`` is set.
 
     The simulation offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
-    ``/pause_physics`` and so on; `spawn` and `delete` correspond to the first two.
+    ``/pause_physics`` and so on; `spawn` and `delete` do the same as the first two services.
 
     Topics have the same names as in ``linkwright sim``: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are read
     once per process; a robot whose files have changed is read again.
@@ -263,8 +265,8 @@ class SteppedSimulation(SteppedGraph):
         arguments: values for the ``<xacro:arg>`` elements of the robot.
         pose: the initial pose of the robot: x, y, z in m, roll, pitch, yaw in rad.
         seed: the seed of all noise.
-        friction: the coefficient of friction of the world's static models, above all of the ground; None for the values
-            of the file. Between two bodies in contact the lower value applies.
+        friction: the coefficient of friction of the world's static models, such as the ground; None for the values of
+            the file. The lower value of two bodies in contact applies.
         mass: the factor for the robot's masses and inertias.
         noise: the factor for the noise of the robot's sensors; 0 for exact measurements.
         robot_state_publisher: whether a robot_state_publisher runs for the robot, which publishes the description and
@@ -281,14 +283,14 @@ class SteppedSimulation(SteppedGraph):
 
     _steps: AsyncSteppedSimulation
 
-    @_taking_what(AsyncSteppedSimulation)
+    @_with_arguments_of(AsyncSteppedSimulation)
     def __init__(self, steps: AsyncSteppedSimulation) -> None:
         super().__init__(steps=steps)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._steps.server.close()  # close the server before rclpy shuts down, which would destroy the server's nodes
+        self._steps.server.close()  # The server must close first, because the shutdown of rclpy destroys its nodes.
         super().__exit__(kind, error, trace)
 
     @property
@@ -339,7 +341,7 @@ class SteppedSimulation(SteppedGraph):
         return self._steps.robot_pose()
 
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
-        """Set the commanded velocity of the robot, which applies from the next step on.
+        """Set the commanded velocity of the robot, beginning with the next step.
 
         Args:
             linear: the forward velocity, in m/s.
@@ -353,14 +355,14 @@ class SteppedSimulation(SteppedGraph):
         self._run(self._steps.reset())
 
 
-def _gripping(world: World, friction: float) -> World:
-    """Return a copy of a world whose static models have the given coefficient of friction."""
+def _with_world_friction(world: World, friction: float) -> World:
+    """Return a copy of a world in which all static models have a coefficient of friction."""
     models = tuple(with_friction(model, friction) if model.static else model for model in world.models)
     return replace(world, models=models)
 
 
 class _Progress:
-    """Implements the simulator services that pause the simulation and run single steps."""
+    """The handler of the simulator services that pause the simulation and run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.paused = False
@@ -376,16 +378,16 @@ class _Progress:
         self._simulation.advance(count * self._simulation.step)
 
 
-def _path(robot: str | Path) -> Path:
+def _resolve_path(robot: str | Path) -> Path:
     return PackageFinder(start=[Path.cwd()]).resolve(str(robot), Path.cwd())
 
 
-def _model(path: Path, arguments: Mapping[str, object]) -> Model:
+def _read_robot(path: Path, arguments: Mapping[str, object]) -> Model:
     return read_model(path, {name: _text(value) for name, value in arguments.items()})
 
 
-def _described(path: Path, arguments: Mapping[str, object]) -> str:
-    """Read the file of a robot, and return the description as URDF.
+def _read_description(path: Path, arguments: Mapping[str, object]) -> str:
+    """Read the file of a robot, and return its description as URDF.
 
     Raises:
         LinkwrightError: the file has errors.
@@ -398,7 +400,7 @@ def _described(path: Path, arguments: Mapping[str, object]) -> str:
     return description.text
 
 
-def _transform(pose: Sequence[float]) -> Transform:
+def _transform_from_rpy(pose: Sequence[float]) -> Transform:
     x, y, z, roll, pitch, yaw = pose
     return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
 

@@ -27,7 +27,7 @@ _NODE = "test"
 class AsyncSteppedGraph:
     """A graph whose time passes only in `advance`: an hour of timers, rates and throttles takes milliseconds.
 
-    Everything runs in one thread, in a reproducible order. If a callback fails, the step in which it runs raises the
+    All callbacks run in one thread, in a reproducible order. If a callback fails, the step in which it runs raises the
     error. For tests that are not coroutines, use `SteppedGraph`.
 
     Example::
@@ -38,9 +38,7 @@ class AsyncSteppedGraph:
                 node = test.create_node("talker")
                 publisher = node.create_publisher(String, "chatter", 10)
                 node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
-                await test.advance(3600.0)
-                assert len(chatter) == 7200
-                assert chatter.last.data == "Hello: 7199"
+                await test.advance(3600.0) assert len(chatter) == 7200 assert chatter.last.data == "Hello: 7199"
 
     Args:
         start: the time of day at the start, in seconds since the epoch.
@@ -130,7 +128,7 @@ class AsyncSteppedGraph:
             Exception: the error of a callback.
         """
         await self.graph.settle()
-        self._raise()
+        self._raise_callback_error()
 
     spin = settle
 
@@ -140,10 +138,10 @@ class AsyncSteppedGraph:
         Timers are called in the order of their times. The callbacks that a timer causes run before the next timer.
 
         Raises:
-            Exception: the error of a callback; the time has advanced nevertheless.
+            Exception: the error of a callback; time has advanced even then.
         """
         await self.clock.advance(seconds)
-        self._raise()
+        self._raise_callback_error()
 
     async def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
         """Call a service of the graph.
@@ -160,7 +158,7 @@ class AsyncSteppedGraph:
             LookupError: there is no service with this name.
             TimeoutError: the response did not arrive in time.
         """
-        client = self._client(service)
+        client = self._service_client(service)
         future = client.call_async(request)
         await self.settle()
         if not future.ended() and timeout > 0:
@@ -170,7 +168,7 @@ class AsyncSteppedGraph:
             raise TimeoutError(f"service '{client.srv_name}' has not answered within {timeout:g} s")
         return future.result()
 
-    def _client(self, service: str) -> Client[Any, Any]:
+    def _service_client(self, service: str) -> Client[Any, Any]:
         name = self.node.resolve_service_name(service)
         client = self._clients.get(name)
         if client is None:
@@ -184,6 +182,6 @@ class AsyncSteppedGraph:
         entity.report(error)
         self.errors.append(error)
 
-    def _raise(self) -> None:
+    def _raise_callback_error(self) -> None:
         if self._strict and self.errors:
             raise self.errors.pop(0)

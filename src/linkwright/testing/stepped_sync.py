@@ -29,7 +29,7 @@ class SteppedGraph:
     ...     len(chatter), chatter.last.data
     (7200, 'Hello: 7199')
 
-    A node that is written for rclpy is tested in the same way. After `init_rclpy`, rclpy's nodes are created in the
+    A node that is written for rclpy is tested in the same way. After `init_rclpy`, nodes of rclpy are created in the
     test's graph, and the steps of the graph run their callbacks without spinning::
 
         with SteppedGraph() as test:
@@ -43,7 +43,7 @@ class SteppedGraph:
         start: the time of day at the start, in seconds since the epoch.
         strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
             logged.
-        steps: an asynchronous graph of a derived class to wrap; `start` and `strict` are then not used.
+        steps: the asynchronous graph to wrap, with which `start` and `strict` are not used; None to create one.
     """
 
     def __init__(
@@ -108,7 +108,7 @@ class SteppedGraph:
         """Initialise rclpy with the test's graph until the end of the test.
 
         Args:
-            args: the command line, with ROS arguments; None for an empty one.
+            args: the command line, with ROS arguments; None for an empty command line.
 
         Returns:
             The default context of rclpy, in which nodes are created.
@@ -144,7 +144,7 @@ class SteppedGraph:
         """Advance the time of the graph; see `AsyncSteppedGraph.advance`.
 
         Raises:
-            Exception: the error of a callback; the time has advanced nevertheless.
+            Exception: the error of a callback; time has advanced even then.
         """
         self._run(self._steps.advance(seconds))
 

@@ -44,11 +44,11 @@ class Bodies:
     @cached_property
     def all(self) -> tuple[Body, ...]:
         """All bodies, starting with the body of the root."""
-        return tuple(dict.fromkeys(self._by_link.values()))
+        return tuple(dict.fromkeys(self._bodies_by_link.values()))
 
     def of(self, link: str) -> Body | None:
         """Return the body that contains a link, or None if there is none."""
-        return self._by_link.get(link)
+        return self._bodies_by_link.get(link)
 
     def members(self, body: Body) -> list[Link]:
         """Return the links of a body."""
@@ -60,11 +60,11 @@ class Bodies:
 
         The body cannot rotate if only prismatic joints connect it to the link `WORLD`.
         """
-        body = self._by_link.get(link)
+        body = self._bodies_by_link.get(link)
         while body is not None and body.joint is not None:
             if body.joint.type != "prismatic":
                 return True
-            body = self._by_link.get(body.joint.parent)
+            body = self._bodies_by_link.get(body.joint.parent)
         return body is None or WORLD not in body.frames
 
     def includes_massless_links(self, link: Link) -> bool:
@@ -92,44 +92,48 @@ class Bodies:
             if joint.type == "fixed" and joint.parent in links and joint.child in links:
                 neighbours[joint.parent].append(joint.child)
                 neighbours[joint.child].append(joint.parent)
-        massless = {name for name, link in links.items() if not _has_mass(link)}
-        found: set[str] = set()
-        seen: set[str] = set()
-        for name in massless:
-            if name in seen:
+        massless_links = {name for name, link in links.items() if not _has_mass(link)}
+        names: set[str] = set()
+        visited: set[str] = set()
+        for name in massless_links:
+            if name in visited:
                 continue
-            seen.add(name)
+            visited.add(name)
             group = [name]
-            for item in group:
-                more = [other for other in neighbours[item] if other in massless and other not in seen]
-                seen.update(more)
-                group += more
+            for member in group:
+                unvisited = [
+                    neighbour
+                    for neighbour in neighbours[member]
+                    if neighbour in massless_links and neighbour not in visited
+                ]
+                visited.update(unvisited)
+                group += unvisited
             if any(links[item].visuals or links[item].collisions for item in group):
-                found.update(other for item in group for other in neighbours[item] if other not in massless)
-        return frozenset(found)
+                names.update(other for item in group for other in neighbours[item] if other not in massless_links)
+        return frozenset(names)
 
     @cached_property
-    def _by_link(self) -> Mapping[str, Body]:
+    def _bodies_by_link(self) -> Mapping[str, Body]:
         robot = self._robot
         if robot is None:
             return {}
-        below: dict[str, list[Joint]] = {}
+        joints_by_parent: dict[str, list[Joint]] = {}
         for joint in robot.joints.values():
-            below.setdefault(joint.parent, []).append(joint)
-        start = Placement(IDENTITY, (0.0, 0.0, 0.0))
-        bodies: dict[str, Body] = {robot.root: Body(None, {robot.root: start})}
-        waiting = [robot.root]
-        for name in waiting:
+            joints_by_parent.setdefault(joint.parent, []).append(joint)
+        origin_placement = Placement(IDENTITY, (0.0, 0.0, 0.0))
+        bodies: dict[str, Body] = {robot.root: Body(None, {robot.root: origin_placement})}
+        pending = [robot.root]
+        for name in pending:
             body = bodies[name]
-            for joint in below.get(name, ()):
+            for joint in joints_by_parent.get(name, ()):
                 if joint.child in bodies or joint.child not in robot.links:
                     continue
                 if joint.type == "fixed":
                     body.frames[joint.child] = placement(joint.origin).inside(body.frames[name])
                     bodies[joint.child] = body
                 else:
-                    bodies[joint.child] = Body(joint, {joint.child: start})
-                waiting.append(joint.child)
+                    bodies[joint.child] = Body(joint, {joint.child: origin_placement})
+                pending.append(joint.child)
         return bodies
 
 

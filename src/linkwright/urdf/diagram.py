@@ -16,7 +16,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.whole_files import write_whole_file
 
-IMAGE_ENDINGS = (".pdf", ".svg", ".png")
+IMAGE_SUFFIXES = (".pdf", ".svg", ".png")
 
 
 def render(gv_text: str, path: str | Path) -> None:
@@ -29,14 +29,14 @@ def render(gv_text: str, path: str | Path) -> None:
             fails or the file cannot be written.
     """
     path = Path(path)
-    ending = path.suffix.lower()
-    if ending not in IMAGE_ENDINGS:
-        hint = did_you_mean(ending, IMAGE_ENDINGS) or phrase(
-            "choose from {image_endings}", image_endings=joined(IMAGE_ENDINGS)
+    suffix = path.suffix.lower()
+    if suffix not in IMAGE_SUFFIXES:
+        hint = did_you_mean(suffix, IMAGE_SUFFIXES) or phrase(
+            "choose from {image_endings}", image_endings=joined(IMAGE_SUFFIXES)
         )
         raise LinkwrightError(
             Diagnostic(
-                "URDF201", phrase("an image cannot be written as '{ending}'", ending=ending or path.name), hint=hint
+                "URDF201", phrase("an image cannot be written as '{ending}'", ending=suffix or path.name), hint=hint
             )
         )
     try:
@@ -54,7 +54,7 @@ def render(gv_text: str, path: str | Path) -> None:
             # The dot command shows the name of a node without a label, but the Graphviz library would show nothing.
             if not node.attr["label"]:
                 node.attr["label"] = r"\N"
-        diagram = graph.draw(format=ending[1:], prog="dot")
+        diagram = graph.draw(format=suffix[1:], prog="dot")
         write_whole_file(path, diagram)
     except OSError as error:
         raise LinkwrightError(

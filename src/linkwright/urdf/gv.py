@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
+from linkwright.geometry.single import pose_quaternion, rpy_from_quaternion
 from linkwright.urdf.model import Robot
 from linkwright.urdf.tree import parent_joints, walk
 
@@ -14,17 +14,17 @@ def to_gv(robot: Robot) -> str:
     angles are converted back from the quaternion, as in urdfdom.
     """
     lines = ["digraph G {", "node [shape=box];", f'"{robot.root}" [label="{robot.root}"];']
-    below = [joint for joint, _ in walk(robot)]
-    lines += [f'"{joint.child}" [label="{joint.child}"];' for joint in below]
+    joints = [joint for joint, _ in walk(robot)]
+    lines += [f'"{joint.child}" [label="{joint.child}"];' for joint in joints]
     lines.append("node [shape=ellipse, color=blue, fontcolor=blue];")
-    above = parent_joints(robot)
-    for joint in below:
+    parents = parent_joints(robot)
+    for joint in joints:
         # If a link has two parents, urdfdom prints the joint that it kept below each of them.
-        kept = above[joint.child]
-        x, y, z = kept.origin.xyz
-        roll, pitch, yaw = rpy_from_quaternion(quaternion_of(kept.origin))
+        parent_joint = parents[joint.child]
+        x, y, z = parent_joint.origin.xyz
+        roll, pitch, yaw = rpy_from_quaternion(pose_quaternion(parent_joint.origin))
         label = f"xyz: {x:g} {y:g} {z:g} \\nrpy: {roll:g} {pitch:g} {yaw:g}"
-        lines.append(f'"{joint.parent}" -> "{kept.name}" [label="{label}"]')
-        lines.append(f'"{kept.name}" -> "{joint.child}"')
+        lines.append(f'"{joint.parent}" -> "{parent_joint.name}" [label="{label}"]')
+        lines.append(f'"{parent_joint.name}" -> "{joint.child}"')
     lines += ["}", ""]
     return "\n".join(lines)

@@ -6,14 +6,14 @@ from linkwright.urdf.model import Robot
 from linkwright.urdf.tree import children_of, walk
 
 DEEPEST = 200
-"""The number of levels that are indented."""
+"""The maximum number of levels that are indented."""
 
 
 def tree_text(robot: Robot) -> str:
     """Return the robot's name and its links as an indented list.
 
-    Children are ordered by joint name, with four blanks per level. From level `DEEPEST` on, the indentation no longer
-    grows. Otherwise, the text of a chain of a hundred thousand links would exhaust the memory.
+    Children are ordered by joint name, with four blanks per level. From level `DEEPEST` on, the indentation no
+    longer grows. Otherwise, the text of a chain of a hundred thousand links would exhaust the memory.
     """
     lines = [
         f"robot name is: {robot.name}",

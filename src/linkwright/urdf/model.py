@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from linkwright.geometry.shapes import FARTHEST, SimpleShape
+from linkwright.geometry.shapes import MAX_COORDINATE, SimpleShape
 from linkwright.geometry.single import IDENTITY_POSE, Pose, Vector3
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Literal
 from linkwright.xmltree import Element
 
-_GREATEST_MASS = 1e30
+_MAX_MASS = 1e30
 """The largest mass in kg, and moment of inertia in kg m2, to compute with; the sun has 2e30 kg."""
 
 JointType = Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]
@@ -96,7 +96,7 @@ class Inertial:
     def is_computable(self) -> bool:
         """Whether the numbers are small enough to avoid overflow; they need not be physically valid."""
         numbers = (self.mass, self.ixx, self.ixy, self.ixz, self.iyy, self.iyz, self.izz)
-        return max(map(abs, numbers)) <= _GREATEST_MASS and max(map(abs, self.origin.xyz)) <= FARTHEST
+        return max(map(abs, numbers)) <= _MAX_MASS and max(map(abs, self.origin.xyz)) <= MAX_COORDINATE
 
 
 @dataclass(frozen=True, slots=True)

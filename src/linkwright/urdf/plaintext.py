@@ -15,7 +15,7 @@ from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
 
-_READ_ALL_THE_SAME = phrase("urdfdom reads it anyway, but xacro and other XML readers reject the file")
+_READ_ANYWAY = phrase("urdfdom reads it anyway, but xacro and other XML readers reject the file")
 _LATE_DECLARATION = lazy_pattern(r"\s+<\?xml\s[^>]*\?>")
 # Each pattern matches a blank that a number or the end of the value follows; in other values, blanks do not matter. A
 # pattern starts with a fixed character, which makes the search ten times as fast as one pattern for all three.
@@ -33,11 +33,11 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
     """
     if isinstance(text, bytes):
         text = decode(text, name)
-    late = _LATE_DECLARATION.match(text)
-    if late:
+    late_declaration = _LATE_DECLARATION.match(text)
+    if late_declaration:
         from linkwright.xmltree.tinyxml import blank_out
 
-        text = blank_out(late[0]) + text[late.end() :]
+        text = blank_out(late_declaration[0]) + text[late_declaration.end() :]
     warnings: tuple[Diagnostic, ...] = ()
     try:
         document = parse(text, name, blanks=False)
@@ -45,10 +45,10 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
         from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
         try:
-            document, warnings = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME)
+            document, warnings = parse_as_tinyxml(text, name, _READ_ANYWAY)
         except LinkwrightError:
             raise error from None
-    if any(blank in text and inside.search(text) for blank, inside in _INSIDE_VALUE.items()):
+    if any(blank in text and pattern.search(text) for blank, pattern in _INSIDE_VALUE.items()):
         _restore_blanks(document.root, text)
     return document, warnings
 
@@ -56,9 +56,9 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
 def _restore_blanks(root: Element, text: str) -> None:
     for element in root.walk():
         for attribute in element.attributes:
-            found = attribute_value_range(text, element.offset, attribute)
-            if found is None:
+            value_range = attribute_value_range(text, element.offset, attribute)
+            if value_range is None:
                 continue
-            written = text[slice(*found)]
-            if "&" not in written and any(blank in written for blank in "\t\r\n"):
-                element.attributes[attribute] = re.sub(r"\r\n?", "\n", written)
+            raw_value = text[slice(*value_range)]
+            if "&" not in raw_value and any(blank in raw_value for blank in "\t\r\n"):
+                element.attributes[attribute] = re.sub(r"\r\n?", "\n", raw_value)

@@ -31,8 +31,8 @@ from linkwright.urdf.tree import find_root
 from linkwright.urdf.values import degrees_hint, looks_like_degree_limits, looks_like_degrees
 from linkwright.xmltree import Document, Element
 
-_BOUNDED = ("revolute", "prismatic")
-_HAS_AXIS = ("revolute", "continuous", "prismatic", "planar")
+_BOUNDED_TYPES = ("revolute", "prismatic")
+_AXIS_TYPES = ("revolute", "continuous", "prismatic", "planar")
 _WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children if child is not AXIS))
 
 
@@ -46,7 +46,7 @@ def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) 
     values = reader_of(LINK, findings.version).read(element, element, findings)
     if findings.error_count > errors:
         _drop_unreadable_parts(values, findings)
-    values["visuals"] = tuple(_visual(fields, materials, element) for fields in values["visuals"])
+    values["visuals"] = tuple(_resolve_visual(fields, materials, element) for fields in values["visuals"])
     return Link(**values)
 
 
@@ -57,21 +57,23 @@ def _drop_unreadable_parts(values: dict[str, Any], findings: UrdfReport) -> None
     """
     element: Element = values["element"]
     inertial = element.first("inertial")
-    first_lost: tuple[ElementRule, Element] | None = None
-    lost: list[Phrase] = []
+    first_unreadable: tuple[ElementRule, Element] | None = None
+    lost_parts: list[Phrase] = []
     if inertial is not None and values["inertial"] is None:
-        first_lost = INERTIAL, inertial
-        lost.append(phrase("its <inertial>"))
+        first_unreadable = INERTIAL, inertial
+        lost_parts.append(phrase("the <inertial>"))
     for rule in (VISUAL, COLLISION):
-        found = values[rule.target]
-        kept = tuple(takewhile(lambda part: part is not UNREADABLE, found)) if first_lost is None else ()
-        if len(kept) < len(found):
-            first_lost = first_lost or (rule, list(element.elements(rule.tag))[len(kept)])
-            lost.append(phrase("{count} <{tag}>", count=len(found) - len(kept), tag=rule.tag))
-        values[rule.target] = kept
-    if first_lost is not None:
-        note = phrase("{owner} loses {lost}, as in urdfdom", owner=owner_name(element), lost=joined(lost))
-        findings.annotate(_first_error(*first_lost, element, findings.version), Note(note))
+        parts = values[rule.target]
+        readable = tuple(takewhile(lambda part: part is not UNREADABLE, parts)) if first_unreadable is None else ()
+        if len(readable) < len(parts):
+            first_unreadable = first_unreadable or (rule, list(element.elements(rule.tag))[len(readable)])
+            lost_parts.append(phrase("{count} <{tag}>", count=len(parts) - len(readable), tag=rule.tag))
+        values[rule.target] = readable
+    if first_unreadable is not None:
+        note = phrase(
+            ("urdfdom drops these parts of {owner}: {lost}"), owner=owner_name(element), lost=joined(lost_parts)
+        )
+        findings.annotate(_first_error(*first_unreadable, element, findings.version), Note(note))
 
 
 def _first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
@@ -80,22 +82,22 @@ def _first_error(rule: ElementRule, part: Element, owner: Element, version: Vers
     urdfdom reads the children of a part in the order of the rule.
     """
     for child in rule.children:
-        alone = UrdfReport(version)
+        part_report = UrdfReport(version)
         element = part.first(child.tag)
         if element is not None:
-            reader_of(child, version).read(element, owner, alone)
+            reader_of(child, version).read(element, owner, part_report)
         elif child.required:
-            alone.missing_child(part, rule, child, owner)
-        if alone.error_count:
-            return alone.first_error()
+            part_report.missing_child(part, rule, child, owner)
+        if part_report.error_count:
+            return part_report.first_error()
     raise AssertionError("a part that cannot be read has an error")
 
 
-def _visual(fields: dict[str, Any], materials: MaterialTable, owner: Element) -> Visual:
-    own = fields["material"]
-    if own is not None:
-        fields["material_name"] = own.name
-        fields["material"] = materials.resolve(own, owner)
+def _resolve_visual(fields: dict[str, Any], materials: MaterialTable, owner: Element) -> Visual:
+    material = fields["material"]
+    if material is not None:
+        fields["material_name"] = material.name
+        fields["material"] = materials.resolve(material, owner)
     return Visual(**fields)
 
 
@@ -128,21 +130,21 @@ class MaterialTable:
         else:
             self.known[material.name] = material
 
-    def resolve(self, own: Material, owner: Element) -> Material | None:
-        """Return the material for a visual's own material, or None if it is not yet defined.
+    def resolve(self, material: Material, owner: Element) -> Material | None:
+        """Return the material that applies to a visual's material element, or None if it is not yet defined.
 
         A name that is defined here for the first time is added to the table.
         """
-        defines = own.rgba is not None or own.texture is not None
-        if not own.name:
-            return own if defines else None
-        known = self.known.get(own.name)
+        is_definition = material.rgba is not None or material.texture is not None
+        if not material.name:
+            return material if is_definition else None
+        known = self.known.get(material.name)
         if known is None:
-            if not defines:
-                self._undefined.append((own, owner))
+            if not is_definition:
+                self._undefined.append((material, owner))
                 return None
-            self.known[own.name] = own
-            return own
+            self.known[material.name] = material
+            return material
         return known
 
     def report_undefined(self) -> None:
@@ -153,9 +155,9 @@ class MaterialTable:
             color = element.first("color")
             if color is not None and "rgba" in color.attributes:
                 continue  # the malformed colour of this material is reported already
-            later = self.known.get(material.name)
-            if later is not None:
-                hint = phrase("a later link defines it: move that definition to robot level")
+            later_definition = self.known.get(material.name)
+            if later_definition is not None:
+                hint = phrase("a later link defines it: move the definition to robot level")
             else:
                 hint = did_you_mean(material.name, self.known) or phrase("define it at robot level")
             message = phrase("material '{name}' of {owner} is not defined", name=material.name, owner=owner_name(owner))
@@ -174,12 +176,12 @@ def read_joint(element: Element, findings: UrdfReport) -> Joint:
     Without the element ``<axis>``, the axis is 1 0 0. For an element without 'xyz', it is 0 0 0, which is odd but as in
     urdfdom.
     """
-    before = findings.error_count
-    rule = JOINT if element.attributes.get("type") in _HAS_AXIS else _WITHOUT_AXIS
+    errors_before = findings.error_count
+    rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _WITHOUT_AXIS
     joint: Joint = reader_of(rule, findings.version).read(element, element, findings)
-    if joint.type in _BOUNDED:
+    if joint.type in _BOUNDED_TYPES:
         _check_bounds(element, joint, findings)
-    if findings.error_count > before:
+    if findings.error_count > errors_before:
         findings.rejected = True
     return joint
 
@@ -226,8 +228,8 @@ _OTHER_FORMATS = {
     "package": phrase("a package.xml"),
     "COLLADA": phrase("a COLLADA mesh"),
 }
-_OWN_TAGS = frozenset({"link", "joint", "material"})
-_FIRST_NAMES = 3
+_MODEL_TAGS = frozenset({"link", "joint", "material"})
+_MAX_NAMES = 3
 
 PartT = TypeVar("PartT", Link, Joint)
 
@@ -270,15 +272,15 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
     extensions: list[Element] = []
     for child in root.children:
         if isinstance(child, Element):
-            (children[child.tag] if child.tag in _OWN_TAGS else extensions).append(child)
+            (children[child.tag] if child.tag in _MODEL_TAGS else extensions).append(child)
 
     materials = MaterialTable(findings)
     for element in children["material"]:
         materials.define(element, root)
-    links = _by_name("link", [read_link(element, materials, findings) for element in children["link"]], findings)
+    links = _index_by_name("link", [read_link(element, materials, findings) for element in children["link"]], findings)
     materials.report_undefined()
     all_joints = [read_joint(element, findings) for element in children["joint"]]
-    joints = _by_name("joint", all_joints, findings)
+    joints = _index_by_name("joint", all_joints, findings)
 
     if not links:
         _explain_no_links(root, extensions, findings)
@@ -289,30 +291,30 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
     return Robot(name, root_name, links, joints, materials.known, findings.version, tuple(extensions), root)
 
 
-def _by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
-    """Return links or joints by name; of those with the same name, only the first counts."""
-    found: dict[str, PartT] = {}
+def _index_by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
+    """Return links or joints by name; for a repeated name, only the first one counts."""
+    parts_by_name: dict[str, PartT] = {}
     for part in parts:
-        first = found.setdefault(part.name, part)
+        first = parts_by_name.setdefault(part.name, part)
         if first is not part:
             assert part.element is not None
             findings.duplicate(kind, part.name, part.element, first.element)
-    return found
+    return parts_by_name
 
 
 def _read_version(root: Element, findings: UrdfReport) -> Version:
-    written = root.attributes.get("version")
-    if written is None:
+    version_text = root.attributes.get("version")
+    if version_text is None:
         return 1, 0
-    parts = written.split(".")
+    parts = version_text.split(".")
     numbers = [int(match[1]) for part in parts if (match := _INTEGER.fullmatch(part))]
     if len(parts) != 2 or len(numbers) != 2 or min(numbers) < 0:
-        message = phrase("'version' of <robot> is not of the form x.y: '{written}'", written=written)
+        message = phrase("'version' of <robot> is not of the form x.y: '{written}'", written=version_text)
         findings.reject("URDF104", message, root, "version", hint=phrase("write 1.0, 1.1 or 1.2, or leave it out"))
         return NEWEST_VERSION
     version = numbers[0], numbers[1]
     if not (1, 0) <= version <= NEWEST_VERSION:
-        message = phrase("there is no URDF version '{written}'", written=written)
+        message = phrase("there is no URDF version '{written}'", written=version_text)
         findings.reject("URDF104", message, root, "version", hint=phrase("the versions are 1.0, 1.1 and 1.2"))
         return NEWEST_VERSION
     return version
@@ -346,23 +348,26 @@ def _explain_no_links(root: Element, extensions: list[Element], findings: UrdfRe
 
 
 def _report_leftover_xacro(root: Element, extensions: list[Element], findings: UrdfReport) -> None:
-    left = [element for element in extensions if element.tag.startswith("xacro:")]
-    if not left:
+    xacro_elements = [element for element in extensions if element.tag.startswith("xacro:")]
+    if not xacro_elements:
         return
-    names = list(dict.fromkeys(f"<{element.tag}>" for element in left))
-    shown = joined(names[:_FIRST_NAMES])
-    if len(names) > _FIRST_NAMES:
-        shown = phrase("{names}, ...", names=shown)
+    names = list(dict.fromkeys(f"<{element.tag}>" for element in xacro_elements))
+    names_text = joined(names[:_MAX_NAMES])
+    if len(names) > _MAX_NAMES:
+        names_text = phrase("{names}, ...", names=names_text)
     hint = phrase("expand the file with xacro")
     if "xmlns:xacro" not in root.attributes:
         hint = phrase('expand the file with xacro; <robot> must declare xmlns:xacro="http://www.ros.org/wiki/xacro"')
     findings.warning(
-        "URDF102", phrase("xacro did not evaluate {shown}, which URDF readers ignore", shown=shown), left[0], hint=hint
+        "URDF102",
+        phrase("xacro did not evaluate {shown}, which URDF readers ignore", shown=names_text),
+        xacro_elements[0],
+        hint=hint,
     )
 
 
 def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
-    """Report mimic joints whose followed joint does not exist, which urdfdom does not check."""
+    """Report mimic joints that follow a missing joint or form a cycle, which urdfdom does not check."""
     for joint in joints.values():
         if joint.mimic is None:
             continue

@@ -94,8 +94,8 @@ class Findings:
         self._add(Severity.WARNING, code, message, element, attribute, hint, notes)
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
-        """Report a second element of the same kind and name; `first` is the first one."""
-        notes = (Note(phrase("first defined here"), first.span()),) if first else ()
+        """Report a second element of the same kind and name; `first_element` is the first one."""
+        notes = (Note(phrase("it is first defined here"), first.span()),) if first else ()
         hint = phrase("give each {kind} its own name", kind=term(kind))
         self.reject(
             "URDF110",
@@ -108,10 +108,10 @@ class Findings:
 
     def first_error(self) -> Diagnostic:
         """Return the first error, which must exist."""
-        return next(found for found in self._found if found.severity is Severity.ERROR)
+        return next(finding for finding in self._found if finding.severity is Severity.ERROR)
 
     def annotate(self, finding: Diagnostic, note: Note) -> None:
-        """Add a note to the latest recorded finding that equals a finding."""
+        """Add a note to the latest recorded finding that is equal to `finding`."""
         for index in range(len(self._found) - 1, -1, -1):
             if self._found[index] == finding:
                 self._found[index] = finding.with_changes(notes=(*finding.notes, note))
@@ -213,8 +213,8 @@ class UrdfReport(Findings):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report a malformed attribute, and return the value to use instead, or `UNREADABLE`.
 
-        A colour with too few numbers becomes black, and a colour with other words becomes None. Other attributes are
-        unreadable.
+        A colour with a wrong count of numbers becomes black, and any other malformed colour becomes None. Other
+        attributes are unreadable.
         """
         name, value = attribute.name, element.attributes[attribute.name]
         fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
@@ -230,21 +230,21 @@ class UrdfReport(Findings):
             return UNREADABLE
         count = COUNTS[attribute.type]
         try:
-            found = numbers(value)
+            values = numbers(value)
         except ValueError:
             message = phrase("'{name}' in <{tag}> of {owner} is not {count} numbers: '{value}'", **fields, count=count)
             self.error("URDF121", message, element, name, hint=vector_hint(value, count))
             return None if attribute.type is RGBA else UNREADABLE
         if attribute.type is RGBA:
-            return self._malformed_color(element, found, owner)
+            return self._malformed_color(element, values, owner)
         message = counted(
             "'{name}' in <{tag}> of {owner} has 1 number, but {wanted} are expected: '{value}'",
             "'{name}' in <{tag}> of {owner} has {count} numbers, but {wanted} are expected: '{value}'",
-            len(found),
+            len(values),
             **fields,
             wanted=count,
         )
-        self.error("URDF122", message, element, name, hint=_count_hint(rule, attribute, found))
+        self.error("URDF122", message, element, name, hint=_count_hint(rule, attribute, values))
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -269,20 +269,22 @@ class UrdfReport(Findings):
         `kind` is the type of the joint if only joints of some types need the child.
         """
         candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
-        like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
-        misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
+        similar_tags = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
+        misspelt_child = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase(
             "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
         )
-        if misspelt is not None:
-            hint = phrase("did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag)
-        whose = owner_name(owner)
+        if misspelt_child is not None:
+            hint = phrase(
+                "did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt_child.tag
+            )
+        owner_text = owner_name(owner)
         if kind:
-            whose = phrase("{kind} {owner}", kind=kind, owner=whose)
+            owner_text = phrase("{kind} {owner}", kind=kind, owner=owner_text)
         elif rule.tag not in ("link", "joint"):
-            whose = phrase("<{tag}> of {owner}", tag=rule.tag, owner=whose)
-        message = phrase("{whose} has no <{tag}>", whose=whose, tag=child.tag)
-        self.error("URDF130", message, misspelt or element, hint=hint)
+            owner_text = phrase("<{tag}> of {owner}", tag=rule.tag, owner=owner_text)
+        message = phrase("{whose} has no <{tag}>", whose=owner_text, tag=child.tag)
+        self.error("URDF130", message, misspelt_child or element, hint=hint)
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
         """Report that a geometry does not contain a shape."""
@@ -301,24 +303,24 @@ class UrdfReport(Findings):
         message = phrase("<{tag}> in <geometry> of {owner} is not a shape", tag=child.tag, owner=owner_name(owner))
         self.error("URDF132", message, child, hint=_shape_hint(child.tag, rule.children))
 
-    def _malformed_color(self, color: Element, found: tuple[float, ...], material: Element) -> Any:
+    def _malformed_color(self, color: Element, values: tuple[float, ...], material: Element) -> Any:
         text = color.attributes["rgba"]
         owner = phrase("material '{material}'", material=material.attributes.get("name", ""))
-        if any(not 0 <= part <= 1 for part in found):
+        if any(not 0 <= channel <= 1 for channel in values):
             hint = None
-            if all(0 <= part <= 255 for part in found):
-                scaled = [f"{part / 255:.3g}" if part > 1 else f"{part:g}" for part in found]
+            if all(0 <= part <= 255 for part in values):
+                scaled = [f"{part / 255:.3g}" if part > 1 else f"{part:g}" for part in values]
                 hint = phrase("colours range from 0 to 1, not to 255: write '{scaled}'", scaled=" ".join(scaled))
             message = phrase("'rgba' of {owner} has a number outside 0 to 1: '{text}'", owner=owner, text=text)
             self.error("URDF123", message, color, "rgba", hint=hint)
             return None
         hint = phrase("give red, green, blue and alpha")
-        if len(found) == 3:
+        if len(values) == 3:
             hint = phrase("add the alpha: '{text} 1'", text=text.strip())
         message = phrase(
             "'rgba' of {owner} has {count} numbers, but 4 are expected, so it is black: '{text}'",
             owner=owner,
-            count=len(found),
+            count=len(values),
             text=text,
         )
         self.warning("URDF122", message, color, "rgba", hint=hint)
@@ -331,47 +333,47 @@ def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phr
     return number_hint(value)
 
 
-def _joint_type_hint(written: str) -> Phrase:
+def _joint_type_hint(type_text: str) -> Phrase:
     """Return a hint on how to correct an unknown joint type."""
-    folded = written.strip().casefold()
-    if folded in JOINT_TYPES:
-        return phrase("write '{folded}'", folded=folded)
-    if folded in _JOINT_ALIASES:
-        meant = _JOINT_ALIASES[folded]
-        if meant is None:
+    lower_case = type_text.strip().casefold()
+    if lower_case in JOINT_TYPES:
+        return phrase("write '{folded}'", folded=lower_case)
+    if lower_case in _JOINT_ALIASES:
+        intended = _JOINT_ALIASES[lower_case]
+        if intended is None:
             return phrase("URDF has no such joint: build it from revolute joints")
-        return phrase("did you mean {names}?", names=quoted(meant))
-    return did_you_mean(written, JOINT_TYPES) or phrase("choose from {names}", names=joined(JOINT_TYPES))
+        return phrase("did you mean {names}?", names=quoted(intended))
+    return did_you_mean(type_text, JOINT_TYPES) or phrase("choose from {names}", names=joined(JOINT_TYPES))
 
 
-def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
+def _shape_hint(tag: str, shapes: tuple[ElementRule, ...]) -> Phrase:
     """Return a hint on how to correct an unknown shape."""
-    if written.startswith("xacro:"):
+    if tag.startswith("xacro:"):
         return phrase("xacro did not evaluate this: expand the file with xacro first")
     names = [shape.tag for shape in shapes]
-    meant = _SHAPE_ALIASES.get(written.casefold())
-    if meant:
-        return phrase("did you mean {names}?", names=quoted(meant))
-    return did_you_mean(written, names) or phrase("choose from {names}", names=joined(names))
+    intended = _SHAPE_ALIASES.get(tag.casefold())
+    if intended:
+        return phrase("did you mean {names}?", names=quoted(intended))
+    return did_you_mean(tag, names) or phrase("choose from {names}", names=joined(names))
 
 
-def _count_hint(rule: ElementRule, attribute: AttributeRule, found: tuple[float, ...]) -> Phrase:
-    if rule.tag == "mesh" and len(found) == 1:
-        return phrase("give a factor for each axis: '{value}'", value=" ".join([f"{found[0]:g}"] * 3))
+def _count_hint(rule: ElementRule, attribute: AttributeRule, values: tuple[float, ...]) -> Phrase:
+    if rule.tag == "mesh" and len(values) == 1:
+        return phrase("give a factor for each axis: '{value}'", value=" ".join([f"{values[0]:g}"] * 3))
     return phrase(
         "give {value}, separated by spaces: {meaning}", value=term(attribute.type.name), meaning=term(attribute.meaning)
     )
 
 
 def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: AttributeRule) -> Phrase:
-    unknown = [name for name in element.attributes if name not in rule.attribute_rules]
-    like = nearest(attribute.name, unknown, limit=1)
-    if like:
-        return phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=like[0])
+    unknown_attributes = [name for name in element.attributes if name not in rule.attribute_rules]
+    similar_names = nearest(attribute.name, unknown_attributes, limit=1)
+    if similar_names:
+        return phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=similar_names[0])
     text = element.text().strip()
-    if text and not unknown and attribute.type in (TEXT, NUMBER):
+    if text and not unknown_attributes and attribute.type in (TEXT, NUMBER):
         return phrase('write <{tag} {name}="{text}"/>', tag=rule.tag, name=attribute.name, text=text)
-    if rule.tag == "sphere" and "diameter" in unknown:
+    if rule.tag == "sphere" and "diameter" in unknown_attributes:
         return phrase("give the radius, half the diameter")
     fields = {"name": attribute.name, "meaning": term(attribute.meaning)}
     if attribute.unit:

@@ -61,7 +61,7 @@ def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
     """
     if quaternion is None:
         return Pose(xyz, rpy)
-    norm = sqrt(sum(part * part for part in quaternion))
+    norm = sqrt(sum(component * component for component in quaternion))
     if abs(norm - 1) < _ROUNDING:
         norm = 1.0  # keeps the exact values of a quaternion of unit length
     x, y, z, w = (part / norm for part in quaternion) if norm > 0 else (0.0, 0.0, 0.0, 1.0)
@@ -93,11 +93,11 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
     """Check that every size is positive, as URDF 1.2 requires; older versions accept any size."""
     if findings.version < (1, 2):
         return geometry
-    good = True
+    is_valid = True
     for name in _SIZES:
         value = shape.attributes.get(name)
         if value is not None and shape.tag != "mesh" and min(numbers(value)) <= 0:
-            good = False
+            is_valid = False
             message = phrase(
                 "'{name}' in <{tag}> of {owner} is not above zero: '{value}'",
                 name=name,
@@ -106,15 +106,15 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
                 value=value,
             )
             findings.error("URDF123", message, shape, name, hint=phrase("URDF 1.2 requires sizes above zero"))
-    return geometry if good else UNREADABLE
+    return geometry if is_valid else UNREADABLE
 
 
-def check_end(ends: tuple[str], element: Element, owner: Element, findings: Findings) -> tuple[str]:
+def check_link_name(link_names: tuple[str], element: Element, owner: Element, findings: Findings) -> tuple[str]:
     """Check that a joint's parent or child link has a name that is not empty."""
-    if not ends[0]:
+    if not link_names[0]:
         message = phrase("'link' in <{tag}> of {owner} is empty", tag=element.tag, owner=owner_name(owner))
         findings.error("URDF124", message, element, "link", hint=phrase("give the name of a link"))
-    return ends
+    return link_names
 
 
 def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, findings: Findings) -> Any:
@@ -134,19 +134,21 @@ def check_limit(limit: Limit, element: Element, owner: Element, findings: Findin
     """
     if findings.version < (1, 2):
         return limit
-    given = element.attributes
+    attributes = element.attributes
     if limit.upper < limit.lower:
         message = phrase(
-            "'upper' in <limit> of {owner} is below 'lower': '{upper}'", owner=owner_name(owner), upper=given["upper"]
+            "'upper' in <limit> of {owner} is below 'lower': '{upper}'",
+            owner=owner_name(owner),
+            upper=attributes["upper"],
         )
-        findings.error("URDF123", message, element, "upper", hint=phrase("exchange them"))
+        findings.error("URDF123", message, element, "upper", hint=phrase("exchange the two values"))
     for name in _UNSIGNED:
-        if name in given and number(given[name]) < 0:
+        if name in attributes and number(attributes[name]) < 0:
             message = phrase(
                 "'{name}' in <limit> of {owner} is negative: '{given}'",
                 name=name,
                 owner=owner_name(owner),
-                given=given[name],
+                given=attributes[name],
             )
             findings.error("URDF123", message, element, name, hint=phrase("give its magnitude, without a sign"))
     return limit if limit.deceleration is not None else replace(limit, deceleration=limit.acceleration)
@@ -325,20 +327,22 @@ AXIS = ElementRule(
     default=((1.0, 0.0, 0.0),),
 )
 
-_LATER: Version = (1, 2)
-_NO_BOUND = {"later_default": (_LATER, inf)}
+_URDF_1_2: Version = (1, 2)
+_NO_BOUND = {"later_default": (_URDF_1_2, inf)}
 
 LIMIT = ElementRule(
     "limit",
     "the bounds of motion; revolute and prismatic joints need them",
     (
-        _number("lower", "minimum position", "rad or m", default="0", usual=True, later_default=(_LATER, -inf)),
+        _number("lower", "minimum position", "rad or m", default="0", usual=True, later_default=(_URDF_1_2, -inf)),
         _number("upper", "maximum position", "rad or m", default="0", usual=True, **_NO_BOUND),
-        _number("effort", "maximum torque or force", "N m or N", required=True, until=_LATER, **_NO_BOUND),
-        _number("velocity", "maximum speed", "rad/s or m/s", required=True, until=_LATER, **_NO_BOUND),
-        _number("acceleration", "maximum acceleration", "rad/s2 or m/s2", since=_LATER),
-        _number("deceleration", "maximum deceleration; the acceleration when absent", "rad/s2 or m/s2", since=_LATER),
-        _number("jerk", "maximum jerk", "rad/s3 or m/s3", since=_LATER),
+        _number("effort", "maximum torque or force", "N m or N", required=True, until=_URDF_1_2, **_NO_BOUND),
+        _number("velocity", "maximum speed", "rad/s or m/s", required=True, until=_URDF_1_2, **_NO_BOUND),
+        _number("acceleration", "maximum acceleration", "rad/s2 or m/s2", since=_URDF_1_2),
+        _number(
+            "deceleration", "maximum deceleration; the acceleration when absent", "rad/s2 or m/s2", since=_URDF_1_2
+        ),
+        _number("jerk", "maximum jerk", "rad/s3 or m/s3", since=_URDF_1_2),
     ),
     make=Limit,
     check=check_limit,
@@ -399,7 +403,7 @@ PARENT = ElementRule(
     (AttributeRule("link", TEXT, "the link's name", required=True, field="parent"),),
     required=True,
     default=("",),
-    check=check_end,
+    check=check_link_name,
 )
 
 CHILD = ElementRule(
@@ -408,7 +412,7 @@ CHILD = ElementRule(
     (AttributeRule("link", TEXT, "the link's name", required=True, field="child"),),
     required=True,
     default=("",),
-    check=check_end,
+    check=check_link_name,
 )
 
 JOINT = ElementRule(

@@ -13,9 +13,9 @@ from linkwright.urdf.model import Joint, Link, Robot
 from linkwright.urdf.report import Findings
 from linkwright.xmltree import Element
 
-_MOST_COMPARED = 100
-"""After so many findings no nearest names are looked for: in a file with thousands of mistakes it would take long."""
-_MOST_VISITS = 64
+_MAX_SUGGESTIONS = 100
+"""The number of findings after which no similar names are suggested, because the search would take long."""
+_MAX_VISITS = 64
 
 
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
@@ -41,7 +41,7 @@ def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
     """Yield the joints below the root in depth-first order, each with its depth, starting at 1.
 
     Joints below a link with several parents are repeated for each parent, as in urdfdom. Because the number of paths
-    may double with every link, only up to `_MOST_VISITS` paths to a link are followed.
+    may double with every link, only up to `_MAX_VISITS` paths to a link are followed.
     """
     children = children_of(robot)
     visits: Counter[str] = Counter()
@@ -50,22 +50,21 @@ def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
         joint, depth = stack.pop()
         yield joint, depth
         visits[joint.child] += 1
-        if visits[joint.child] <= _MOST_VISITS:
-            stack.extend((below, depth + 1) for below in reversed(children[joint.child]))
+        if visits[joint.child] <= _MAX_VISITS:
+            stack.extend((child_joint, depth + 1) for child_joint in reversed(children[joint.child]))
 
 
 def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> str:
     """Check that the joints form a tree of the links, and return the root's name.
 
     The name is empty unless there is exactly one root. urdfdom refuses unknown links, and any number of roots except
-    one.
-    It does not detect cycles that are not connected to the root, links with two parents, and cycles below the root,
-    which later cause a crash. Linkwright reports all of these as errors, and refuses cycles below the root.
+    one. It does not detect cycles that are not connected to the root, links with two parents, and cycles below the
+    root, which later cause a crash. Linkwright reports all of these as errors, and refuses cycles below the root.
     """
-    if not _ends_exist(links, joints, findings):
+    if not _links_exist(links, joints, findings):
         return ""
-    moved = {joint.child for joint in joints}
-    roots = [name for name in links if name not in moved]
+    child_links = {joint.child for joint in joints}
+    roots = [name for name in links if name not in child_links]
     if not roots:
         findings.rejected = True
         _report_loop(_loop_from(joints[0].child, joints), joints, phrase("no link is the root"), findings)
@@ -73,45 +72,47 @@ def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Find
     if len(roots) > 1:
         _report_roots(roots, links, findings)
         return ""
-    if not _is_tree(roots[0], links, joints, moved):
+    if not _is_tree(roots[0], links, joints, child_links):
         _check_parents(joints, findings)
         _check_reachable(roots[0], links, joints, findings)
     return roots[0]
 
 
-def _ends_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> bool:
-    good = True
+def _links_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> bool:
+    is_valid = True
     for joint in joints:
         for tag, name in (("parent", joint.parent), ("child", joint.child)):
             if name in links and name:
                 continue
-            good = False
+            is_valid = False
             if not name:
                 continue  # the missing link is reported already
             assert joint.element is not None
-            end = joint.element.first(tag)
-            assert end is not None
-            near = did_you_mean(name, links) if findings.count < _MOST_COMPARED else None
-            hint = near or phrase('add <link name="{name}"/>', name=name)
+            element = joint.element.first(tag)
+            assert element is not None
+            suggestion = did_you_mean(name, links) if findings.count < _MAX_SUGGESTIONS else None
+            hint = suggestion or phrase('add <link name="{name}"/>', name=name)
             message = phrase(
                 "{tag} link '{name}' of joint '{joint_name}' does not exist",
                 tag=term(tag),
                 name=name,
                 joint_name=joint.name,
             )
-            findings.reject("URDF150", message, end, "link", hint=hint)
-    return good
+            findings.reject("URDF150", message, element, "link", hint=hint)
+    return is_valid
 
 
 def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Findings) -> None:
-    listed = quoted_names(roots, " and ") if len(roots) < 6 else phrase("{list}, ...", list=quoted_names(roots[:5]))
-    places = [Note(phrase("'{name}' has no parent", name=name), _place(links[name].element)) for name in roots[:5]]
+    names_text = quoted_names(roots, " and ") if len(roots) < 6 else phrase("{list}, ...", list=quoted_names(roots[:5]))
+    notes = [Note(phrase("'{name}' has no parent", name=name), _place(links[name].element)) for name in roots[:5]]
     element = links[roots[1]].element
     assert element is not None
     findings.reject(
         "URDF152",
         phrase(
-            "{count} links have no parent joint, but a robot has one root: {listed}", count=len(roots), listed=listed
+            "{count} links have no parent joint, but a robot has one root: {listed}",
+            count=len(roots),
+            listed=names_text,
         ),
         element,
         "name",
@@ -120,7 +121,7 @@ def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Fin
             roots=roots[0],
             other_roots=roots[1],
         ),
-        notes=places,
+        notes=notes,
     )
 
 
@@ -129,27 +130,27 @@ def _is_tree(root: str, links: Mapping[str, Link], joints: Sequence[Joint], move
     if len(moved) != len(joints):
         return False
     parents = {joint.child: joint.parent for joint in joints}
-    hanging = {root}
+    connected_links = {root}
     for link in links:
         path: list[str] = []
-        while link not in hanging:
+        while link not in connected_links:
             if len(path) > len(links):
                 return False
             path.append(link)
             link = parents[link]
-        hanging.update(path)
+        connected_links.update(path)
     return True
 
 
 def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
-    above: dict[str, Joint] = {}
+    joints_by_child: dict[str, Joint] = {}
     for joint in joints:
-        first = above.setdefault(joint.child, joint)
+        first = joints_by_child.setdefault(joint.child, joint)
         if first is joint or first.name == joint.name:
             continue  # another joint with the same name is reported already
         assert joint.element is not None
-        end = joint.element.first("child")
-        assert end is not None
+        child_element = joint.element.first("child")
+        assert child_element is not None
         findings.error(
             "URDF151",
             phrase(
@@ -158,23 +159,23 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
                 name=first.name,
                 joint_name=joint.name,
             ),
-            end,
+            child_element,
             "link",
             hint=phrase("a link has one parent: remove one of the joints, or add a link for it"),
-            notes=(Note(phrase("'{name}' is here", name=first.name), _place(first.element)),),
+            notes=(Note(phrase("'{name}' is defined here", name=first.name), _place(first.element)),),
         )
 
 
 def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> None:
-    below: dict[str, list[str]] = {}
+    children: dict[str, list[str]] = {}
     for joint in joints:
-        below.setdefault(joint.parent, []).append(joint.child)
+        children.setdefault(joint.parent, []).append(joint.child)
     # Search depth-first with an explicit stack. A link that occurs twice on the current path closes a cycle.
-    seen, path = {root}, {root}
-    stack = [(root, iter(below.get(root, ())))]
+    visited, path = {root}, {root}
+    stack = [(root, iter(children.get(root, ())))]
     while stack:
-        name, rest = stack[-1]
-        child = next(rest, None)
+        name, remaining_children = stack[-1]
+        child = next(remaining_children, None)
         if child is None:
             path.discard(name)
             stack.pop()
@@ -184,14 +185,14 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
             findings.rejected = True
             _report_loop(loop, joints, phrase("a robot is a tree"), findings)
             return
-        elif child not in seen:
-            seen.add(child)
+        elif child not in visited:
+            visited.add(child)
             path.add(child)
-            stack.append((child, iter(below.get(child, ()))))
-    lost = [name for name in links if name not in seen]
-    if lost:
-        consequence = phrase("{count} links are not below the root '{root}'", count=len(lost), root=root)
-        _report_loop(_loop_from(lost[0], joints), joints, consequence, findings)
+            stack.append((child, iter(children.get(child, ()))))
+    unreachable_links = [name for name in links if name not in visited]
+    if unreachable_links:
+        consequence = phrase("{count} links are not below the root '{root}'", count=len(unreachable_links), root=root)
+        _report_loop(_loop_from(unreachable_links[0], joints), joints, consequence, findings)
 
 
 def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
@@ -203,22 +204,22 @@ def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
     path = [link]
     while path[-1] in parents and parents[path[-1]] not in path:
         path.append(parents[path[-1]])
-    top = parents[path[-1]]
-    loop = path[path.index(top) :]
-    return [top, *reversed(loop)]
+    first_link = parents[path[-1]]
+    loop = path[path.index(first_link) :]
+    return [first_link, *reversed(loop)]
 
 
 def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str, findings: Findings) -> None:
-    closing = next(joint for joint in joints if joint.parent == loop[-2] and joint.child == loop[-1])
-    assert closing.element is not None
-    end = closing.element.first("child")
-    assert end is not None
+    closing_joint = next(joint for joint in joints if joint.parent == loop[-2] and joint.child == loop[-1])
+    assert closing_joint.element is not None
+    child_element = closing_joint.element.first("child")
+    assert child_element is not None
     findings.error(
         "URDF153",
         phrase("the joints form a cycle, {loop}, and {consequence}", loop=" -> ".join(loop), consequence=consequence),
-        end,
+        child_element,
         "link",
-        hint=phrase("remove or turn around one of these joints; URDF cannot describe a closed chain"),
+        hint=phrase("remove or reverse one of these joints; URDF cannot describe a closed chain"),
     )
 
 

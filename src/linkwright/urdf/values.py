@@ -21,28 +21,28 @@ from linkwright.urdf.model import JointType
 
 _DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
-_PIECE = rf"[\t\n\v\f\r]*({_DIGITS})"
-_VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
+_COMPONENT = rf"[\t\n\v\f\r]*({_DIGITS})"
+_VECTOR3 = re.compile(rf" *{_COMPONENT} +{_COMPONENT} +{_COMPONENT} *").fullmatch
 # If a text consists only of these characters, Python and urdfdom agree on whether it is a number. For a single, short
 # value, the fastest test is to strip these characters.
-_PLAIN_SIGNS = "-+.0123456789eE "
+_NUMBER_CHARACTERS = "-+.0123456789eE "
 _PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
 
 _UNITS = {
     "deg": (phrase("angles are in radians"), 0.017453292519943295),
     "degrees": (phrase("angles are in radians"), 0.017453292519943295),
     "°": (phrase("angles are in radians"), 0.017453292519943295),
-    "rad": (phrase("the unit is not written"), 1.0),
-    "m": (phrase("the unit is not written"), 1.0),
+    "rad": (phrase("leave out the unit"), 1.0),
+    "m": (phrase("leave out the unit"), 1.0),
     "mm": (phrase("lengths are in metres"), 0.001),
     "cm": (phrase("lengths are in metres"), 0.01),
-    "kg": (phrase("the unit is not written"), 1.0),
+    "kg": (phrase("leave out the unit"), 1.0),
     "g": (phrase("masses are in kilograms"), 0.001),
 }
 _WITH_UNIT = lazy_pattern(rf"\s*({_DIGITS})\s*(\D+?)\s*")
 
 # Values such as "0 0 0" and "1" repeat, so a cache saves a third of the reader's time.
-_REMEMBERED = 4096
+_CACHE_SIZE = 4096
 
 
 def number(text: str) -> float:
@@ -51,7 +51,7 @@ def number(text: str) -> float:
     Raises:
         ValueError: if the text is not a number, or if the number is too large for a double.
     """
-    if (text.strip(_PLAIN_SIGNS) or text[-1:] == " ") and not _NUMBER(text):
+    if (text.strip(_NUMBER_CHARACTERS) or text[-1:] == " ") and not _NUMBER(text):
         raise ValueError(text)
     value = float(text)
     if isinf(value):
@@ -59,7 +59,7 @@ def number(text: str) -> float:
     return value
 
 
-@lru_cache(maxsize=_REMEMBERED)
+@lru_cache(maxsize=_CACHE_SIZE)
 def vector3(text: str) -> Vector3:
     """Return the three numbers in a text, which spaces separate.
 
@@ -103,15 +103,15 @@ def number_hint(text: str) -> Phrase | None:
     if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
         return phrase("only finite numbers are read")
     if re.fullmatch("[+-]?0[xX][0-9a-fA-F]+", stripped):
-        return phrase("write it in decimal: '{int}'", int=int(stripped, 16))
+        return phrase("write it as a decimal number: '{int}'", int=int(stripped, 16))
     if "pi" in stripped.lower():
         return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
     if len(stripped.split()) > 1 and all(map(_is_number, stripped.split())):
         return phrase("give one number")
-    united = _WITH_UNIT.fullmatch(text)
-    if united and united[2] in _UNITS:
-        why, factor = _UNITS[united[2]]
-        return phrase("{why}: '{value:.6g}'", why=why, value=float(united[1]) * factor)
+    match = _WITH_UNIT.fullmatch(text)
+    if match and match[2] in _UNITS:
+        reason, factor = _UNITS[match[2]]
+        return phrase("{why}: '{value:.6g}'", why=reason, value=float(match[1]) * factor)
     return None
 
 
@@ -130,13 +130,17 @@ def vector_hint(text: str, count: int) -> Phrase | None:
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("write a point as decimal separator: '{pieces}'", pieces=" ".join(pieces))
-    bad = next((piece for piece in text.split() if not _is_number(piece)), None)
-    if bad is None:
+    malformed = next((piece for piece in text.split() if not _is_number(piece)), None)
+    if malformed is None:
         return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))
-    if bad.startswith("(") and "," in bad:
+    if malformed.startswith("(") and "," in malformed:
         return phrase("a comma in an expression makes a pair of numbers; write a point as decimal separator")
-    hint = number_hint(bad)
-    return phrase("'{bad}': {hint}", bad=bad, hint=hint) if hint else phrase("'{bad}' is not a number", bad=bad)
+    hint = number_hint(malformed)
+    return (
+        phrase("'{bad}': {hint}", bad=malformed, hint=hint)
+        if hint
+        else phrase("'{bad}' is not a number", bad=malformed)
+    )
 
 
 def looks_like_degrees(*angles: float) -> bool:
@@ -155,7 +159,9 @@ def looks_like_degree_limits(lower: float, upper: float) -> bool:
     In addition to `looks_like_degrees`, one bound must be a typical joint angle in degrees, because limits of 10, 50 or
     100 rad are often written for joints without real limits, or with a gear.
     """
-    return looks_like_degrees(lower, upper) and any(30 <= abs(end) <= 360 and end % 15 == 0 for end in (lower, upper))
+    return looks_like_degrees(lower, upper) and any(
+        30 <= abs(bound) <= 360 and bound % 15 == 0 for bound in (lower, upper)
+    )
 
 
 def degrees_hint(*angles: float) -> Phrase:
@@ -190,19 +196,19 @@ def _list_text(values: Iterable[float]) -> str:
     return " ".join(map(plain, values))
 
 
-def _four(text: str) -> Quaternion:
+def _read_quaternion(text: str) -> Quaternion:
     x, y, z, w = numbers(text)
     return x, y, z, w
 
 
-def _rgba(text: str) -> Quaternion:
-    red, green, blue, alpha = found = _four(text)
-    if min(found) < 0 or max(found) > 1:
+def _read_rgba(text: str) -> Quaternion:
+    red, green, blue, alpha = values = _read_quaternion(text)
+    if min(values) < 0 or max(values) > 1:
         raise ValueError(text)
     return red, green, blue, alpha
 
 
-def _joint_type(text: str) -> str:
+def _read_joint_type(text: str) -> str:
     if text not in JOINT_TYPES:
         raise ValueError(text)
     return text
@@ -216,10 +222,10 @@ def _version(text: str) -> Version:
 TEXT = ValueType("text")
 NUMBER = ValueType("number", number, _number_text)
 VECTOR3 = ValueType("3 numbers", vector3, _list_text)
-QUATERNION = ValueType("4 numbers", _four, _list_text)
-RGBA = ValueType("4 numbers from 0 to 1", _rgba, _list_text)
-JOINT_TYPE = ValueType("joint type", _joint_type)
+QUATERNION = ValueType("4 numbers", _read_quaternion, _list_text)
+RGBA = ValueType("4 numbers from 0 to 1", _read_rgba, _list_text)
+JOINT_TYPE = ValueType("joint type", _read_joint_type)
 VERSION = ValueType("version", _version, lambda version: f"{version[0]}.{version[1]}")
 
 COUNTS = {VECTOR3: 3, QUATERNION: 4, RGBA: 4}
-"""How many numbers a value of a type has."""
+"""The count of numbers in a value, by the type of the value."""

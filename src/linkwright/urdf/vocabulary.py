@@ -18,41 +18,41 @@ def meanings(name: str) -> list[Phrase]:
     A path leads from outer to inner elements, may start at any element, and may end with an attribute.
     ``joint.limit.effort`` and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
     """
-    asked = tuple(re.findall(r"[\w-]+", name.casefold()))
-    if not asked:
+    requested_path = tuple(re.findall(r"[\w-]+", name.casefold()))
+    if not requested_path:
         return []
-    places: dict[Phrase, list[_Path]] = {}
-    for path, rule in _elements(ROBOT, ()):
-        if _ends_with(path, asked):
-            places.setdefault(describe_element(rule), []).append(path)
-        if asked[:-1] == path[len(path) - len(asked) + 1 :]:
+    paths_by_text: dict[Phrase, list[_Path]] = {}
+    for path, rule in _walk_elements(ROBOT, ()):
+        if _ends_with(path, requested_path):
+            paths_by_text.setdefault(describe_element(rule), []).append(path)
+        if requested_path[:-1] == path[len(path) - len(requested_path) + 1 :]:
             for attribute in rule.attributes:
-                if attribute.name.casefold() == asked[-1]:
-                    places.setdefault(phrase("- {line}", line=describe_attribute(attribute)), []).append(
+                if attribute.name.casefold() == requested_path[-1]:
+                    paths_by_text.setdefault(phrase("- {line}", line=describe_attribute(attribute)), []).append(
                         (*path, attribute.name)
                     )
-    return [joined([_path_heading(paths), text], "\n\n") for text, paths in places.items()]
+    return [joined([_path_heading(paths), text], "\n\n") for text, paths in paths_by_text.items()]
 
 
 def names() -> list[str]:
     """Return the names of all URDF elements and attributes, without duplicates."""
-    found = [
+    all_names = [
         name
-        for path, rule in _elements(ROBOT, ())
+        for path, rule in _walk_elements(ROBOT, ())
         for name in (path[-1], *(attribute.name for attribute in rule.attributes))
     ]
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(all_names))
 
 
-def _elements(rule: ElementRule, around: _Path) -> Iterator[tuple[_Path, ElementRule]]:
-    path = (*around, rule.tag)
+def _walk_elements(rule: ElementRule, parent_path: _Path) -> Iterator[tuple[_Path, ElementRule]]:
+    path = (*parent_path, rule.tag)
     yield path, rule
     for child in rule.children:
-        yield from _elements(child, path)
+        yield from _walk_elements(child, path)
 
 
-def _ends_with(path: _Path, asked: _Path) -> bool:
-    return path[-len(asked) :] == asked
+def _ends_with(path: _Path, suffix: _Path) -> bool:
+    return path[-len(suffix) :] == suffix
 
 
 def _path_heading(paths: list[_Path]) -> str:

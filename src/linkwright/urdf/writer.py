@@ -13,8 +13,7 @@ def save(robot: Robot) -> str:
     """Return the robot as URDF text.
 
     Defaults are omitted, and numbers are as short as possible without loss. Materials are written at the robot level.
-    Other elements (``gazebo``, ``ros2_control``, ...) follow unchanged at the
-    end.
+    Other elements (``gazebo``, ``ros2_control``, ...) follow unchanged at the end.
     """
     root = write_element(ROBOT, robot)
     root.children += map(strip_mixed_text, robot.extensions)

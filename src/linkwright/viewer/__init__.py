@@ -1,4 +1,4 @@
-"""The viewer, a node of the graph whose window is a browser page, and views of recordings."""
+"""The viewer, which is a node of the graph with a page in the browser, and views of recordings."""
 
 from typing import TYPE_CHECKING
 
@@ -10,4 +10,4 @@ if TYPE_CHECKING:
 __all__ = ["Viewer"]
 
 __getattr__ = deferred(__name__, {"viewer": ("Viewer",)})
-"""Deferred, so that the server can serve the page while the rest is loaded."""
+"""Loads a name on first use, so that the server can serve the page before this package is loaded."""

@@ -1,6 +1,6 @@
-"""Recordings that pages uploaded or made, each with its own graph and viewer.
+"""Shows recordings that pages uploaded or made, each with a separate graph and viewer.
 
-Their pages are served by the host viewer's server, but they reach neither its graph nor the network.
+The server of the host viewer serves the pages, but the recordings reach neither its graph nor the network.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 PATIENCE = 60.0
 """Seconds without a page after which a recording is no longer shown."""
 
-_MOST = 4
-_LOOK = 5.0
-_LEFT = 10.0
-"""Seconds without a page after which another recording may replace one."""
+_MAX_GUESTS = 4
+_CHECK_PERIOD = 5.0
+_MIN_IDLE_TIME = 10.0
+"""Seconds without a page after which a recording may be replaced by another recording."""
 
 
 @dataclass(slots=True)
@@ -49,50 +49,51 @@ class GuestRecordings:
     def __init__(self, host: Viewer) -> None:
         self._host = host
         self._guests: dict[str, _Guest] = {}
-        self._looking: asyncio.TimerHandle | None = None
-        self._closing: set[asyncio.Task[None]] = set()
+        self._check_timer: asyncio.TimerHandle | None = None
+        self._closing_tasks: set[asyncio.Task[None]] = set()
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording, and return the key by which pages name it.
+        """Show a recording, and return the key with which pages refer to it.
 
         The recording is shown until a minute after its last page was closed.
 
         Args:
-            path: the path of the recording's file or folder.
-            scratch: the temporary folder of the recording, which is removed afterwards; None for a permanent file.
+            path: the file or folder of the recording.
+            scratch: the temporary folder of the recording, which is removed with it; None for a permanent file.
 
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
         """
-        from linkwright.bag import BagReader, Playback  # few viewers show other recordings
+        from linkwright.bag import BagReader, Playback  # imported here, because few viewers show other recordings
         from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
-        await self._make_room()
-        if len(self._guests) >= _MOST:
+        await self._close_idlest()
+        if len(self._guests) >= _MAX_GUESTS:
             raise LinkwrightError(
                 Diagnostic(
                     "BAG111",
                     phrase(
-                        "{count} recordings are open already: close the page of one, and wait a minute", count=_MOST
+                        "{count} recordings are already open: close the page of one of them, and wait a minute",
+                        count=_MAX_GUESTS,
                     ),
                 )
             )
         bag = await asyncio.to_thread(BagReader, path, path.name)
-        host = self._host.context
+        host_context = self._host.context
         try:
-            robot = robot_of(bag, host.library)
+            robot = robot_of(bag, host_context.library)
             config = recording_config(bag, robot)
             graph = Graph()
             node = graph.create_node("rosbag2_player", start_parameter_services=False)
             output = published(bag, node, robot)
             viewer = Viewer(
                 graph,
-                library=host.library,
-                finder=host.finder,
+                library=host_context.library,
+                finder=host_context.finder,
                 config=config,
                 title=path.name,
-                options=NodeOptions(name="viewer", parameters={"use_sim_time": True}, library=host.library),
+                options=NodeOptions(name="viewer", parameters={"use_sim_time": True}, library=host_context.library),
                 beside=self._host,
             )
             await viewer.start()
@@ -102,7 +103,7 @@ class GuestRecordings:
             raise
         key = secrets.token_urlsafe(16)
         self._guests[key] = _Guest(bag, graph, viewer, scratch, asyncio.get_running_loop().time())
-        self._look_later()
+        self._schedule_check()
         return key
 
     def audience(self, key: str) -> Audience | None:
@@ -112,42 +113,42 @@ class GuestRecordings:
 
     async def close(self) -> None:
         """Stop showing recordings."""
-        if self._looking is not None:
-            self._looking.cancel()
+        if self._check_timer is not None:
+            self._check_timer.cancel()
         guests, self._guests = self._guests, {}
-        await asyncio.gather(*(_end(guest) for guest in guests.values()), *self._closing)
+        await asyncio.gather(*(_close_guest(guest) for guest in guests.values()), *self._closing_tasks)
 
-    async def _make_room(self) -> None:
+    async def _close_idlest(self) -> None:
         """If the limit is reached, close the recording that has had no pages for the longest time."""
-        if len(self._guests) < _MOST:
+        if len(self._guests) < _MAX_GUESTS:
             return
-        until = asyncio.get_running_loop().time() - _LEFT
-        left = {key: guest.left for key, guest in self._guests.items() if not len(guest.viewer.audience)}
-        first = min(left, key=left.__getitem__, default=None)
-        if first is not None and left[first] < until:
-            await _end(self._guests.pop(first))
+        latest_time = asyncio.get_running_loop().time() - _MIN_IDLE_TIME
+        last_page_times = {key: guest.left for key, guest in self._guests.items() if not len(guest.viewer.audience)}
+        idlest_key = min(last_page_times, key=last_page_times.__getitem__, default=None)
+        if idlest_key is not None and last_page_times[idlest_key] < latest_time:
+            await _close_guest(self._guests.pop(idlest_key))
 
-    def _look_later(self) -> None:
-        if self._looking is None:
-            self._looking = asyncio.get_running_loop().call_later(_LOOK, self._look)
+    def _schedule_check(self) -> None:
+        if self._check_timer is None:
+            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._look)
 
     def _look(self) -> None:
         """Close the recordings whose last page was closed a while ago."""
-        self._looking = None
+        self._check_timer = None
         loop = asyncio.get_running_loop()
         for key, guest in list(self._guests.items()):
             if len(guest.viewer.audience):
                 guest.left = loop.time()
             elif loop.time() - guest.left > PATIENCE:
                 del self._guests[key]
-                task = loop.create_task(_end(guest))
-                self._closing.add(task)
-                task.add_done_callback(self._closing.discard)
+                task = loop.create_task(_close_guest(guest))
+                self._closing_tasks.add(task)
+                task.add_done_callback(self._closing_tasks.discard)
         if self._guests:
-            self._look_later()
+            self._schedule_check()
 
 
-async def _end(guest: _Guest) -> None:
+async def _close_guest(guest: _Guest) -> None:
     await guest.viewer.close()
     await guest.graph.close()
     guest.bag.close()

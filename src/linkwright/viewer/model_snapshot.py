@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage
-from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.packages import PackageFinder
-from linkwright.panels.comparison.feature import show_old
+from linkwright.panels.comparison.feature import add_old_robot
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.robot import has_visuals, size_of
@@ -29,13 +29,13 @@ def snapshot_of_model(
 ) -> Snapshot:
     """Return a snapshot of a model as `linkwright view` shows it.
 
-    Joints are at zero, or as near to it as their limits allow.
+    Joints are at zero, or in the middle of their limits if the limits exclude zero.
 
     Args:
         text: the description.
         robot: the robot that was read from the text.
-        library: has the source positions of the description's elements.
-        finder: finds the robot's meshes.
+        library: stores the description, with the source positions of its elements.
+        finder: finds the meshes of the robot.
         old: the description to compare with; None for no comparison.
     """
     return asyncio.run(_snapshot(text, robot, library, finder, old))
@@ -60,23 +60,23 @@ async def _snapshot(
     graph = Graph(on_log=lambda _: None)
     config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot, finder))
     if old is not None:
-        show_old(config, old.pair.old.title)
+        add_old_robot(config, old.pair.old.title)
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)
     viewer.manager.start()
     node = graph.create_node("robot_state_publisher")
     node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(text))
-    now = time.time_ns()
+    now_ns = time.time_ns()
     transforms = RobotTransforms(robot, "")
-    layout = layout_of(robot, JointSettings())
-    zeros = {joint.name: joint.zero for joint in layout.free}
-    moving = transforms.recipe(list(zeros)).batch(list(zeros.values()), now)
+    layout = make_layout(robot, JointSettings())
+    zero_positions = {joint.name: joint.zero for joint in layout.free}
+    moving_batch = transforms.recipe(list(zero_positions)).batch(list(zero_positions.values()), now_ns)
     node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS).publish(
-        TFMessage(batch=transforms.fixed(now))
+        TFMessage(batch=transforms.fixed(now_ns))
     )
-    node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving))
+    node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving_batch))
     if old is not None:
-        publisher = graph.create_node("old_robot_state_publisher", start_parameter_services=False)
-        viewer.attach_comparison(old.pair, publisher)(old.text)
+        old_publisher_node = graph.create_node("old_robot_state_publisher", start_parameter_services=False)
+        viewer.attach_comparison(old.pair, old_publisher_node)(old.text)
     await graph.settle()
     try:
         return snapshot_of(viewer, viewer.manager)

@@ -17,7 +17,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.diagnostics.diagnostic import is_text
 from linkwright.packages import PackageFinder
 from linkwright.panels.export.html import html_of
-from linkwright.panels.export.snapshot import no_robot
+from linkwright.panels.export.snapshot import no_robot_error
 from linkwright.urdf import Robot, save
 from linkwright.viewer.model_snapshot import snapshot_of_model
 
@@ -54,12 +54,12 @@ def show(
     packages: Packages = None,
     height: int = 480,
 ) -> RobotCell:
-    """Return a robot as the output of a notebook cell; call this in the last line of the cell.
+    """Return a robot as the output of a notebook cell, to be called in the last line of the cell.
 
     Args:
-        robot: the path of a URDF or xacro file, a text, or a `Robot` that was loaded.
-        arguments: values for the file's ``<xacro:arg>``.
-        packages: the locations of packages: package name -> share folder, or a finder.
+        robot: the path of a URDF or xacro file, the text of a description, or a `Robot`.
+        arguments: the values of xacro arguments by name; None to use their defaults.
+        packages: the share folders of packages by package name, or a finder.
         height: the height of the cell, in pixels.
 
     Raises:
@@ -67,14 +67,14 @@ def show(
     """
     library = DescriptionLibrary()
     source = save(robot) if isinstance(robot, Robot) else robot
-    folders = [Path.cwd()] if is_text(source) else [Path(source).absolute().parent, Path.cwd()]
-    finder = packages if isinstance(packages, PackageFinder) else PackageFinder(start=folders, extra=packages)
+    search_folders = [Path.cwd()] if is_text(source) else [Path(source).absolute().parent, Path.cwd()]
+    finder = packages if isinstance(packages, PackageFinder) else PackageFinder(start=search_folders, extra=packages)
     description = examine(source, arguments=arguments, packages=finder)
-    shown = description.robot
-    if shown is None or not shown.root:
-        raise LinkwrightError(*description.diagnostics) if description.diagnostics else no_robot()
+    described_robot = description.robot
+    if described_robot is None or not described_robot.root:
+        raise LinkwrightError(*description.diagnostics) if description.diagnostics else no_robot_error()
     text = library.store(description)
-    with ThreadPoolExecutor(1) as thread:  # an event loop already runs in the notebook's own thread
-        snapshot = thread.submit(snapshot_of_model, text, shown, library, finder).result()
+    with ThreadPoolExecutor(1) as thread:  # the main thread of a notebook already runs an event loop
+        snapshot = thread.submit(snapshot_of_model, text, described_robot, library, finder).result()
     page = html_of(snapshot).decode("utf-8")
-    return RobotCell(shown.name, page, height, (*description.diagnostics, *snapshot.problems))
+    return RobotCell(described_robot.name, page, height, (*description.diagnostics, *snapshot.problems))

@@ -1,4 +1,4 @@
-"""The viewer: a node of the graph whose window is a browser page."""
+"""The viewer, which is a node of the graph with a page in the browser."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from linkwright.page.protocol.message import PROTOCOL_VERSION, Hello, ServerMess
 from linkwright.panels.joints import JointsFeature
 from linkwright.panels.page_feature import F, PageFeature, make_features
 from linkwright.panels.timeline import TimelineFeature
-from linkwright.rviz.config.locations import keep_unsaved
+from linkwright.rviz.config.locations import store_unsaved
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.context import GraphChanges, PublishedTopics, ViewerContext
 from linkwright.rviz.displays.base.display import ViewerDisplay
@@ -35,33 +35,33 @@ if TYPE_CHECKING:
     from linkwright.page.uploads import Guests
     from linkwright.panels.live_history import LiveHistory
 
-_NAME = "rviz2"
-_FIXED_FRAME = "fixed_frame"
-"""A parameter of the node, with which tools get and set the Fixed Frame."""
+_NODE_NAME = "rviz2"
+_FIXED_FRAME_PARAMETER = "fixed_frame"
+"""The parameter of the node with which tools get and set the Fixed Frame."""
 
 
 class Viewer:
-    """Shows in a browser what RViz would show of a graph.
+    """Shows a graph in a browser, as RViz does.
 
-    A viewer must be created while an asyncio loop is running. The edits of pages are in `config`; they are saved by the
-    pages, or by `config.save`.
+    A viewer must be created while an asyncio loop is running. The edits of pages are in `config`. Pages save them, or
+    the program does with `config.save`.
 
     Args:
         graph: the graph in which the viewer's node is created.
-        library: reads descriptions, each once for the whole process.
+        library: reads descriptions, each of them once per process.
         finder: finds packages and the meshes in them.
-        config: displays, options and view.
-        host: the address to listen on; any address except loopback admits other machines that know the token.
-        port: 0 for any port; None for 7448 or the next free one.
-        server: the server, which may already serve the page; None for one at `host` and `port`.
+        config: the configuration, with displays, options and view.
+        host: the address to listen on; any address except loopback admits other machines with the token.
+        port: the port; 0 for any free port; None for 7448 or the next free port.
+        server: the server, which may already serve the page; None to create a server at `host` and `port`.
         title: the title of the page.
         options: the node's name, remappings, parameters and ROS arguments.
-        history: the maximum number of bytes of received messages that are stored, for pages to show the last minutes; 0
-            to store none.
-        beside: another viewer, whose server also serves this viewer's pages; None for a server of its own.
+        history: the maximum size in bytes of the stored messages of the last minutes, which pages can show; 0 to store
+            none.
+        beside: another viewer with a server that also serves the pages of this viewer; None for a separate server.
 
     Attributes:
-        guests: shows the recordings that pages upload to this viewer; None if it accepts none.
+        guests: shows the recordings that pages upload; None if uploads are not accepted.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -83,24 +83,28 @@ class Viewer:
         beside: Viewer | None = None,
     ) -> None:
         self._history = history
-        self._beside = beside
+        self._host_viewer = beside
         self.guests: Guests | None = None
         self._server = server or PageServer(host, port)
         self._title = title
         self._run = secrets.token_hex(8)
-        self._node, _ = create_node(graph, options or NodeOptions(), _NAME)
-        frame = self._node.declare_parameter(
-            _FIXED_FRAME,
+        self._node, _ = create_node(graph, options or NodeOptions(), _NODE_NAME)
+        fixed_frame_parameter = self._node.declare_parameter(
+            _FIXED_FRAME_PARAMETER,
             config.options.text("Fixed Frame"),
             ParameterDescriptor(description="the reference frame of the scene"),
         )
-        config.options.set(("Fixed Frame",), frame.value)
+        config.options.set(("Fixed Frame",), fixed_frame_parameter.value)
         self._receivers: dict[str, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_closed, self._node.get_logger())
-        shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
-        if beside is not None:  # share the files, and the IDs that must be unique on a server
-            served = beside.context
-            shared = {"meshes": served.meshes, "downloads": served.downloads, "display_ids": served.display_ids}
+        shared_objects: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
+        if beside is not None:  # share the files, and the IDs, which must be unique on a server
+            host_context = beside.context
+            shared_objects = {
+                "meshes": host_context.meshes,
+                "downloads": host_context.downloads,
+                "display_ids": host_context.display_ids,
+            }
         self.context: ViewerContext = ViewerContext(
             node=self._node,
             library=library,
@@ -109,12 +113,12 @@ class Viewer:
             transforms=FrameHistory(self._node),
             graph_changes=GraphChanges(self._node.graph),
             published=PublishedTopics(self._node),
-            **shared,
+            **shared_objects,
         )
         self._features: list[PageFeature] = []
         self._is_started = False
         self.managers = Managers(self.context, config, self)
-        self._node.add_post_set_parameters_callback(self._set_parameters)
+        self._node.add_post_set_parameters_callback(self._on_parameters_set)
         self.live: LiveHistory | None = None
         for feature in make_features(self):
             self._add(feature)
@@ -128,7 +132,7 @@ class Viewer:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
         """
         try:
-            if self._beside is None:
+            if self._host_viewer is None:
                 await self._listen()
             if self._history:
                 self.live = self._timeline.keep(self._history)
@@ -136,9 +140,9 @@ class Viewer:
             self._is_started = True
             for feature in self._features:
                 feature.start()
-            if self._beside is None:
+            if self._host_viewer is None:
                 self._server.show(self._audience, self.guests)
-        except BaseException:  # including cancellation: the caller cannot close this viewer
+        except BaseException:  # also after cancellation, because the caller cannot close this viewer
             self._node.destroy_node()
             await self._server.close()
             raise
@@ -154,11 +158,11 @@ class Viewer:
 
     async def close(self) -> None:
         """Close the connections to pages, destroy the node, and stop listening."""
-        self._server.leave_token(pages_wait=len(self._audience) > 0)
-        async with AsyncExitStack() as stack:  # each step is carried out even if another one fails
+        self._server.store_pages_wait(pages_wait=len(self._audience) > 0)
+        async with AsyncExitStack() as stack:  # each step is carried out even if another step fails
             stack.callback(self._node.destroy_node)
             stack.callback(self.context.published.close)
-            if self._beside is not None:
+            if self._host_viewer is not None:
                 stack.push_async_callback(self._audience.close)
             stack.push_async_callback(self._server.close)
             stack.callback(self.managers.close)
@@ -173,9 +177,9 @@ class Viewer:
         return self._server.pages_wait
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store pages' unsaved edits before the program ends, and return the findings about that."""
-        notices = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
-        return [*notices, *(notice for feature in self._features for notice in feature.keep_unsaved())]
+        """Store unsaved edits of pages before the program ends, and return the findings about them."""
+        findings = store_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
+        return [*findings, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
     @property
     def url(self) -> str:
@@ -189,7 +193,7 @@ class Viewer:
 
     @property
     def manager(self) -> VisualizationManager:
-        """The manager that all pages without their own displays share."""
+        """The manager that all pages share that do not have a separate configuration."""
         return self.managers.shared
 
     @property
@@ -205,11 +209,11 @@ class Viewer:
     # --- what the rest of the program shows --------------------------------------------------------------------
 
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
-        """Show the sliders of a node's panel that moves joints; None removes the sliders."""
+        """Show the sliders of a node that moves joints; None removes the sliders."""
         self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
-        """Show pages the timeline of a recording."""
+        """Show the timeline of a recording in pages."""
         self.live = None
         self._timeline.attach(playback, bag)
         for feature in self._features:
@@ -220,7 +224,7 @@ class Viewer:
         self._timeline.failed(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Show pages the differences between two descriptions, see `ComparisonFeature.attach`."""
+        """Show the differences between two descriptions in pages, see `ComparisonFeature.attach`."""
         from linkwright.panels.comparison.feature import ComparisonFeature
 
         return self.add_feature(ComparisonFeature).attach(pair, node)
@@ -230,13 +234,13 @@ class Viewer:
         return self.add_feature(TimelineFeature)
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
-        """Return the feature of a class, which is created if it does not exist yet.
+        """Return the feature of a class, creating it if it does not exist yet.
 
         The feature receives all events from then on.
 
         Args:
             cls: the class of the feature.
-            receives: addresses of messages that the feature handles in addition to those that its class names.
+            receives: the addresses of messages that the feature handles in addition to its `RECEIVES`.
         """
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
@@ -251,7 +255,7 @@ class Viewer:
         self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show new findings on the description instead of the current ones; the list may be empty."""
+        """Replace the current findings about the description with new findings; the list may be empty."""
         for feature in self._features:
             feature.diagnostics_changed(diagnostics)
 
@@ -260,7 +264,7 @@ class Viewer:
     def _opening(self, page: Page) -> list[Payload]:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
-        manager.pages.add(page)  # messages that are published later must follow these
+        manager.pages.add(page)  # added here, so that messages published later follow the opening messages
         return [*(encode(message, page.language) for message in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
@@ -269,13 +273,13 @@ class Viewer:
         The frame table is the last message.
         """
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
-        shown, table, frames = manager.opening()
-        messages += self._openings(before_displays=True)
-        messages += shown
-        messages += self._openings(before_displays=False)
+        tree_messages, table, frames = manager.opening()
+        messages += self._feature_openings(before_displays=True)
+        messages += tree_messages
+        messages += self._feature_openings(before_displays=False)
         return [*messages, *self.configured(manager), table], frames
 
-    def _openings(self, *, before_displays: bool) -> list[ServerMessage]:
+    def _feature_openings(self, *, before_displays: bool) -> list[ServerMessage]:
         messages: list[ServerMessage] = []
         for feature in self._features:  # `opening` may append features, which this loop also reaches
             if feature.BEFORE_DISPLAYS is before_displays:
@@ -283,7 +287,7 @@ class Viewer:
         return messages
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return all features' messages about a configuration."""
+        """Return the messages of all features about a configuration."""
         return [message for feature in self._features for message in feature.configured(manager)]
 
     def _page_closed(self, page: Page) -> None:
@@ -309,12 +313,12 @@ class Viewer:
             feature.manager_closed(manager)
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
-        """Set the node's parameter for the Fixed Frame to that of the shared configuration."""
+        """Set the parameter of the node to the Fixed Frame of the shared configuration."""
         frame = manager.fixed_frame
-        if manager is self.manager and self._node.get_parameter(_FIXED_FRAME).value != frame:
-            self._node.set_parameters([Parameter(_FIXED_FRAME, value=frame)])
+        if manager is self.manager and self._node.get_parameter(_FIXED_FRAME_PARAMETER).value != frame:
+            self._node.set_parameters([Parameter(_FIXED_FRAME_PARAMETER, value=frame)])
 
-    def _set_parameters(self, parameters: list[Parameter]) -> None:
+    def _on_parameters_set(self, parameters: list[Parameter]) -> None:
         for parameter in parameters:
-            if parameter.name == _FIXED_FRAME and parameter.value != self.manager.fixed_frame:
+            if parameter.name == _FIXED_FRAME_PARAMETER and parameter.value != self.manager.fixed_frame:
                 self.manager.set_fixed_frame(str(parameter.value))

@@ -13,13 +13,13 @@ class Detections:
     """The boxes in one image, the most certain first.
 
     Attributes:
-        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels of the input image, where pixel 0 extends from 0 to
-            1. They reach beyond its edges only for detectors that document it.
+        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels of the image, where pixel 0 extends from 0 to 1.
+            They reach beyond the edges of the image only if the detector documents it.
         scores: shape ``(n,)``, 0 to 1.
-        classes: shape ``(n,)``, indices in `names`.
+        classes: shape ``(n,)``, indices into `names`.
         names: the names of the detector's classes.
-        corners: the corners of objects with four, such as markers: shape ``(n, 4, 2)``, in pixels, in an order that the
-            detector defines.
+        corners: the corners of objects that have four, such as markers: shape ``(n, 4, 2)``, in pixels, in an order
+            that the detector defines; None for other detectors.
     """
 
     boxes: NDArray[np.float32]
@@ -32,7 +32,7 @@ class Detections:
         return len(self.scores)
 
     def name(self, index: int) -> str:
-        """Return the name of a detection's class."""
+        """Return the class name of the detection with an index."""
         return self.names[int(self.classes[index])]
 
     @classmethod

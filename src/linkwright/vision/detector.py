@@ -14,7 +14,7 @@ from linkwright.vision.detections import Detections
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Limits of detections. The defaults are those of yolo_ros.
+    """The limits that detections must satisfy. The defaults are those of yolo_ros.
 
     Attributes:
         threshold: the minimum score.
@@ -30,16 +30,16 @@ class Limits:
 
 
 class Detector(ABC):
-    """Detects objects in images. Only one thread at a time may call it."""
+    """An object detector. It is not thread-safe: only one thread at a time may call it."""
 
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The names of its classes; empty if they are only known from images, such as the texts of QR codes."""
+        """The names of its classes; empty if they depend on the image, such as the texts of QR codes."""
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """Remarks for the user, for example on network outputs that are ignored."""
+        """Remarks for the user, for example that some outputs of a network are ignored."""
         return ()
 
     @abstractmethod
@@ -48,5 +48,5 @@ class Detector(ABC):
 
         Args:
             image: shape ``(height, width, 3)``, RGB.
-            limits: the limits of detections.
+            limits: the limits that the detections must satisfy.
         """

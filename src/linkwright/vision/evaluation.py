@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from linkwright.vision.detections import Detections
 
 OVERLAPS = tuple(round(0.5 + 0.05 * step, 2) for step in range(10))
-"""The least intersection over union of a correct box: 0.50, 0.55, ... 0.95."""
+"""The minimum intersection over union of a correct box: 0.50, 0.55, ... 0.95."""
 MOST = 100
-"""The number of detections of an image that count, the most certain ones."""
-_RECALLS: NDArray[np.floating] = np.linspace(0.0, 1.0, 101)
+"""The maximum number of detections in an image that count, the most certain ones."""
+_RECALL_LEVELS: NDArray[np.floating] = np.linspace(0.0, 1.0, 101)
 _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
 
 
@@ -24,22 +24,22 @@ class GroundTruth:
 
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.
-        classes: shape ``(n,)``, indices in the dataset's names.
-        ignored: shape ``(n,)``, whether a detection of the object counts neither as right nor as wrong (``iscrowd`` in
-            COCO).
+        classes: shape ``(n,)``, indices into the dataset's names.
+        ignored: shape ``(n,)``, whether a detection of the object counts neither as correct nor as wrong (``iscrowd``
+            in COCO).
     """
 
     boxes: NDArray[np.float32]
     classes: NDArray[np.int32]
     ignored: NDArray[np.bool_]
 
-    def where(self, chosen: NDArray[np.bool_]) -> GroundTruth:
+    def where(self, mask: NDArray[np.bool_]) -> GroundTruth:
         """Return the objects that a mask selects."""
-        return GroundTruth(self.boxes[chosen], self.classes[chosen], self.ignored[chosen])
+        return GroundTruth(self.boxes[mask], self.classes[mask], self.ignored[mask])
 
 
 @dataclass(frozen=True, slots=True)
-class ClassFigures:
+class ClassResults:
     """The results for one class.
 
     Attributes:
@@ -48,7 +48,7 @@ class ClassFigures:
         ap50: the average precision at an overlap of 0.5; None if there is no object.
         ap: the mean of the average precision over `OVERLAPS`; None if there is no object.
         precision: the share of correct detections among those with a score of at least 0.5; None if there are none.
-        recall: the share of objects that these detections find; None if there is no object.
+        recall: the share of objects found with a score of at least 0.5; None if there is no object.
     """
 
     name: str
@@ -65,12 +65,12 @@ class Evaluation:
 
     Attributes:
         images: the number of images.
-        map50: the mean of `ClassFigures.ap50` over the classes with objects.
-        map: the mean of `ClassFigures.ap`.
+        map50: the mean of `ClassResults.ap50` over the classes with objects.
+        map: the mean of `ClassResults.ap`.
         classes: the results for each class.
-        confusion: shape ``(classes + 1, classes + 1)``: how many objects of a class (row) were detected as a class
+        confusion: shape ``(classes + 1, classes + 1)``: the number of objects of a class (row) detected as a class
             (column) with a score of at least 0.5. The last column counts objects that were not found, the last row
-            detections where there is no object.
+                detections at which there is no object.
         recall_by_size: for each size range its name, the number of objects, and the share of them found with a score of
             at least 0.5.
     """
@@ -78,12 +78,12 @@ class Evaluation:
     images: int
     map50: float
     map: float
-    classes: tuple[ClassFigures, ...]
+    classes: tuple[ClassResults, ...]
     confusion: NDArray[np.int64]
     recall_by_size: tuple[tuple[str, int, float], ...]
 
 
-def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float64]:
+def intersection_over_union(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float64]:
     """Return the intersection over union of each box of one set with each box of another.
 
     Args:
@@ -93,39 +93,48 @@ def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[
     Returns:
         Shape ``(n, m)``.
     """
-    one: NDArray[np.float64] = first.astype(np.float64)[:, None]
-    other: NDArray[np.float64] = second.astype(np.float64)[None]
-    inner = np.clip(np.minimum(one[..., 2:], other[..., 2:]) - np.maximum(one[..., :2], other[..., :2]), 0, None)
-    common = inner.prod(-1)
-    union = (one[..., 2:] - one[..., :2]).prod(-1) + (other[..., 2:] - other[..., :2]).prod(-1) - common
-    shares: NDArray[np.float64] = common / np.maximum(union, 1e-12)
-    return shares
+    first_boxes: NDArray[np.float64] = first.astype(np.float64)[:, None]
+    second_boxes: NDArray[np.float64] = second.astype(np.float64)[None]
+    overlap_sizes = np.clip(
+        np.minimum(first_boxes[..., 2:], second_boxes[..., 2:])
+        - np.maximum(first_boxes[..., :2], second_boxes[..., :2]),
+        0,
+        None,
+    )
+    intersection = overlap_sizes.prod(-1)
+    union = (
+        (first_boxes[..., 2:] - first_boxes[..., :2]).prod(-1)
+        + (second_boxes[..., 2:] - second_boxes[..., :2]).prod(-1)
+        - intersection
+    )
+    ratios: NDArray[np.float64] = intersection / np.maximum(union, 1e-12)
+    return ratios
 
 
-def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> Evaluation:
+def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Sequence[Detections]) -> Evaluation:
     """Evaluate detections against labels.
 
     Args:
         names: the class names of `truth`.
         truth: the labels of each image.
-        found: a detector's detections in the same images, with a threshold near 0. Classes are matched by name; those
-            that `names` lacks do not count.
+        predictions: a detector's detections in the same images, with a threshold near 0. Classes are matched by name;
+            detections of classes that are not in `names` do not count.
     """
-    known = {name: place for place, name in enumerate(names)}
-    detections = [_in_terms_of(known, detections) for detections in found]
-    figures, confusion, sizes = [], _confusion(len(names), truth, detections), _by_size(truth, detections)
+    class_numbers = {name: number for number, name in enumerate(names)}
+    detections = [_renumber_classes(class_numbers, detections) for detections in predictions]
+    figures, confusion, sizes = [], _confusion_matrix(len(names), truth, detections), _recall_by_size(truth, detections)
     for place, name in enumerate(names):
         precisions = _average_precisions(place, truth, detections)
-        right = int(confusion[place, place])
-        detected, there = int(confusion[:, place].sum()), int(confusion[place].sum())
+        correct = int(confusion[place, place])
+        detected, objects = int(confusion[:, place].sum()), int(confusion[place].sum())
         figures.append(
-            ClassFigures(
+            ClassResults(
                 name,
-                there,
+                objects,
                 None if precisions is None else float(precisions[0]),
                 None if precisions is None else float(precisions.mean()),
-                right / detected if detected else None,
-                right / there if there else None,
+                correct / detected if detected else None,
+                correct / objects if objects else None,
             )
         )
     return Evaluation(
@@ -138,170 +147,188 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence
     )
 
 
-def balanced_score(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> float:
-    """Return the score threshold with the greatest F1 over all classes.
+def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> float:
+    """Return the score threshold at which F1 over all classes is greatest.
 
-    The arguments are those of `evaluate`.
+    The arguments have the meaning that they have in `evaluate`.
 
     Returns:
-        A score between 0.05 and 0.95; 0.5 if nothing was found.
+        A score between 0.05 and 0.95; 0.5 if no object was found.
     """
-    known = {name: place for place, name in enumerate(names)}
+    class_numbers = {name: number for number, name in enumerate(names)}
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
-    right: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
-    there = 0
-    for objects, predictions in zip(truth, found, strict=True):
-        detections, asked = _in_terms_of(known, predictions), objects.where(~objects.ignored)
-        same = overlap(detections.boxes, asked.boxes) * (detections.classes[:, None] == asked.classes[None])
-        hits = _matches(same, _CONFUSION_OVERLAP) >= 0
-        hidden = _within(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP
-        counts = hits | ~hidden
-        scores.append(detections.scores[counts])
-        right.append(hits[counts])
-        there += len(asked.classes)
-    whole: NDArray[np.float32] = np.concatenate(scores)
-    order = np.argsort(-whole, kind="stable")
-    hits_until: NDArray[np.int64] = np.concatenate(right)[order].cumsum()
+    correct: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
+    object_count = 0
+    for objects, image_predictions in zip(truth, found, strict=True):
+        detections, counted_objects = (
+            _renumber_classes(class_numbers, image_predictions),
+            objects.where(~objects.ignored),
+        )
+        overlaps = intersection_over_union(detections.boxes, counted_objects.boxes) * (
+            detections.classes[:, None] == counted_objects.classes[None]
+        )
+        is_hit = _match_objects(overlaps, _CONFUSION_OVERLAP) >= 0
+        is_ignored = _ignored_shares(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP
+        is_counted = is_hit | ~is_ignored
+        scores.append(detections.scores[is_counted])
+        correct.append(is_hit[is_counted])
+        object_count += len(counted_objects.classes)
+    all_scores: NDArray[np.float32] = np.concatenate(scores)
+    order = np.argsort(-all_scores, kind="stable")
+    hits_until: NDArray[np.int64] = np.concatenate(correct)[order].cumsum()
     if not len(order) or not hits_until[-1]:
         return 0.5
-    worth = 2 * hits_until / (np.arange(1, len(order) + 1) + there)
-    return float(np.clip(whole[order[int(worth.argmax())]], 0.05, 0.95))
+    f1 = 2 * hits_until / (np.arange(1, len(order) + 1) + object_count)
+    return float(np.clip(all_scores[order[int(f1.argmax())]], 0.05, 0.95))
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
-    """Detections with the dataset's class indices, the most certain first."""
+class _SortedDetections:
+    """Detections with class numbers of the dataset, the most certain first."""
 
     boxes: NDArray[np.float32]
     scores: NDArray[np.float32]
     classes: NDArray[np.int32]
 
-    def where(self, chosen: NDArray[np.bool_]) -> _Found:
-        return _Found(self.boxes[chosen], self.scores[chosen], self.classes[chosen])
+    def where(self, mask: NDArray[np.bool_]) -> _SortedDetections:
+        return _SortedDetections(self.boxes[mask], self.scores[mask], self.classes[mask])
 
 
-def _in_terms_of(known: dict[str, int], found: Detections) -> _Found:
-    numbers: NDArray[np.int32] = np.array([known.get(name, -1) for name in found.names] or [-1], np.int32)
-    order = np.argsort(-found.scores, kind="stable")
-    classes: NDArray[np.int32] = numbers[found.classes[order]] if len(found) else np.zeros(0, np.int32)
-    every = _Found(found.boxes[order], found.scores[order], classes)
-    return every.where(classes >= 0)
+def _renumber_classes(class_numbers: dict[str, int], detections: Detections) -> _SortedDetections:
+    numbers: NDArray[np.int32] = np.array([class_numbers.get(name, -1) for name in detections.names] or [-1], np.int32)
+    order = np.argsort(-detections.scores, kind="stable")
+    classes: NDArray[np.int32] = numbers[detections.classes[order]] if len(detections) else np.zeros(0, np.int32)
+    sorted_detections = _SortedDetections(detections.boxes[order], detections.scores[order], classes)
+    return sorted_detections.where(classes >= 0)
 
 
 def _average_precisions(
-    place: int, truth: Sequence[GroundTruth], found: Sequence[_Found]
+    place: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> NDArray[np.float64] | None:
     """Return the average precisions of one class, shape (overlaps,); None if it has no object."""
-    there = sum(int(((objects.classes == place) & ~objects.ignored).sum()) for objects in truth)
-    if there == 0:
+    object_count = sum(int(((objects.classes == place) & ~objects.ignored).sum()) for objects in truth)
+    if object_count == 0:
         return None
     scores: list[NDArray[np.float32]] = []
-    right: list[NDArray[np.bool_]] = []
+    correct: list[NDArray[np.bool_]] = []
     wrong: list[NDArray[np.bool_]] = []
-    for objects, detections in zip(truth, found, strict=True):
-        mine = detections.where(detections.classes == place)
-        boxes = mine.boxes[:MOST]
-        scores.append(mine.scores[:MOST])
-        same = objects.where(objects.classes == place)
-        shares = overlap(boxes, same.boxes[~same.ignored])
-        hidden = _within(boxes, same.boxes[same.ignored])
-        right.append(np.stack([_matches(shares, least) >= 0 for least in OVERLAPS]))
-        wrong.append(~right[-1] & np.stack([hidden < least for least in OVERLAPS]))
+    for objects, detections in zip(truth, predictions, strict=True):
+        of_class = detections.where(detections.classes == place)
+        boxes = of_class.boxes[:MOST]
+        scores.append(of_class.scores[:MOST])
+        objects_of_class = objects.where(objects.classes == place)
+        overlaps = intersection_over_union(boxes, objects_of_class.boxes[~objects_of_class.ignored])
+        ignored_shares = _ignored_shares(boxes, objects_of_class.boxes[objects_of_class.ignored])
+        correct.append(np.stack([_match_objects(overlaps, min_overlap) >= 0 for min_overlap in OVERLAPS]))
+        wrong.append(~correct[-1] & np.stack([ignored_shares < least for least in OVERLAPS]))
     all_scores: NDArray[np.float32] = np.concatenate(scores)
     order = np.argsort(-all_scores, kind="stable")
-    hits: NDArray[np.int64] = np.concatenate(right, axis=1)[:, order].cumsum(axis=1)
+    hits: NDArray[np.int64] = np.concatenate(correct, axis=1)[:, order].cumsum(axis=1)
     misses: NDArray[np.int64] = np.concatenate(wrong, axis=1)[:, order].cumsum(axis=1)
     precisions = hits / np.maximum(hits + misses, 1)
-    return np.array([_area(row / there, best) for row, best in zip(hits, precisions, strict=True)])
+    return np.array(
+        [
+            _interpolated_precision(row / object_count, class_precision)
+            for row, class_precision in zip(hits, precisions, strict=True)
+        ]
+    )
 
 
-def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the largest share of each box that is within one of the ignored regions."""
+def _ignored_shares(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return for each box the largest share of its area that is inside one ignored box."""
     if not len(hidden):
         return np.zeros(len(boxes))
-    inner = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(boxes[:, None, :2], hidden[None, :, :2])
+    overlap_sizes = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(
+        boxes[:, None, :2], hidden[None, :, :2]
+    )
     areas = (boxes[:, 2:] - boxes[:, :2]).prod(-1).astype(np.float64)
-    shares: NDArray[np.float64] = np.clip(inner, 0, None).prod(-1).max(1) / np.maximum(areas, 1e-12)
+    shares: NDArray[np.float64] = np.clip(overlap_sizes, 0, None).prod(-1).max(1) / np.maximum(areas, 1e-12)
     return shares
 
 
-def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
-    """Return the mean of the interpolated precision at 101 recall values."""
-    best: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
-    places = np.searchsorted(recall, _RECALLS, side="left")
-    reached = places < len(best)
-    return float(best[places[reached]].sum() / len(_RECALLS))
+def _interpolated_precision(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
+    """Return the mean of the interpolated precision over 101 recall levels."""
+    interpolated: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
+    indices = np.searchsorted(recall, _RECALL_LEVELS, side="left")
+    is_reached = indices < len(interpolated)
+    return float(interpolated[indices[is_reached]].sum() / len(_RECALL_LEVELS))
 
 
-def _matches(shares: NDArray[np.float64], least: float) -> NDArray[np.int64]:
-    """Return the object that each detection matches, or -1; each object is matched once at most.
+def _match_objects(overlaps: NDArray[np.float64], min_overlap: float) -> NDArray[np.int64]:
+    """Return the object that each detection matches, or -1; an object is matched at most once.
 
-    The most certain detections choose first.
+    The detections must be sorted: earlier ones choose first.
 
     Args:
-        shares: the overlap of each detection with each object, shape (detections, objects).
-        least: the minimum overlap of a correct box.
+        overlaps: the overlap of each detection with each object, shape (detections, objects).
+        min_overlap: the minimum overlap of a correct box.
     """
-    found: NDArray[np.int64] = np.full(len(shares), -1, np.int64)
-    if shares.shape[1] == 0:
-        return found
-    free: NDArray[np.bool_] = np.ones(shares.shape[1], bool)
-    for number, row in enumerate(shares):
-        open_shares = np.where(free, row, -1.0)
-        index = int(open_shares.argmax())
-        if open_shares[index] >= min(least, 1 - 1e-10):
-            found[number] = index
-            free[index] = False
-    return found
+    matches: NDArray[np.int64] = np.full(len(overlaps), -1, np.int64)
+    if overlaps.shape[1] == 0:
+        return matches
+    is_free: NDArray[np.bool_] = np.ones(overlaps.shape[1], bool)
+    for detection, row in enumerate(overlaps):
+        free_overlaps = np.where(is_free, row, -1.0)
+        index = int(free_overlaps.argmax())
+        if free_overlaps[index] >= min(min_overlap, 1 - 1e-10):
+            matches[detection] = index
+            is_free[index] = False
+    return matches
 
 
-def _confusion(classes: int, truth: Sequence[GroundTruth], found: Sequence[_Found]) -> NDArray[np.int64]:
+def _confusion_matrix(
+    classes: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
+) -> NDArray[np.int64]:
     table: NDArray[np.int64] = np.zeros((classes + 1, classes + 1), np.int64)
-    for objects, detections in zip(truth, found, strict=True):
-        sure = detections.where(detections.scores >= _CONFUSION_SCORE)
-        hidden = objects.where(objects.ignored)
+    for objects, detections in zip(truth, predictions, strict=True):
+        certain = detections.where(detections.scores >= _CONFUSION_SCORE)
+        ignored_objects = objects.where(objects.ignored)
         objects = objects.where(~objects.ignored)
-        shares = overlap(sure.boxes, objects.boxes)
-        # Match objects of the same class first: another overlapping box does not make a correct detection a confusion.
-        same = shares * (sure.classes[:, None] == objects.classes[None])
-        matches = _matches(same, _CONFUSION_OVERLAP)
-        left = shares.copy()
-        left[:, matches[matches >= 0]] = 0
-        left[matches >= 0] = 0
-        others = _matches(left, _CONFUSION_OVERLAP)
-        matches = np.where(matches >= 0, matches, others)
-        unseen = _within(sure.boxes, hidden.boxes) >= _CONFUSION_OVERLAP
+        overlaps = intersection_over_union(certain.boxes, objects.boxes)
+        # Match objects of the same class first: a correct detection that overlaps another object, too, is right.
+        same_class_overlaps = overlaps * (certain.classes[:, None] == objects.classes[None])
+        matches = _match_objects(same_class_overlaps, _CONFUSION_OVERLAP)
+        remaining_overlaps = overlaps.copy()
+        remaining_overlaps[:, matches[matches >= 0]] = 0
+        remaining_overlaps[matches >= 0] = 0
+        other_matches = _match_objects(remaining_overlaps, _CONFUSION_OVERLAP)
+        matches = np.where(matches >= 0, matches, other_matches)
+        is_ignored = _ignored_shares(certain.boxes, ignored_objects.boxes) >= _CONFUSION_OVERLAP
         for number, index in enumerate(matches):
-            if index < 0 and unseen[number]:
+            if index < 0 and is_ignored[number]:
                 continue
-            table[objects.classes[index] if index >= 0 else classes, sure.classes[number]] += 1
+            table[objects.classes[index] if index >= 0 else classes, certain.classes[number]] += 1
         for index in set(range(len(objects.classes))) - set(matches.tolist()):
             table[objects.classes[index], classes] += 1
     return table
 
 
-_SIZES = (("under 16 pixels", 0.0, 16.0), ("16 to 32 pixels", 16.0, 32.0), ("32 to 96 pixels", 32.0, 96.0),
+_SIZE_RANGES = (("under 16 pixels", 0.0, 16.0), ("16 to 32 pixels", 16.0, 32.0), ("32 to 96 pixels", 32.0, 96.0),
           ("over 96 pixels", 96.0, np.inf))  # fmt: skip
 """Ranges of the longer side of a box, in pixels of the image."""
 
 
-def _by_size(truth: Sequence[GroundTruth], found: Sequence[_Found]) -> tuple[tuple[str, int, float], ...]:
-    sides: list[float] = []
-    hit: list[bool] = []
-    for objects, detections in zip(truth, found, strict=True):
-        sure = detections.where(detections.scores >= _CONFUSION_SCORE)
+def _recall_by_size(
+    truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
+) -> tuple[tuple[str, int, float], ...]:
+    lengths: list[float] = []
+    is_found: list[bool] = []
+    for objects, detections in zip(truth, predictions, strict=True):
+        certain = detections.where(detections.scores >= _CONFUSION_SCORE)
         objects = objects.where(~objects.ignored)
-        same = overlap(sure.boxes, objects.boxes) * (sure.classes[:, None] == objects.classes[None])
-        matched = set(_matches(same, _CONFUSION_OVERLAP).tolist())
-        sides += (objects.boxes[:, 2:] - objects.boxes[:, :2]).max(axis=1, initial=0).tolist()
-        hit += [index in matched for index in range(len(objects.classes))]
+        same_class_overlaps = intersection_over_union(certain.boxes, objects.boxes) * (
+            certain.classes[:, None] == objects.classes[None]
+        )
+        matched = set(_match_objects(same_class_overlaps, _CONFUSION_OVERLAP).tolist())
+        lengths += (objects.boxes[:, 2:] - objects.boxes[:, :2]).max(axis=1, initial=0).tolist()
+        is_found += [index in matched for index in range(len(objects.classes))]
     rows = []
-    for name, least, most in _SIZES:
-        inside = [was for side, was in zip(sides, hit, strict=True) if least <= side < most]
-        rows.append((name, len(inside), sum(inside) / len(inside) if inside else 0.0))
+    for name, minimum, maximum in _SIZE_RANGES:
+        found_in_range = [found for side, found in zip(lengths, is_found, strict=True) if minimum <= side < maximum]
+        rows.append((name, len(found_in_range), sum(found_in_range) / len(found_in_range) if found_in_range else 0.0))
     return tuple(rows)
 
 
 def _mean(values: Sequence[float | None]) -> float:
-    there = [value for value in values if value is not None]
-    return sum(there) / len(there) if there else 0.0
+    defined_values = [value for value in values if value is not None]
+    return sum(defined_values) / len(defined_values) if defined_values else 0.0

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from linkwright.graph.node import Graph
 
 _JOINED_WITHIN = 10.0
-"""Seconds after which the thread that joins is abandoned: an import that Ctrl-C ended may keep its lock for ever."""
+"""Seconds after which the joining thread is abandoned, because an import that Ctrl-C ended may keep its lock."""
 
-_LOOK_AGAIN = 0.01
+_POLL_INTERVAL_S = 0.01
 _CLOSE_CHECK_INTERVAL = 0.05
-"""Seconds after which a waiting thread notices that the domain was left."""
+"""The interval, in seconds, at which a waiting thread checks whether the domain was left."""
 
 
 class DepartureMonitor(Protocol):
@@ -78,17 +78,17 @@ class BackgroundTransport(ABC):
         self._logger = logger
         self._engine: Engine | None = None
         self._work: Work = deque()
-        self._decided = threading.Event()
+        self._join_ended = threading.Event()
         self._given_up = threading.Event()
         self._closed = False
-        self._joining = threading.Lock()
+        self._join_lock = threading.Lock()
         self._has_left = False
         self._joined_at = 0.0
         self.problem: LinkwrightError | None = None
-        """Why the domain could not be joined; None when it could, or was not tried yet."""
-        self._starter = threading.Thread(target=self._join, name="linkwright-join", daemon=True)
+        """The reason why the domain could not be joined; None if it was joined, or joining has not ended."""
+        self._join_thread = threading.Thread(target=self._join, name="linkwright-join", daemon=True)
         _open_transports.add(self)
-        self._starter.start()
+        self._join_thread.start()
 
     @abstractmethod
     def _make_engine(self) -> Engine:
@@ -123,19 +123,19 @@ class BackgroundTransport(ABC):
             Whether the transport is ready. If the domain cannot be joined or was left, False is returned immediately.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
-        while not self._decided.wait(_CLOSE_CHECK_INTERVAL) and not self._closed:
+        while not self._join_ended.wait(_CLOSE_CHECK_INTERVAL) and not self._closed:
             if deadline is not None and time.monotonic() >= deadline:
                 return False
         if self._engine is None:
             return False
-        done = threading.Event()
-        self._do(lambda _: done.set())
+        ready = threading.Event()
+        self._do(lambda _: ready.set())
         while not self._closed and (deadline is None or time.monotonic() < deadline):
-            if done.wait(
+            if ready.wait(
                 _CLOSE_CHECK_INTERVAL if deadline is None else min(_CLOSE_CHECK_INTERVAL, deadline - time.monotonic())
             ):
                 break
-        return done.is_set()
+        return ready.is_set()
 
     def wait_for_discovery(self, timeout: float = 5.0) -> bool:
         """Block until discovery has settled.
@@ -155,7 +155,7 @@ class BackgroundTransport(ABC):
         while time.monotonic() < deadline and not self._closed:
             if self._has_settled(time.monotonic() - max(self._outside.changed_at, self._joined_at)):
                 return True
-            time.sleep(_LOOK_AGAIN)
+            time.sleep(_POLL_INTERVAL_S)
         return False
 
     # --- called by the graph -----------------------------------------------------------------------------------------
@@ -224,21 +224,21 @@ class BackgroundTransport(ABC):
         """Return the endpoints of other processes that have been discovered so far."""
         return self._outside.endpoints()
 
-    def watch(self, changed: Callable[[], None]) -> None:
+    def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for changes of remote nodes and endpoints.
 
         The callback may be called from any thread.
         """
-        self._outside.watch(partial(run_logged, self._logger, "a callback for changes outside", changed))
+        self._outside.watch(partial(run_logged, self._logger, "a callback for changes outside", callback))
 
-    def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
+    def watch_lost(self, callback: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost remote publishers.
 
         The callback may be called from any thread.
         """
 
         def notify(publisher: EndpointInfo) -> None:
-            run_logged(self._logger, "a callback for publishers that are lost", partial(lost, publisher))
+            run_logged(self._logger, "a callback for publishers that are lost", partial(callback, publisher))
 
         self._departed.watch(notify)
         self._do(lambda _: None)  # wakes the engine, which monitors processes from now on
@@ -250,9 +250,9 @@ class BackgroundTransport(ABC):
         self._closed = True
         self._given_up.set()
         _open_transports.discard(self)
-        if self._starter.ident is not None:  # Ctrl-C may have interrupted `__init__` before the thread was started
+        if self._join_thread.ident is not None:  # Ctrl-C may have interrupted `__init__` before the thread was started
             self._end_joining()
-        with self._joining:
+        with self._join_lock:
             self._has_left = True
             engine, self._engine = self._engine, None
         if engine is not None:
@@ -262,9 +262,9 @@ class BackgroundTransport(ABC):
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _end_joining(self) -> None:
-        until = time.monotonic() + _JOINED_WITHIN
-        while self._starter.is_alive() and time.monotonic() < until:
-            self._starter.join(_CLOSE_CHECK_INTERVAL)
+        deadline = time.monotonic() + _JOINED_WITHIN
+        while self._join_thread.is_alive() and time.monotonic() < deadline:
+            self._join_thread.join(_CLOSE_CHECK_INTERVAL)
             if self.waits:  # The thread may be in a call that waits for other processes and cannot be interrupted.
                 break
 
@@ -292,7 +292,7 @@ class BackgroundTransport(ABC):
     def _join(self) -> None:
         try:
             engine = self._make_engine()
-            with self._joining:
+            with self._join_lock:
                 if not self._has_left:
                     self._engine = engine
                     self._joined_at = time.monotonic()
@@ -310,7 +310,7 @@ class BackgroundTransport(ABC):
             if threading.main_thread().is_alive():
                 raise
         finally:
-            self._decided.set()
+            self._join_ended.set()
 
 
 _open_transports: weakref.WeakSet[BackgroundTransport] = weakref.WeakSet()
@@ -357,21 +357,21 @@ class TransportOptions(TypedDict, total=False):
 
 
 class JoinOptions(TransportOptions, total=False):
-    """The options with which a graph is joined to others."""
+    """The options with which a graph joins the network."""
 
     domain_id: int | None
-    """Takes the place of ROS_DOMAIN_ID."""
+    """The ROS domain; None for the domain in ROS_DOMAIN_ID."""
 
     environment: Mapping[str, str] | None
-    """The environment variables; those of the process when left out."""
+    """The environment variables; those of this process if omitted."""
 
 
 def join_with(
     graph: Graph,
     name: str,
     read_settings: Callable[..., Any],
-    make: Callable[..., AnyTransport],
-    why_not: Callable[[Mapping[str, str] | None], Phrase],
+    make_transport: Callable[..., AnyTransport],
+    unavailable_reason: Callable[[Mapping[str, str] | None], Phrase],
     options: JoinOptions,
 ) -> AnyTransport | None:
     """Attach a transport to a graph, and return it; None if the graph stays without the network.
@@ -380,21 +380,21 @@ def join_with(
         graph: the graph.
         name: the name of the logger that reports why there is no transport.
         read_settings: reads the settings from an environment and a domain; may raise LinkwrightError.
-        make: creates the transport from the settings; may raise LinkwrightError.
-        why_not: returns the reason why an environment has no transport; empty if it has one.
+        make_transport: creates the transport from the settings; may raise LinkwrightError.
+        unavailable_reason: returns the reason why an environment has no transport; empty if it has one.
         options: how the graph is joined.
     """
     logger = graph.get_logger(name)
     environment = options.get("environment")
-    reason = why_not(environment)
+    reason = unavailable_reason(environment)
     if reason:
         if not is_switched_off(environment):
             log_no_transport(logger, reason)
         return None
     try:
         settings = read_settings(environment, domain_id=options.get("domain_id"))
-        looks, must_join = options.get("only_looks", False), options.get("must_join", False)
-        transport = make(settings, logger, only_looks=looks, must_join=must_join)
+        only_looks, must_join = options.get("only_looks", False), options.get("must_join", False)
+        transport = make_transport(settings, logger, only_looks=only_looks, must_join=must_join)
     except LinkwrightError as error:
         log_join_failure(logger, error)
         return None

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 MAX_DOMAIN_ID = 232
-"""Beyond it the ports of RTPS (7400 + 250 a domain) do not exist."""
+"""The highest domain for which the ports of RTPS exist (from 7400, 250 per domain)."""
 
 
 def read_domain_id(variables: Mapping[str, str], domain_id: int | None = None) -> int:

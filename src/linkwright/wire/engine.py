@@ -16,11 +16,11 @@ from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.living_threads import guarded
 
-_WORK_SPAN = 0.02
-"""Seconds after which work on the own endpoints makes room for news from outside."""
+_MAX_WORK_S = 0.02
+"""Seconds after which the engine interrupts work on endpoints of this process to handle changes outside."""
 
 Work: TypeAlias = "deque[Callable[[Engine], None]]"
-"""Requests to the engine, called with it in the order of asking."""
+"""Requests to the engine: functions that are called with the engine, in order."""
 
 
 class Engine(ABC):
@@ -92,18 +92,18 @@ class Engine(ABC):
 
     # --- requests ----------------------------------------------------------------------------------------------------
 
-    def _do_some_work(self) -> None:
+    def _process_some_requests(self) -> None:
         """Process requests to create and delete endpoints, for a limited time."""
-        until = time.monotonic() + _WORK_SPAN
-        while self._work and time.monotonic() < until:
-            self._do_next()
+        deadline = time.monotonic() + _MAX_WORK_S
+        while self._work and time.monotonic() < deadline:
+            self._process_next_request()
 
-    def _do_all_work(self) -> None:
+    def _process_all_requests(self) -> None:
         """Process all requests before the engine ends, without a time limit."""
         while self._work:
-            self._do_next()
+            self._process_next_request()
 
-    def _do_next(self) -> None:
+    def _process_next_request(self) -> None:
         guarded(partial(self._work.popleft(), self), self._report)
 
     def _report(self, error: Exception) -> None:

@@ -52,8 +52,8 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     if reason and find_spec("cyclonedds") is None and not variables.get(MIDDLEWARE, "").strip():
         return phrase(
             "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for DDS, the "
-            "default of ROS 2 (it has wheels for Linux x86_64, Windows and macOS arm64, up to Python "
-            "3.13; this is {system} {machine} with Python {version})",
+            "default of ROS 2 (DDS has wheels for Linux x86_64, Windows and macOS arm64, up to Python 3.13; "
+            "this is {system} {machine} with Python {version})",
             hint=install_hint("zenoh"),
             system=platform.system(),
             machine=platform.machine(),
@@ -120,5 +120,5 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
         return None
     for finding in new_unsupported_settings(environment):
         graph.get_logger("wire").warning(render(finding))
-    chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
-    return chosen(graph, **options)
+    join_transport = zenoh.join if middleware(environment) == ZENOH else dds.join
+    return join_transport(graph, **options)

@@ -1,4 +1,4 @@
-"""UDP multicast without DDS, for commands that test whether the network supports it.
+"""UDP multicast without DDS, for commands that test whether the network supports multicast.
 
 The default group and port are those of ros2cli.
 """
@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, foreign, p
 GROUP = "225.0.0.1"
 PORT = 49150
 LARGEST = 4096
-"""Bytes of a datagram that are read."""
+"""The maximum number of bytes of a datagram that are read."""
 
 
 def open_sender(ttl: int | None = None) -> socket.socket:
@@ -37,7 +37,7 @@ def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = POR
     try:
         sender.sendto(data, (group, port))
     except OSError as error:
-        raise _refused(error, group, port) from error
+        raise _multicast_error(error, group, port) from error
 
 
 def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
@@ -56,11 +56,11 @@ def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
         receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
     except OSError as error:
         receiver.close()
-        raise _refused(error, group, port) from error
+        raise _multicast_error(error, group, port) from error
     return receiver
 
 
-def _refused(error: OSError, group: str, port: int) -> LinkwrightError:
+def _multicast_error(error: OSError, group: str, port: int) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "CLI461",

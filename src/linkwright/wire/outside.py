@@ -29,9 +29,9 @@ class Outside(ABC):
     def endpoints(self) -> list[EndpointInfo]:
         """Return the endpoints of other processes."""
 
-    def watch(self, changed: Callable[[], None]) -> None:
+    def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for changes, which runs in the discovery thread."""
-        self._watchers.append(changed)
+        self._watchers.append(callback)
 
     def announce(self) -> None:
         """Call the registered callbacks after a change."""

@@ -36,7 +36,7 @@ def forward_request(body: bytes, service: Any, reply: Callable[[Any], None], req
     return request is not None
 
 
-def forward_response(body: bytes, client: Any, answer: Callable[[Any], None]) -> None:
+def forward_response(body: bytes, client: Any, on_response: Callable[[Any], None]) -> None:
     """Pass a response to the caller that waits for it.
 
     If the response cannot be decoded, the reason is logged.
@@ -44,22 +44,22 @@ def forward_response(body: bytes, client: Any, answer: Callable[[Any], None]) ->
     Args:
         body: CDR with its header; passed on unchanged to a raw client.
         client: the client.
-        answer: receives the response.
+        on_response: called with the response.
     """
     try:
         response = _read_or_warn(body, "Response", client)
         if response is not None:
-            answer(response)
+            on_response(response)
     except Exception as error:  # noqa: BLE001 - others depend on this thread
         client.report(error)
 
 
-def _read_or_warn(body: bytes, half: Literal["Request", "Response"], endpoint: Any) -> Any:
+def _read_or_warn(body: bytes, message_kind: Literal["Request", "Response"], endpoint: Any) -> Any:
     """Deserialize a request or response; if that fails, log the reason and return None."""
     if endpoint.raw:
         return body
     try:
-        return deserialize(body, getattr(endpoint.srv_type, half))
+        return deserialize(body, getattr(endpoint.srv_type, message_kind))
     except LinkwrightError as error:
         endpoint.node.logger.warning(f"Dropped a malformed message of service '{endpoint.name}': {error}")
         return None

@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 MIDDLEWARE = "RMW_IMPLEMENTATION"
 SECURITY = ("ROS_SECURITY_ENABLE", "ROS_SECURITY_STRATEGY")
 DISCOVERY_SERVERS = ("ROS_DISCOVERY_SERVER", "ROS2_EASY_MODE")
-"""Variables of Fast DDS, the latter since Kilted."""
+"""Variables of Fast DDS; ROS2_EASY_MODE exists since Kilted."""
 
 ZENOH = "rmw_zenoh_cpp"
 CYCLONE = "rmw_cyclonedds_cpp"
@@ -28,7 +28,7 @@ _OTHER_DDS = (
     "rmw_opensplice_cpp",
     "rmw_coredx_cpp",
 )
-_KNOWN = (CYCLONE, *_FAST, ZENOH, *_OTHER_DDS)
+_KNOWN_MIDDLEWARES = (CYCLONE, *_FAST, ZENOH, *_OTHER_DDS)
 
 _reported: set[str] = set()
 """Codes of the settings that were reported in this process."""
@@ -44,14 +44,14 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
         LinkwrightError: DDS121, security is enforced.
     """
     variables = os.environ if environment is None else environment
-    if _asks_for_security(variables) and variables.get("ROS_SECURITY_STRATEGY") == "Enforce":
+    if _is_security_enabled(variables) and variables.get("ROS_SECURITY_STRATEGY") == "Enforce":
         raise LinkwrightError(
             Diagnostic(
                 "DDS121",
                 phrase("ROS_SECURITY_STRATEGY is Enforce, but Linkwright has no DDS security: it does not join"),
                 hint=phrase(
-                    "run this command in a shell with ROS_SECURITY_ENABLE=false, where only nodes without "
-                    "security see it; nodes with security need a real ROS 2"
+                    "set ROS_SECURITY_ENABLE=false for this command, so that it joins nodes without security; "
+                    "nodes with security need a real ROS 2"
                 ),
             )
         )
@@ -64,10 +64,10 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
         environment: the environment variables; those of this process if omitted.
     """
     variables = os.environ if environment is None else environment
-    found = []
+    warnings = []
     middleware = variables.get(MIDDLEWARE, "").strip()
-    if _asks_for_security(variables):
-        found.append(
+    if _is_security_enabled(variables):
+        warnings.append(
             Diagnostic(
                 "DDS122",
                 phrase("ROS_SECURITY_ENABLE is true, but Linkwright has no DDS security: it joins without security"),
@@ -80,11 +80,13 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
         )
     server = next((name for name in DISCOVERY_SERVERS if variables.get(name)), None)
     if server is not None and middleware in ("", *_FAST):
-        found.append(
+        warnings.append(
             Diagnostic(
                 "DDS123",
                 phrase(
-                    "{variable} is set: nodes that use a discovery server of Fast DDS are not seen", variable=server
+                    "{variable} is set, but Linkwright does not support discovery servers of Fast DDS: it does "
+                    "not find nodes that use one",
+                    variable=server,
                 ),
                 severity=Severity.WARNING,
                 hint=phrase(
@@ -94,8 +96,8 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
                 ),
             )
         )
-    if middleware and middleware not in _KNOWN:
-        found.append(
+    if middleware and middleware not in _KNOWN_MIDDLEWARES:
+        warnings.append(
             Diagnostic(
                 "DDS124",
                 phrase(
@@ -105,19 +107,19 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
                     cyclone=CYCLONE,
                 ),
                 severity=Severity.WARNING,
-                hint=phrase("unset it, or set {cyclone} or {zenoh}", cyclone=CYCLONE, zenoh=ZENOH),
+                hint=phrase("unset it, or set it to {cyclone} or {zenoh}", cyclone=CYCLONE, zenoh=ZENOH),
             )
         )
-    return found
+    return warnings
 
 
 def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
     """Return the warnings of `unsupported_settings` that this process has not returned before."""
-    found = [setting for setting in unsupported_settings(environment) if setting.code not in _reported]
-    _reported.update(diagnostic.code for diagnostic in found)
-    return found
+    warnings = [setting for setting in unsupported_settings(environment) if setting.code not in _reported]
+    _reported.update(diagnostic.code for diagnostic in warnings)
+    return warnings
 
 
-def _asks_for_security(variables: Mapping[str, str]) -> bool:
+def _is_security_enabled(variables: Mapping[str, str]) -> bool:
     """Return whether rcl would enable security, which requires exactly this spelling."""
     return variables.get("ROS_SECURITY_ENABLE") == "true"

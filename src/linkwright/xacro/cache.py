@@ -22,16 +22,16 @@ class BoundedCache(Generic[_Key, _Value]):
     values were dropped first, such a user would find none.
 
     Args:
-        most: the maximum total size.
+        max_size: the maximum total size.
         size_of: the function that returns the size of a value.
 
     Attributes:
         values: the cached values, by key. This is a plain dict because it is read for each text of a description.
     """
 
-    def __init__(self, most: int, size_of: Callable[[_Key, _Value], int]) -> None:
+    def __init__(self, max_size: int, size_of: Callable[[_Key, _Value], int]) -> None:
         self.values: dict[_Key, _Value] = {}
-        self._most = most
+        self._max_size = max_size
         self._size_of = size_of
         self._size = 0
         self._start = 0
@@ -40,11 +40,11 @@ class BoundedCache(Generic[_Key, _Value]):
         """Store a value, replacing an old value with the same key."""
         values, size_of = self.values, self._size_of
         values.pop(key, None)
-        own = size_of(key, value)
-        self._size += own  # too large if the key existed; the sum below corrects it
-        while self._size > self._most and values:
-            self._size = own + sum(size_of(*item) for item in list(values.items()))
-            if self._size > self._most:
+        value_size = size_of(key, value)
+        self._size += value_size  # too large if the key existed; the sum below corrects it
+        while self._size > self._max_size and values:
+            self._size = value_size + sum(size_of(*item) for item in list(values.items()))
+            if self._size > self._max_size:
                 self._start = (self._start + 1) % _STRIDE
                 for dropped in list(values)[self._start :: _STRIDE]:
                     values.pop(dropped, None)
@@ -53,9 +53,9 @@ class BoundedCache(Generic[_Key, _Value]):
 
 _Form = TypeVar("_Form")
 
-_MOST_CHARACTERS = 1_000_000
-_AROUND = 8
-"""How long the texts that are kept may be together, with what each adds; compiled they are a hundred times as large."""
+_MAX_CHARACTERS = 1_000_000
+_SIZE_PER_TEXT = 8
+"""The fixed size that each cached text adds to its length; a compiled text is a hundred times as large."""
 
 
 class TextCompiler(Generic[_Form]):
@@ -69,7 +69,9 @@ class TextCompiler(Generic[_Form]):
     """
 
     def __init__(self, compile_text: Callable[[str], _Form]) -> None:
-        self._cache: BoundedCache[str, _Form] = BoundedCache(_MOST_CHARACTERS, lambda text, _: len(text) + _AROUND)
+        self._cache: BoundedCache[str, _Form] = BoundedCache(
+            _MAX_CHARACTERS, lambda text, _: len(text) + _SIZE_PER_TEXT
+        )
         self.forms = self._cache.values
         self._compile = compile_text
 
@@ -85,10 +87,10 @@ class TextCompiler(Generic[_Form]):
 
 
 _LINKS = f"{os.sep}shares{os.sep}"
-_MOST_BYTES = 24_000_000
+_MAX_BYTES = 24_000_000
 """The maximum total size of the files whose documents are cached. A thousand robots have as much, and a document takes
 fifteen times as much memory as its file."""
-documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MOST_BYTES, lambda _, file: file[1])
+documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MAX_BYTES, lambda _, file: file[1])
 """Path and current folder -> modification time, size and document."""
 
 
@@ -116,9 +118,9 @@ def read_document(path: str, overlay: Overlay | None = None) -> Document:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
         return parse_file(path)  # raises the error with its reason
-    known = documents.values.get(key)
-    if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
-        return known[2]
+    cached = documents.values.get(key)
+    if cached is not None and cached[:2] == (status.st_mtime_ns, status.st_size):
+        return cached[2]
     document = parse_file(path)
     documents.store(key, (status.st_mtime_ns, status.st_size, document))
     return document

@@ -1,14 +1,14 @@
-"""The expansion: one walk over the source tree in document order that writes a new tree.
+"""The expander, which walks over the source tree once in document order and writes a new tree.
 
 Source trees are never changed, so each file is parsed only once. The new tree shares texts and comments without
 expressions with the source tree. Every element of the result has its position in the source, and the macro calls and
 includes that contain it.
 
-A comment directly above a property, macro, argument, include, condition or macro call describes this tag, and
-disappears with it. The choice of comments follows ros/xacro exactly. In a run of comments above the tag, those
-separated by blank text with at most one newline disappear. A marker is left behind, at which the next such run
-stops. A document has only one marker, which moves. The marker is blank text, so its only visible effect is that an
-element with text and a marker is no longer written on one line.
+A comment directly above a property, macro, argument, include, condition or macro call describes this tag, and is
+removed with it. The same comments are removed as in ros/xacro: all comments above the tag that are separated by blank
+text with at most one newline. A marker is inserted there, at which the next such removal stops. A document has only
+one marker, which moves. The marker is blank text, so its only visible effect is that an element with text and a
+marker is no longer written on one line.
 """
 
 from __future__ import annotations
@@ -44,48 +44,48 @@ class CommentSweeper:
 
     def __init__(self) -> None:
         self._marker = Text("\n\n")
-        self._home: list[Node] | None = None
+        self._marker_siblings: list[Node] | None = None
 
     def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
         """Remove the comments above a tag, which are at the end of a list of siblings.
 
         Args:
             siblings: the expanded nodes above the tag.
-            followed: whether further nodes follow the tag.
+            followed: whether other nodes follow the tag.
 
         Returns:
             Whether the caller must call `mark` after expanding the tag.
         """
-        at = len(siblings) - 1
-        while at >= 0:
-            node = siblings[at]
+        index = len(siblings) - 1
+        while index >= 0:
+            node = siblings[index]
             if isinstance(node, Text) and node.data.isspace() and not node.cdata and node.data.count("\n") <= 1:
-                at -= 1
-            if at >= 0 and isinstance(siblings[at], Comment):
-                del siblings[at]
-                at -= 1
+                index -= 1
+            if index >= 0 and isinstance(siblings[index], Comment):
+                del siblings[index]
+                index -= 1
             else:
                 return followed
         return False
 
     def mark(self, siblings: list[Node]) -> None:
         """Move the marker to the end of a list of siblings."""
-        home = self._home
-        if home is not None:
-            for at in range(len(home) - 1, -1, -1):
-                if home[at] is self._marker:
-                    del home[at]
+        marked_siblings = self._marker_siblings
+        if marked_siblings is not None:
+            for index in range(len(marked_siblings) - 1, -1, -1):
+                if marked_siblings[index] is self._marker:
+                    del marked_siblings[index]
                     break
         siblings.append(self._marker)
-        self._home = siblings
+        self._marker_siblings = siblings
 
     def moved(self, old: list[Node], new: list[Node]) -> None:
         """Update the marker after the nodes of a list were moved to the end of another list."""
-        if self._home is old:
-            self._home = new
+        if self._marker_siblings is old:
+            self._marker_siblings = new
 
 
-_MOST_ERRORS = 20
+_MAX_ERRORS = 20
 
 
 class Container(Element):
@@ -102,14 +102,14 @@ class Site(NamedTuple):
         parent: the element that receives the expansion of the tag.
         scope: the properties that are visible at the tag.
         macros: the macros that are visible at the tag.
-        followed: whether further nodes follow the tag.
+        has_followers: whether other nodes follow the tag.
     """
 
     node: Element
     parent: Element
     scope: Scope
     macros: MacroTable
-    followed: bool
+    has_followers: bool
 
 
 Directive = Callable[["Expander", Site], None]
@@ -135,10 +135,10 @@ class Expander:
         self._call = call
         self.sweeper = CommentSweeper()
         self.unwritable: dict[tuple[int, str], tuple[Element, Diagnostic]] = {}
-        """Identity of an element and name of an attribute -> the element, and the warning about its value."""
+        """The ID of an element and the name of an attribute -> the element, and the warning about the value."""
         self._errors: list[Diagnostic] = []
         self._nesting = 0
-        self._deepest = session.limits.nesting
+        self._max_nesting = session.limits.nesting
         self._root: Element | None = None
 
     def document(self, document: Document) -> Document:
@@ -175,7 +175,7 @@ class Expander:
             self._errors += error.diagnostics
             return None
         except RecursionError:
-            self._errors.append(self._out_of_stack())
+            self._errors.append(self._nesting_diagnostic())
             return None
         expanded = container.children[0]
         assert isinstance(expanded, Element), "an ordinary element comes out as an element"
@@ -195,8 +195,8 @@ class Expander:
         output, session, directives = parent.children, self.session, self._directives
         evaluate_comments = False
         self._nesting += 1
-        if self._nesting > self._deepest:
-            self._too_deep(node)
+        if self._nesting > self._max_nesting:
+            self._fail_too_deep(node)
         plan = node.plan
         steps = plan.steps if isinstance(plan, Plan) else None
         for action, item, flag in steps_of(node) if steps is None else steps:
@@ -209,7 +209,7 @@ class Expander:
                 self.element(item, output, scope, macros)
             elif action == TAG:
                 session.budget.elements -= 2
-                session.place, session.attribute = item, None
+                session.current_node, session.current_attribute = item, None
                 directives.get(item.tag, self._call)(self, Site(item, parent, scope, macros, flag))
             elif action == TEXT:
                 text = self._text(item, scope)
@@ -225,25 +225,25 @@ class Expander:
     def _copy(self, run: Run, output: list[Node]) -> None:
         """Append adjacent nodes that need no expansion to a list of output nodes."""
         budget, frame = self.session.budget, self.session.frame
-        if run.size > budget.elements or self._nesting + run.height > self._deepest:
+        if run.size > budget.elements or self._nesting + run.height > self._max_nesting:
             self._copy_singly(run, output)
             return
         budget.elements -= run.size
         output += [LazyCopy(node, frame) if isinstance(node, Element) else node for node in run.nodes]
 
     def _copy_singly(self, run: Run, output: list[Node]) -> None:
-        """Copy the nodes one by one, so that the error names the element that exceeds a limit."""
-        elements, scope, macros = self.session.budget, Scope(None, self.session), MacroTable()
-        between = 0
+        """Append the nodes one by one, so that an error names the element that exceeds a limit."""
+        budget, scope, macros = self.session.budget, Scope(None, self.session), MacroTable()
+        uncounted_nodes = 0
         for node in run.nodes:
             if isinstance(node, Element):
-                elements.elements -= between >> 3
+                budget.elements -= uncounted_nodes >> 3
                 self.element(node, output, scope, macros)
-                between = 0
+                uncounted_nodes = 0
             else:
                 output.append(node)
-                between += 1
-        elements.elements -= between >> 3
+                uncounted_nodes += 1
+        budget.elements -= uncounted_nodes >> 3
 
     def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
         """Expand an ordinary element and append it to the output.
@@ -254,7 +254,7 @@ class Expander:
         plan = node.plan
         if not isinstance(plan, Plan):
             plan = plan_of(node)
-        if plan.size and plan.size <= session.budget.elements and self._nesting + plan.height <= self._deepest:
+        if plan.size and plan.size <= session.budget.elements and self._nesting + plan.height <= self._max_nesting:
             session.budget.elements -= plan.size
             output.append(LazyCopy(node, session.frame))
             return
@@ -282,7 +282,7 @@ class Expander:
         for name in plan.evaluated:
             value = result[name]
             if "$" in value:
-                session.place, session.attribute = node, name
+                session.current_node, session.current_attribute = node, name
                 try:
                     value = result[name] = session.evaluate_text(value, scope)
                 except Fault as fault:
@@ -301,7 +301,7 @@ class Expander:
 
     def directive(self, site: Site) -> None:
         """Expand a xacro tag or a macro call."""
-        self.session.place, self.session.attribute = site.node, None
+        self.session.current_node, self.session.current_attribute = site.node, None
         self._directives.get(site.node.tag, self._call)(self, site)
 
     def _text(self, node: Text, scope: Scope) -> Text:
@@ -309,7 +309,7 @@ class Expander:
             self._charge_text(node, node.data)
         if node.cdata or "$" not in node.data:
             return node
-        self.session.place, self.session.attribute = node, None
+        self.session.current_node, self.session.current_attribute = node, None
         try:
             data = self.session.evaluate_text(node.data, scope)
         except Fault as fault:
@@ -327,10 +327,10 @@ class Expander:
             data = self.session.evaluate_text(node.data, scope)
             _check_comment(data)
         except Fault as fault:
-            inside = Text(node.data, node.source, node.offset + len("<!--"))
+            content = Text(node.data, node.source, node.offset + len("<!--"))
             if fault.start is None:
                 fault.start, fault.end = 0, len(node.data)
-            fault.place_in_text(inside)
+            fault.place_in_text(content)
             self.note(fault)
             data = ""
         return Comment(data, node.source, node.offset)
@@ -342,7 +342,7 @@ class Expander:
         text = node.attributes[name]
         if "$" not in text:
             return text
-        self.session.place, self.session.attribute = node, name
+        self.session.current_node, self.session.current_attribute = node, name
         try:
             return self.session.evaluate(text, scope)
         except Fault as fault:
@@ -364,7 +364,7 @@ class Expander:
     def sweep(self, site: Site) -> None:
         """Remove the comments above a tag that leaves nothing in the result."""
         output = site.parent.children
-        if self.sweeper.sweep(output, followed=site.followed):
+        if self.sweeper.sweep(output, followed=site.has_followers):
             self.sweeper.mark(output)
 
     def splice(self, container: Element, site: Site) -> None:
@@ -431,19 +431,19 @@ class Expander:
         fault.place_at(node)
         self.fail(fault)
 
-    def _too_deep(self, node: Element) -> NoReturn:
-        fault = Fault("XAC601", phrase("elements are nested more than {deepest} deep", deepest=self._deepest))
+    def _fail_too_deep(self, node: Element) -> NoReturn:
+        fault = Fault("XAC601", phrase("elements are nested more than {deepest} deep", deepest=self._max_nesting))
         fault.place_at(next(node.elements(), node))
         self.fail(fault)
 
     # errors
 
-    def _out_of_stack(self) -> Diagnostic:
-        place = self.session.place
-        span = place.span() if isinstance(place, Element) else None
+    def _nesting_diagnostic(self) -> Diagnostic:
+        node = self.session.current_node
+        span = node.span() if isinstance(node, Element) else None
         message = phrase("the description is nested too deeply")
         return Diagnostic(
-            "XAC601", message, span, notes=trail(self.session.frame), source=place.source if place else None
+            "XAC601", message, span, notes=trail(self.session.frame), source=node.source if node else None
         )
 
     def note(self, fault: Fault) -> None:
@@ -468,8 +468,8 @@ class Expander:
 
     @property
     def has_too_many_errors(self) -> bool:
-        """Whether there are so many errors that further ones would not help the user."""
-        return len(_without_repeats(self._errors)) >= _MOST_ERRORS
+        """Whether there are so many errors that reporting more would not help the user."""
+        return len(_without_repeats(self._errors)) >= _MAX_ERRORS
 
     def fail(self, fault: Fault) -> NoReturn:
         """Raise the error of a fault that has a location."""
@@ -483,13 +483,13 @@ class Expander:
         raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
 
     def _diagnostic(self, fault: Fault) -> Diagnostic:
-        elsewhere = fault.elsewhere()
-        if elsewhere is not None and elsewhere.hint is not None:
-            fault.hint = elsewhere.hint
-        elif elsewhere is not None and fault.hint is None:
+        other_definition = fault.elsewhere()
+        if other_definition is not None and other_definition.hint is not None:
+            fault.hint = other_definition.hint
+        elif other_definition is not None and fault.hint is None:
             fault.hint = phrase("move its definition above this line, and out of any macro that ends before it")
-        found = () if elsewhere is None else (elsewhere.note,)
-        notes = (*fault.notes, *found, *trail(self.session.frame))
+        definition_notes = () if other_definition is None else (other_definition.note,)
+        notes = (*fault.notes, *definition_notes, *trail(self.session.frame))
         return Diagnostic(fault.code, fault.message, fault.span, notes=notes, hint=fault.hint, source=fault.source)
 
 
@@ -507,17 +507,17 @@ def _check_comment(data: str) -> None:
 
 
 def _with_attribute(element: Element, name: str, value: str) -> Element:
-    changed = Element(element.tag, {**element.attributes, name: value}, element.source, element.offset)
-    changed.children = element.children
-    return changed
+    copy = Element(element.tag, {**element.attributes, name: value}, element.source, element.offset)
+    copy.children = element.children
+    return copy
 
 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Return the diagnostics without repetitions, which a macro that is called often produces."""
-    seen: dict[tuple[str, str, Span | None], Diagnostic] = {}
+    unique: dict[tuple[str, str, Span | None], Diagnostic] = {}
     for diagnostic in diagnostics:
-        seen.setdefault((diagnostic.code, diagnostic.message, diagnostic.span), diagnostic)
-    return list(seen.values())
+        unique.setdefault((diagnostic.code, diagnostic.message, diagnostic.span), diagnostic)
+    return list(unique.values())
 
 
 def check_attributes(expander: Expander, node: Element, required: tuple[str, ...], optional: tuple[str, ...]) -> None:
@@ -529,10 +529,10 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     attributes = node.attributes
     for name in required:
         if name not in attributes:
-            near = nearest(name, [attribute for attribute in attributes if attribute not in optional])
+            similar_names = nearest(name, [attribute for attribute in attributes if attribute not in optional])
             missing = (
-                phrase("write {name}=\"...\" for '{near}'", name=name, near=near[0])
-                if near
+                phrase("write {name}=\"...\" for '{near}'", name=name, near=similar_names[0])
+                if similar_names
                 else phrase('write {name}="..."', name=name)
             )
             expander.fail_at(

@@ -28,8 +28,8 @@ class Expansion:
         document: the expanded document. Every element has the source and the offset at which it was written.
         arguments: the final value of every argument that was passed or declared, by name.
         diagnostics: warnings, and the messages that the description shows with ``xacro.message`` and similar functions.
-        inputs: the inputs of the expansion, or None.
-        problems: the errors that made parts missing; see `linkwright.xacro.parts`.
+        inputs: the inputs of the expansion, or None if they were not recorded.
+        problems: the errors of the parts that were left out; see `linkwright.xacro.parts`.
     """
 
     def __init__(
@@ -77,7 +77,9 @@ class Expansion:
             LinkwrightError: XAC802 if the files have changed, or if the element does not belong to the document.
         """
         if self.inputs is None:
-            raise LinkwrightError(Diagnostic("XAC802", phrase("the document has no record of its expansion")))
+            raise LinkwrightError(
+                Diagnostic("XAC802", phrase("the inputs of the expansion are not available, so it has no provenance"))
+            )
         from linkwright.xacro.tracing.provenance import provenance_of
 
         return provenance_of(self.inputs, self.document.root, element)
@@ -96,19 +98,19 @@ def expand(
     """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file is returned unchanged.
 
     Args:
-        path_or_text: the path of a file, or a text, which is recognized by its ``<``. Relative paths in a file are
-            relative to its folder, and those in a text to `root_dir`. The banner contains the path as given here.
+        path_or_text: the path of a file, or a text, which is recognized by its ``<``. Relative paths are resolved in
+            the folder of the file or, for a text, in `root_dir`. The banner contains the path unchanged.
         arguments: the values of arguments (``name:=value``), by name. They take precedence over the defaults in the
             file.
         packages: the packages for ``$(find name)``: an object with ``share(name)``, such as a `PackageFinder`, or a
             mapping from package to share folder that takes precedence over the surroundings of the file.
-        text: the text to expand instead of that of the file, such as an unsaved one.
+        text: the text to expand instead of the text of the file, such as unsaved changes in an editor.
         limits: the limits of the expansion.
         root_dir: the base of relative paths, or None for the current folder.
-        overlay: texts that replace those of files, including included files and YAML files.
+        overlay: texts that replace the contents of files, including included files and YAML files.
 
     Raises:
-        LinkwrightError: the errors found, each with its location, the macro calls and includes that led there, and a
+        LinkwrightError: the errors of the description, each with its location, its macro calls and includes, and a
             hint.
     """
     name = str(path_or_text)
@@ -118,12 +120,12 @@ def expand(
     session = inputs.session()
     document = main_document(session, text)
     with recursion_limit_for(session.limits):
-        expanded = Expander(session, DIRECTIVES, call_macro).document(document)
+        expanded_document = Expander(session, DIRECTIVES, call_macro).document(document)
     session.warn_of_unused_arguments()
     session.close()
-    expanded.prolog[:0] = banner(inputs.name)
-    expanded.doctype_index += len(_BANNER)
-    return Expansion(expanded, session.dependencies, session.arguments, tuple(session.diagnostics), inputs)
+    expanded_document.prolog[:0] = banner(inputs.name)
+    expanded_document.doctype_index += len(_BANNER)
+    return Expansion(expanded_document, session.dependencies, session.arguments, tuple(session.diagnostics), inputs)
 
 
 _RULE = " =================================================================================== "
@@ -137,12 +139,12 @@ _BANNER = (
 
 def banner(name: str) -> list[Comment]:
     """Return the comments at the top of an expanded text, which name its source file."""
-    shown = name
-    while "--" in shown:  # XML does not allow two dashes in a comment
-        shown = shown.replace("--", "-")
+    displayed_name = name
+    while "--" in displayed_name:  # XML does not allow two dashes in a comment
+        displayed_name = displayed_name.replace("--", "-")
     return [
         Comment(_BANNER[0]),
-        Comment(_BANNER[1].format(shown)),
+        Comment(_BANNER[1].format(displayed_name)),
         Comment(_BANNER[2].format("")),
         Comment(_BANNER[3]),
     ]

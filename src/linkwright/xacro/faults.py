@@ -1,4 +1,4 @@
-"""Mistakes found during the evaluation of a text, and the origin of elements.
+"""Mistakes that occur when a text is evaluated, and the origin of elements.
 
 The code that finds a mistake knows the text and the offsets in it, but not the element that contains the text.
 Therefore, a `Fault` first has offsets only. The code that evaluates the text of an element adds the location, and
@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic, Note, Phrase, SourceText, Span, p
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element, Text
 
-_SHOWN = 10
+_MAX_NOTES = 10
 
 
 class Frame:
@@ -38,12 +38,12 @@ class Frame:
 
     def note(self) -> Note:
         """Return a note on this call or include for a message."""
-        what = (
+        text = (
             phrase("included from here")
             if self.macro is None
             else phrase("in macro '{macro}' called here", macro=self.macro)
         )
-        return Note(what, self.site.span())
+        return Note(text, self.site.span())
 
 
 class Origin(NamedTuple):
@@ -72,14 +72,14 @@ def trail(innermost: Frame | None) -> tuple[Note, ...]:
     If there are very many frames, the outermost ones are only counted.
     """
     notes: list[Note] = []
-    for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
-        repeated = list(group)
-        if len(notes) == _SHOWN and repeated[0].depth > 1:
-            notes.append(Note(phrase("and {depth} more calls and includes around it", depth=repeated[0].depth)))
+    for site, same_site_frames in groupby(frames(innermost), key=lambda frame: frame.site):
+        same_site = list(same_site_frames)
+        if len(notes) == _MAX_NOTES and same_site[0].depth > 1:
+            notes.append(Note(phrase("and {depth} more calls and includes around it", depth=same_site[0].depth)))
             break
-        note = repeated[0].note()
-        if len(repeated) > 1:
-            note = Note(phrase("{message}, {count} times", message=note.message, count=len(repeated)), site.span())
+        note = same_site[0].note()
+        if len(same_site) > 1:
+            note = Note(phrase("{message}, {count} times", message=note.message, count=len(same_site)), site.span())
         notes.append(note)
     return tuple(notes)
 
@@ -101,7 +101,7 @@ class InactiveDefinition(NamedTuple):
 
     Attributes:
         note: the message and the location of the definition.
-        hint: how to fix the mistake, or None if this does not depend on the definition.
+        hint: how to fix the mistake, or None if the definition does not determine the fix.
     """
 
     note: Note
@@ -120,8 +120,8 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         span: the location of the mistake, or None until it is known.
         source: the text that contains the span.
         notes: notes on how the evaluation reached this location, innermost first.
-        passing: the text of the note for the next location on the way out, such as "property 'a' is used here".
-        missing: the name of the missing property, or None for other mistakes.
+        next_note: the text of the note for the next enclosing location, such as "property 'a' is used here".
+        missing_name: the name of the missing property, or None for other mistakes.
     """
 
     def __init__(
@@ -136,14 +136,14 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         self.span: Span | None = None
         self.source: SourceText | None = None
         self.notes: list[Note] = []
-        self.passing = phrase("from here")
-        self.missing: str | None = None
+        self.next_note = phrase("from here")
+        self.missing_name: str | None = None
 
     def within(self, start: int, end: int, shift: int | None = None) -> None:
         """Convert the offsets to offsets in the enclosing text.
 
-        If `shift` is given and the offsets are known, it is added to them. Otherwise, the mistake extends from `start`
-        to `end`.
+        If `shift` is given and the offsets are known, `shift` is added to them. If not, the mistake extends from
+        `start` to `end`.
         """
         if self.start is None or self.end is None or shift is None:
             self.start, self.end = start, end
@@ -157,7 +157,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         """
         start = None if self.start is None else self.start + shift
         end = None if self.end is None else self.end + shift
-        self._place(element.source, attribute_part(element, name, start, end))
+        self._place(element.source, attribute_span(element, name, start, end))
 
     def place_in_text(self, text: Text) -> None:
         """Set the location to character data, or add a note if the location is already set."""
@@ -172,26 +172,28 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
 
         Only the same file is searched. A definition without the xacro prefix also changes the hint.
         """
-        if self.missing is None or self.source is None:
+        if self.missing_name is None or self.source is None:
             return None
-        if self.hint is not None and self.hint.startswith(f"'{self.missing}' is defined"):
+        if self.hint is not None and self.hint.startswith(f"'{self.missing_name}' is defined"):
             return None
         used_at = None if self.span is None else self.source.offset(self.span.line, self.span.column)
-        found = definition_elsewhere(self.source, "property", self.missing, used_at=used_at)
-        if found is None and (bare := definition_elsewhere(self.source, "property", self.missing, prefix="")):
+        definition = inactive_definition(self.source, "property", self.missing_name, used_at=used_at)
+        if definition is None and (
+            unprefixed := inactive_definition(self.source, "property", self.missing_name, prefix="")
+        ):
             self.hint = phrase("write <xacro:property where it is defined: without the prefix the tag has no effect")
-            return bare
-        return found
+            return unprefixed
+        return definition
 
     def _place(self, source: SourceText | None, span: Span | None) -> None:
         if self.span is None:
             self.source, self.span = source, span
         elif span is not None:
-            self.notes.append(Note(self.passing, span))
+            self.notes.append(Note(self.next_note, span))
         self.start = self.end = None
 
 
-def definition_elsewhere(
+def inactive_definition(
     source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
 ) -> InactiveDefinition | None:
     """Return a definition of a name in a file that is not in effect at an offset, or None."""
@@ -208,45 +210,45 @@ def definition_elsewhere(
         message = phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", **values)
     elif used_at is not None and match.start() < used_at and _is_conditional(text[: match.start()]):
         message = phrase("a {tag} '{name}' is defined here, under a condition that does not hold", **values)
-        hint = phrase("use it under the same condition, or define it for the other case, too")
+        hint = phrase("use it under the same condition, or also define it for the other case")
     else:
-        message = phrase("a {tag} '{name}' is defined here, which is too late or not in scope there", **values)
+        message = phrase("a {tag} '{name}' is defined here, but after its use or outside its scope", **values)
     span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
     return InactiveDefinition(Note(message, span), hint)
 
 
-def _is_conditional(before: str) -> bool:
+def _is_conditional(preceding_text: str) -> bool:
     """Return whether a text ends inside a condition that is not inside a macro.
 
     Definitions inside a macro are local.
     """
     open_tags: list[str] = []
-    for closing, tag, single in re.findall(_BLOCK, before):
-        if closing:
+    for closing_slash, tag, self_closing_slash in re.findall(_BLOCK, preceding_text):
+        if closing_slash:
             while open_tags and open_tags.pop() != tag:
                 pass
-        elif not single:
+        elif not self_closing_slash:
             open_tags.append(tag)
     return bool(open_tags) and "macro" not in open_tags
 
 
-def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
+def attribute_span(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
     """Return the location of a part of an attribute's value, as exactly as possible, or None."""
     from linkwright.xmltree.positions import attribute_value_range, raw_offset
 
     source = element.source
     if source is None:
         return None
-    written = attribute_value_range(source.text, element.offset, name)
-    if written is None or start is None or end is None:
+    value_range = attribute_value_range(source.text, element.offset, name)
+    if value_range is None or start is None or end is None:
         return element.attribute_span(name)
     value = element.attributes.get(name)
-    raw = source.text[written[0] : written[1]]
-    if raw == value:
-        return source.span(written[0] + start, written[0] + end)
-    if "&" not in raw and "\n" not in raw and "\t" not in raw and value is not None:
-        return source.span(*written)  # the value differs from the source, such as in a block that was evaluated
-    return source.span(raw_offset(source.text, *written, start), raw_offset(source.text, *written, end))
+    raw_value = source.text[value_range[0] : value_range[1]]
+    if raw_value == value:
+        return source.span(value_range[0] + start, value_range[0] + end)
+    if "&" not in raw_value and "\n" not in raw_value and "\t" not in raw_value and value is not None:
+        return source.span(*value_range)  # the value differs from the source, such as in a block that was evaluated
+    return source.span(raw_offset(source.text, *value_range, start), raw_offset(source.text, *value_range, end))
 
 
 def attribute_name(element: Element, name: str) -> Span | None:

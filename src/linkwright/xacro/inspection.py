@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linkwright.xacro.tracing.provenance import Provenance
     from linkwright.xmltree import Element
 
-_SHOWN_NAMES = 5
+_MAX_SHOWN_NAMES = 5
 
 
 def arguments_of(
@@ -32,7 +32,7 @@ def arguments_of(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Argument, ...]:
-    """Return the arguments of a file and of its included files, in the order of the files.
+    """Return the arguments of a file and of its included files, starting with the declared ones.
 
     The arguments are also found if the file cannot be expanded without them.
 
@@ -63,7 +63,7 @@ def explain(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Provenance, ...]:
-    """Return the provenance of the links, joints or other elements with a name in an expansion.
+    """Return the provenance of the links, joints or other elements that have a given name in an expansion.
 
     Args:
         path: the file; see `linkwright.xacro.expand`.
@@ -91,30 +91,32 @@ def provenance_of_named(inputs: Inputs, name: str) -> tuple[Provenance, ...]:
     path, arguments, packages, text, limits, root_dir, overlay = inputs
     expansion = expand(path, arguments, packages=packages, text=text, limits=limits, root_dir=root_dir, overlay=overlay)
     root = expansion.document.root
-    named = [element for element in root.elements() if element.attributes.get("name") == name]
-    if not named:
-        named = [element for element in root.walk() if element.attributes.get("name") == name]
-    if not named:
-        raise LinkwrightError(_unknown(name, path, root))
+    matches = [element for element in root.elements() if element.attributes.get("name") == name]
+    if not matches:
+        matches = [element for element in root.walk() if element.attributes.get("name") == name]
+    if not matches:
+        raise LinkwrightError(_missing_element(name, path, root))
     tracer = Tracer(inputs, root)
-    return tuple(tracer.trace(element) for element in named)
+    return tuple(tracer.trace(element) for element in matches)
 
 
-def _unknown(name: str, file: str, root: Element) -> Diagnostic:
-    known = {
+def _missing_element(name: str, file: str, root: Element) -> Diagnostic:
+    element_names = {
         element.attributes["name"]: None
         for element in root.elements()
         if element.tag in ("link", "joint") and "name" in element.attributes
     }
-    hint = did_you_mean(name, known)
-    if hint is None and known:
+    hint = did_you_mean(name, element_names)
+    if hint is None and element_names:
         hint = phrase(
             "there are {count} links and joints, such as {known}",
-            count=len(known),
-            known=", ".join(list(known)[:_SHOWN_NAMES]),
+            count=len(element_names),
+            known=", ".join(list(element_names)[:_MAX_SHOWN_NAMES]),
         )
     elif hint is None:
         hint = phrase("the file has neither links nor joints")
     return Diagnostic(
-        "XAC801", phrase("'{file}' expands to no link or joint named '{name}'", file=file, name=name), hint=hint
+        "XAC801",
+        phrase("the expansion of '{file}' has no link or joint named '{name}'", file=file, name=name),
+        hint=hint,
     )

@@ -1,6 +1,6 @@
 """The limits at which an expansion is stopped.
 
-Descriptions often come from unknown sources. The expansion of any description must end, and soon.
+Descriptions often come from unknown sources. The expansion of any description must end after a short time.
 """
 
 from __future__ import annotations
@@ -74,14 +74,14 @@ class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement,
 
 # --- counting what an expansion does ----------------------------------------------------------------------------------
 
-_CALL_DEPTH = 50
-_LAMBDA = 8
-_MACRO = 10
-_STEPS_BETWEEN_LOOKS = 1_000
-_MACROS_BETWEEN_LOOKS = 32
+_MAX_CALL_DEPTH = 50
+_LAMBDA_COST = 8
+_MACRO_COST = 10
+_STEPS_PER_CLOCK_CHECK = 1_000
+_MACROS_PER_CLOCK_CHECK = 32
 
 LONG = 1_000
-"""From how many characters on a text is paid for."""
+"""The number of characters above which a text is charged to the budget."""
 
 
 class Budget:
@@ -109,9 +109,9 @@ class Budget:
         message = phrase(
             "the expansion creates more than {limit:,} elements; a macro call counts as {macro}",
             limit=self._limits.elements,
-            macro=_MACRO,
+            macro=_MACRO_COST,
         )
-        return Fault("XAC602", message, hint=phrase("look for macros that call each other without end"))
+        return Fault("XAC602", message, hint=phrase("look for macros that call each other endlessly"))
 
     def charge_text(self, length: int) -> None:
         """Charge a long text of the result.
@@ -132,12 +132,12 @@ class Budget:
         Raises:
             Fault: XAC602 if there were too many, or XAC606 if the expansion took too long.
         """
-        self.elements -= _MACRO
+        self.elements -= _MACRO_COST
         if self.elements < 0:
             raise self.too_many_elements()
         self._macros += 1
-        if not self._macros % _MACROS_BETWEEN_LOOKS:
-            self._look_at_clock()
+        if not self._macros % _MACROS_PER_CLOCK_CHECK:
+            self._check_clock()
 
     def charge_steps(self, count: int = 2) -> None:
         """Charge steps of an expression; the default is one iteration of a comprehension.
@@ -152,8 +152,8 @@ class Budget:
                 raise Fault(
                     "XAC603", message, hint=phrase("look for a comprehension or function over a long list or range")
                 )
-            self._look_at = max(0, self._steps - _STEPS_BETWEEN_LOOKS)
-            self._look_at_clock()
+            self._look_at = max(0, self._steps - _STEPS_PER_CLOCK_CHECK)
+            self._check_clock()
 
     def enter_lambda(self) -> None:
         """Charge a call of a lambda, which may be recursive.
@@ -161,16 +161,18 @@ class Budget:
         Raises:
             Fault: XAC604 if lambda calls are nested too deeply, or XAC603 if there were too many steps.
         """
-        self.charge_steps(_LAMBDA)
+        self.charge_steps(_LAMBDA_COST)
         self._call_depth += 1
-        if self._call_depth > _CALL_DEPTH:
-            raise Fault("XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_CALL_DEPTH))
+        if self._call_depth > _MAX_CALL_DEPTH:
+            raise Fault(
+                "XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_MAX_CALL_DEPTH)
+            )
 
     def leave_lambda(self) -> None:
         """Leave the innermost lambda call."""
         self._call_depth -= 1
 
-    def _look_at_clock(self) -> None:
+    def _check_clock(self) -> None:
         if thread_time() > self._ends:
             message = phrase("the expansion takes more than {seconds:g} seconds", seconds=self._limits.seconds)
             raise Fault("XAC606", message, hint=phrase("look for macros or comprehensions that multiply"))

@@ -1,4 +1,4 @@
-"""Macros: their parameters, and the tables by which they are found."""
+"""Macros, their parameters, and the tables in which macros are looked up."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 # These patterns are not compiled here because not every file needs them.
 _PARAMETER = r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
-_BARE = r"\s*(?P<name>\S+)\s*"
+_NAME_ONLY = r"\s*(?P<name>\S+)\s*"
 
 
 class Parameter(NamedTuple):
@@ -47,53 +47,55 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
         Fault: XAC412 for a default with a quote that is never closed.
     """
     parameters: list[Parameter] = []
-    with_sign: dict[str, Parameter] = {}
-    ends = _ends_of_words(text)
-    with_default, bare = re.compile(_PARAMETER), re.compile(_BARE)
-    at = 0
-    while at < len(text):
-        match = with_default.match(text, at)
+    with_defaults: dict[str, Parameter] = {}
+    word_ends = _word_ends(text)
+    with_default, bare = re.compile(_PARAMETER), re.compile(_NAME_ONLY)
+    position = 0
+    while position < len(text):
+        match = with_default.match(text, position)
         if match is not None:
             start = match.end() if match["expression"] is None else match.start("expression")
-            at = match.end() if start < match.end() else ends[start]
-            if at < 0:
+            position = match.end() if start < match.end() else word_ends[start]
+            if position < 0:
                 end = len(text.rstrip())
                 message = phrase("this parameter's default has a quote that is never closed")
                 raise Fault("XAC412", message, match.start("name"), end)
             name = match["name"]
-            parameter = Parameter(name, text[start:at] or None, bool(match["forward"]), match.start("name"), start)
-            with_sign[name] = parameter
+            parameter = Parameter(
+                name, text[start:position] or None, bool(match["forward"]), match.start("name"), start
+            )
+            with_defaults[name] = parameter
         else:
-            match = bare.match(text, at)
+            match = bare.match(text, position)
             if match is None:
                 break  # only blanks remain
-            at = match.end()
+            position = match.end()
             parameter = Parameter(match["name"], None, False, match.start("name"), match.end("name"))
         parameters.append(parameter)
     # As in ros/xacro, the last default applies to all parameters with the same name.
-    return tuple(with_sign.get(parameter.name, parameter) for parameter in parameters)
+    return tuple(with_defaults.get(parameter.name, parameter) for parameter in parameters)
 
 
-def _ends_of_words(text: str) -> list[int]:
+def _word_ends(text: str) -> list[int]:
     """Return the end of the word that begins at each offset, or -1 for an unclosed quote.
 
     A word ends at a blank, but may contain quoted blanks. As in ros/xacro, a quote is closed by the first quote of the
     same kind after which the word can end. For example, ``'''`` is one word: a quote in quotes.
     """
     ends = [len(text)] * (len(text) + 1)
-    behind = {"'": -1, '"': -1}  # the end of a word that continues after the nearest closing quote
-    for at in range(len(text) - 1, -1, -1):
-        letter, following = text[at], ends[at + 1]
+    ends_after_quotes = {"'": -1, '"': -1}  # the end of a word that continues after the nearest closing quote
+    for index in range(len(text) - 1, -1, -1):
+        letter, following = text[index], ends[index + 1]
         if letter.isspace():
-            ends[at] = at
+            ends[index] = index
             if letter == "\n":
-                behind = dict.fromkeys(behind, -1)
-        elif letter in behind:
-            ends[at] = behind[letter]
+                ends_after_quotes = dict.fromkeys(ends_after_quotes, -1)
+        elif letter in ends_after_quotes:
+            ends[index] = ends_after_quotes[letter]
             if following >= 0:
-                behind[letter] = following
+                ends_after_quotes[letter] = following
         else:
-            ends[at] = following
+            ends[index] = following
     return ends
 
 

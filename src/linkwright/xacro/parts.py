@@ -1,7 +1,7 @@
 """The expansion of the valid parts of a description that has errors.
 
-`linkwright.xacro.expand` stops at the first error after which the result is not reliable. An editor needs more. Here,
-a tag that fails is left out, and the walk continues. Two rules keep the result correct:
+`linkwright.xacro.expand` stops at the first error after which the result is not reliable. An editor needs the rest of
+the result, too. Here, a tag that fails is left out, and the walk continues. Two rules keep the result correct:
 
 - **Gaps are known.** An element is left out of the result if its attribute or text failed, or if a tag inside was
   left out. The enclosing elements are left out, too.
@@ -30,15 +30,15 @@ from linkwright.xmltree import Document, Element, Text
 
 _GAP = "\0"
 """Name of the attribute, and content of the text, that mark a gap; XML allows neither."""
-_DEFINITIONS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
-_FIXED = lazy_pattern(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
-"""Substitutions that no name of the description has a part in."""
-_DECLARATIONS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
-_TRUE_BY_THEMSELVES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
-"""Mistakes in the text of a tag or expression, whatever the values of the names in it."""
-_OF_THE_DEFINITION = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
-"""Mistakes of a call that may be the macro definition's mistake; then all calls have it, and one reports it."""
-_OUTER_PROPERTY = lazy_pattern(r"""<xacro:property\s[^>]*?\bscope\s*=""")
+_DEFINITION_TAGS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
+_FIXED_SUBSTITUTION = lazy_pattern(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
+"""Substitutions whose values do not depend on properties or arguments."""
+_DECLARING_TAGS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
+_SELF_CONTAINED_CODES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
+"""Codes of mistakes in the text of a tag or expression, which do not depend on the values of names."""
+_DEFINITION_CODES = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
+"""Codes of mistakes in a call that the macro definition may have caused; only the first such call is reported."""
+_SCOPED_PROPERTY = lazy_pattern(r"""<xacro:property\s[^>]*?\bscope\s*=""")
 
 
 def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
@@ -64,13 +64,18 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
         raise error from None
     expander = _PartsExpander(session)
     with recursion_limit_for(inputs.limits):
-        expanded = expander.walk(document)
-    if expanded is None:
+        expanded_document = expander.walk(document)
+    if expanded_document is None:
         raise error
-    remarks = session.diagnostics[: expander.remarks_to_trust]
+    trusted_remarks = session.diagnostics[: expander.trusted_remark_count]
     session.close()
     return Expansion(
-        _without_gaps(expanded), session.dependencies, session.arguments, tuple(remarks), inputs, expander.errors
+        _without_gaps(expanded_document),
+        session.dependencies,
+        session.arguments,
+        tuple(trusted_remarks),
+        inputs,
+        expander.errors,
     )
 
 
@@ -83,7 +88,7 @@ class _PartsExpander(Expander):
 
     Attributes:
         trusted: whether all names still have the values of the complete expansion.
-        remarks_to_trust: the number of warnings that the session recorded while `trusted` was true, or None for all.
+        trusted_remark_count: the number of warnings that were recorded while `trusted` was true, or None for all.
     """
 
     def __init__(self, session: Session) -> None:
@@ -92,15 +97,15 @@ class _PartsExpander(Expander):
         }
         super().__init__(session, directives, self._skip_on_failure(call_macro))
         self.trusted = True
-        self.remarks_to_trust: int | None = None
+        self.trusted_remark_count: int | None = None
         self._failures = 0
         self._reported_definitions: set[tuple[str, str]] = set()
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
         """Return the attributes that could be evaluated, and a gap mark if others could not."""
-        before = self._failures
+        failures_before = self._failures
         result = super().attributes(node, scope)
-        if self._failures > before or not self.trusted:
+        if self._failures > failures_before or not self.trusted:
             for name in plan_of(node).evaluated:
                 if "$" in node.attributes[name]:
                     result[_GAP] = ""
@@ -119,13 +124,13 @@ class _PartsExpander(Expander):
         """Record the error of an attribute or text, unless an earlier gap may have caused it."""
         self._failures += 1
         diagnostic = self._diagnostic(fault)
-        if self.trusted or diagnostic.code in _TRUE_BY_THEMSELVES or is_final(diagnostic):
+        if self.trusted or diagnostic.code in _SELF_CONTAINED_CODES or is_final(diagnostic):
             self.keep(diagnostic)
 
     def _text(self, node: Text, scope: Scope) -> Text:
-        before = self._failures
+        failures_before = self._failures
         text = super()._text(node, scope)
-        if self._failures == before and (self.trusted or text is node):
+        if self._failures == failures_before and (self.trusted or text is node):
             return text
         return Text(_GAP, node.source, node.offset)
 
@@ -135,14 +140,14 @@ class _PartsExpander(Expander):
         def expand(expander: Expander, site: Site) -> None:
             session, nesting = self.session, self._nesting
             frame, file = session.frame, session.file
-            reported: list[Diagnostic] = []
+            reported_diagnostics: list[Diagnostic] = []
             if self.trusted or not _depends_on_values(site.node):
                 try:
                     directive(expander, site)
                 except LinkwrightError as error:
                     if self.has_too_many_errors or any(map(is_final, error.diagnostics)):
                         raise
-                    reported = [
+                    reported_diagnostics = [
                         diagnostic for diagnostic in error.diagnostics if self._is_reported(diagnostic, site.node)
                     ]
                 except _LeftOutError:
@@ -153,32 +158,32 @@ class _PartsExpander(Expander):
             site.parent.attributes[_GAP] = ""
             if self._may_define_names(site.node):
                 self._stop_trusting()
-            for diagnostic in reported:
+            for diagnostic in reported_diagnostics:
                 self.keep(diagnostic)
 
         return expand
 
     def _is_reported(self, diagnostic: Diagnostic, node: Element) -> bool:
-        if diagnostic.code in _OF_THE_DEFINITION:
+        if diagnostic.code in _DEFINITION_CODES:
             if (diagnostic.code, diagnostic.message) in self._reported_definitions:
                 return False
             self._reported_definitions.add((diagnostic.code, diagnostic.message))
-        if self.trusted or diagnostic.code in _TRUE_BY_THEMSELVES:
+        if self.trusted or diagnostic.code in _SELF_CONTAINED_CODES:
             return True
         return diagnostic.code.startswith(("XML", "PKG")) and node.tag == "xacro:include"
 
     def _stop_trusting(self) -> None:
         if self.trusted:
             self.trusted = False
-            self.remarks_to_trust = len(self.session.diagnostics)
+            self.trusted_remark_count = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:
         """Return whether a tag that is left out might have defined a name that later tags use."""
         tags = {element.tag for element in node.walk()}
-        if tags & _DECLARATIONS:
+        if tags & _DECLARING_TAGS:
             return True
-        calls = any(tag.startswith(PREFIX) and tag not in DIRECTIVES for tag in tags)
-        return (calls or "xacro:call" in tags) and self._macros_define_outside()
+        has_macro_calls = any(tag.startswith(PREFIX) and tag not in DIRECTIVES for tag in tags)
+        return (has_macro_calls or "xacro:call" in tags) and self._macros_define_outside()
 
     def _macros_define_outside(self) -> bool:
         """Return whether a macro in the files read so far defines properties in its caller's scope."""
@@ -187,7 +192,7 @@ class _PartsExpander(Expander):
                 source = self.session.read(path).source
             except LinkwrightError:
                 continue  # a YAML file, or a file that is missing
-            if source is not None and _OUTER_PROPERTY.search(source.text):
+            if source is not None and _SCOPED_PROPERTY.search(source.text):
                 return True
         return False
 
@@ -197,9 +202,9 @@ def _depends_on_values(node: Element) -> bool:
 
     Definitions do not depend on values until they are used.
     """
-    if node.tag not in DIRECTIVES or node.tag in _DEFINITIONS:
+    if node.tag not in DIRECTIVES or node.tag in _DEFINITION_TAGS:
         return False
-    return any("$" in _FIXED.sub("", value) for value in node.attributes.values())
+    return any("$" in _FIXED_SUBSTITUTION.sub("", value) for value in node.attributes.values())
 
 
 def _without_gaps(document: Document) -> Document:

@@ -19,16 +19,16 @@ PREFIX = "xacro:"
 _DECLARATION = "xmlns:xacro"
 _EVALUATE_COMMENTS = "xacro:eval-comments"
 _EVALUATE_COMMENTS_OFF = "xacro:eval-comments:off"
-_DEEPEST = 100
-"""How deep a plan looks ahead; elements further down are planned when they are reached."""
-_UNKNOWN = -1
-_SIGNS = ("$", PREFIX, _DECLARATION, "&", "<!", "<?")
-"""Signs in the text of an element that may change; the text of one that stays as it is may have some, too."""
+_MAX_LOOKAHEAD_DEPTH = 100
+"""The number of nesting levels that a plan covers; deeper elements are planned when the walk reaches them."""
+_UNKNOWN_OFFSET = -1
+_CHANGE_MARKERS = ("$", PREFIX, _DECLARATION, "&", "<!", "<?")
+"""Strings of which any element that may change contains at least one; an unchanged element may contain them, too."""
 
 KEEP, COPY, ELEMENT, TAG, TEXT, COMMENT, SWITCH = range(7)
-"""Kinds of steps: keep nodes as they are, copy elements and keep the nodes between them, expand an element, expand a
-tag of the language, evaluate a text, evaluate a comment if comments are being evaluated, begin or end evaluating
-them."""
+"""Kinds of steps, in this order: keep nodes unchanged; copy elements and keep the nodes between them; expand an
+element; expand a xacro tag; evaluate a text; evaluate a comment if comments are evaluated; start or stop the evaluation
+of comments."""
 
 Step: TypeAlias = tuple[int, Any, bool]
 
@@ -38,7 +38,7 @@ class Run:
 
     Attributes:
         nodes: the elements, with the texts and comments between them.
-        size: the number of elements for which the nodes count.
+        size: the number of elements that the nodes count as; eight texts or comments count as one element.
         height: the maximum nesting depth of the elements.
     """
 
@@ -58,9 +58,9 @@ class Plan(CachedText):
         evaluated: the names of the attributes to be evaluated or counted.
         size: the number of elements in an unchanged element, including itself, else 0.
         height: the maximum nesting depth.
-        steps: the steps for the children, in order, each with its kind, its object and a flag. For TAG, the flag is
-            whether any node follows; for SWITCH, whether comments must be evaluated from here. None before the first
-            request; see `steps_of`.
+        steps: the steps for the children, in order, or None before the first request; see `steps_of`. Each has its
+            kind, its object and a flag. For TAG, the flag is true if another node follows. For SWITCH, it is true if
+            comments are evaluated from here on.
     """
 
     __slots__ = ("attributes", "evaluated", "height", "size", "steps")
@@ -74,9 +74,9 @@ class Plan(CachedText):
 
 
 def plan_document(document: Document) -> None:
-    """Record where the root of a document ends, so that its plan can be derived from its text.
+    """Record the end offset of a document's root element, so that its plan can be derived from its text.
 
-    Documents with a document type declaration, or created by a program, are skipped.
+    Documents with a document type declaration, and documents created by a program, are skipped.
     """
     root = document.root
     if root.plan is None and document.doctype is None and document.source is not None:
@@ -87,7 +87,7 @@ def plan_of(node: Element) -> Plan:
     """Return the plan of an element, which is computed on first use."""
     plan = node.plan
     if not isinstance(plan, Plan):
-        plan = node.plan = _compute_plan(node, plan if isinstance(plan, int) else _UNKNOWN, 0)
+        plan = node.plan = _compute_plan(node, plan if isinstance(plan, int) else _UNKNOWN_OFFSET, 0)
     return plan
 
 
@@ -95,32 +95,32 @@ def steps_of(node: Element) -> list[Step]:
     """Return the steps for the children of an element, which are computed on first use."""
     plan = plan_of(node)
     if plan.steps is None:
-        plan.steps = _Children(node.children, _UNKNOWN, 0).steps
+        plan.steps = _StepBuilder(node.children, _UNKNOWN_OFFSET, 0).steps
     return plan.steps
 
 
 def _compute_plan(node: Element, end: int, depth: int) -> Plan:
-    """Return a new plan of an element; `end` is the offset after its text, if known."""
+    """Return a new plan of an element; `end` is the offset after its text, or `_UNKNOWN_OFFSET`."""
     plan = Plan(node.attributes)
-    children = _Children(node.children, end, depth)
+    children = _StepBuilder(node.children, end, depth)
     plan.steps = children.steps
     plan.height = children.height + 1
-    plan.size = children.size + 1 if children.come_out else 0
+    plan.size = children.size + 1 if children.all_unchanged else 0
     if node.attributes:
         _plan_attributes(plan, node.attributes)
     return plan
 
 
 def _plan_attributes(plan: Plan, attributes: dict[str, str]) -> None:
-    foreign = True
+    has_only_plain_names = True
     for name, value in attributes.items():
         if "x" in name and (name == _DECLARATION or name.startswith(PREFIX)):
-            foreign = False
+            has_only_plain_names = False
         elif "$" in value or len(value) > LONG:
             plan.evaluated.append(name)
-    if plan.evaluated or not foreign:
+    if plan.evaluated or not has_only_plain_names:
         plan.size = 0
-    if not foreign:
+    if not has_only_plain_names:
         plan.attributes = {
             name: value
             for name, value in attributes.items()
@@ -128,124 +128,124 @@ def _plan_attributes(plan: Plan, attributes: dict[str, str]) -> None:
         }
 
 
-class _Children:
+class _StepBuilder:
     """A builder of the steps for the children of an element.
 
     Attributes:
-        steps: the steps.
-        come_out: whether all children are unchanged.
+        steps: the steps, in document order.
+        all_unchanged: whether all children are unchanged.
         size: the total number of elements in unchanged children.
         height: the maximum nesting depth of the children.
     """
 
     def __init__(self, children: list[Node], end: int, depth: int) -> None:
         self.steps: list[Step] = []
-        self.come_out = True
+        self.all_unchanged = True
         self.size = self.height = 0
-        self._kept: list[Node] = []  # the unchanged nodes since the last step
-        self._since_element = 0  # the number of these nodes after the last element
+        self._unchanged_nodes: list[Node] = []  # the unchanged nodes since the last step
+        self._nodes_since_element = 0  # the number of these nodes after the last element
         self._run_size = self._run_height = 0
         self._plan(children, end, depth)
 
     def _plan(self, children: list[Node], end: int, depth: int) -> None:
-        last = len(children) - 1
-        kept = self._kept
-        switched = False
+        last_index = len(children) - 1
+        unchanged_nodes = self._unchanged_nodes
+        has_switch = False
         for index, node in enumerate(children):
             step: Step
             if isinstance(node, Text):
                 data = node.data
                 if "$" not in data and len(data) <= LONG:
-                    kept.append(node)
-                    self._since_element += 1
-                    if not switched or node.cdata or not data or data.isspace():
+                    unchanged_nodes.append(node)
+                    self._nodes_since_element += 1
+                    if not has_switch or node.cdata or not data or data.isspace():
                         continue
                     step = (SWITCH, None, False)
                 else:
                     step = (TEXT, node, False)
             elif isinstance(node, Element):
-                stop = end if index == last or end < 0 else children[index + 1].offset
+                end_offset = end if index == last_index or end < 0 else children[index + 1].offset
                 if node.tag.startswith(PREFIX):
-                    if node.plan is None and stop >= 0:
-                        node.plan = stop
-                    step = (TAG, node, index < last)
-                    self.come_out = False
+                    if node.plan is None and end_offset >= 0:
+                        node.plan = end_offset
+                    step = (TAG, node, index < last_index)
+                    self.all_unchanged = False
                 else:
-                    inner = _inner_plan(node, stop, depth)
+                    inner = _inner_plan(node, end_offset, depth)
                     if inner is not None and inner.size:
                         self.size += inner.size
                         self.height = max(self.height, inner.height)
-                        if not switched:
+                        if not has_switch:
                             self._add_to_run(node, inner)
                             continue
                     else:
-                        self.come_out = False
+                        self.all_unchanged = False
                     step = (ELEMENT, node, False)
-            elif switched and isinstance(node, Comment) and _EVALUATE_COMMENTS not in node.data:
+            elif has_switch and isinstance(node, Comment) and _EVALUATE_COMMENTS not in node.data:
                 step = (COMMENT, node, False)
             elif isinstance(node, Comment) and _EVALUATE_COMMENTS in node.data:
-                switched = True
+                has_switch = True
                 step = (SWITCH, None, _EVALUATE_COMMENTS_OFF not in node.data)
             else:
-                kept.append(node)
-                self._since_element += 1
+                unchanged_nodes.append(node)
+                self._nodes_since_element += 1
                 continue
             self._end_run()
-            kept = self._kept
+            unchanged_nodes = self._unchanged_nodes
             self.steps.append(step)
             if step[0] in (TEXT, SWITCH, COMMENT):
-                self.come_out = False
-            elif switched:
+                self.all_unchanged = False
+            elif has_switch:
                 self.steps.append((SWITCH, None, False))
         self._end_run()
 
     def _add_to_run(self, node: Element, inner: Plan) -> None:
-        self._run_size += inner.size + (self._since_element >> 3)
+        self._run_size += inner.size + (self._nodes_since_element >> 3)
         self._run_height = max(self._run_height, inner.height)
-        self._since_element = 0
-        self._kept.append(node)
+        self._nodes_since_element = 0
+        self._unchanged_nodes.append(node)
 
     def _end_run(self) -> None:
         if self._run_size:
-            run = Run(self._kept, self._run_size + (self._since_element >> 3), self._run_height)
+            run = Run(self._unchanged_nodes, self._run_size + (self._nodes_since_element >> 3), self._run_height)
             self.steps.append((COPY, run, False))
-        elif self._kept:
-            self.steps.append((KEEP, self._kept, False))
-        if self._kept:
-            self._kept = []
-        self._since_element = self._run_size = self._run_height = 0
+        elif self._unchanged_nodes:
+            self.steps.append((KEEP, self._unchanged_nodes, False))
+        if self._unchanged_nodes:
+            self._unchanged_nodes = []
+        self._nodes_since_element = self._run_size = self._run_height = 0
 
 
-def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
+def _inner_plan(node: Element, end_offset: int, depth: int) -> Plan | None:
     """Return the plan of an ordinary child, or None if it is nested too deeply for now.
 
-    `stop` is the offset after the text of the child.
+    `end_offset` is the offset after the text of the child.
     """
-    inner = node.plan
-    if isinstance(inner, Plan):
-        return inner
+    child_plan = node.plan
+    if isinstance(child_plan, Plan):
+        return child_plan
     source = node.source
-    if inner is None and source is not None and stop >= 0:
-        size = _size_of_plain(source.text[node.offset : stop])
+    if child_plan is None and source is not None and end_offset >= 0:
+        size = _unchanged_element_count(source.text[node.offset : end_offset])
         if size:
-            node.plan = inner = Plan(node.attributes, size)
-            return inner
-        if depth >= _DEEPEST:
-            node.plan = stop
-    if depth >= _DEEPEST:
+            node.plan = child_plan = Plan(node.attributes, size)
+            return child_plan
+        if depth >= _MAX_LOOKAHEAD_DEPTH:
+            node.plan = end_offset
+    if depth >= _MAX_LOOKAHEAD_DEPTH:
         return None
-    node.plan = inner = _compute_plan(node, stop, depth + 1)
-    return inner
+    node.plan = child_plan = _compute_plan(node, end_offset, depth + 1)
+    return child_plan
 
 
-def _size_of_plain(text: str) -> int:
+def _unchanged_element_count(text: str) -> int:
     """Return the number of elements in the text of an unchanged element, or 0 if it may change.
 
     The result is also 0 for a text with character references or comments, and for a text long enough to be charged.
     """
-    if any(sign in text for sign in _SIGNS):
+    if any(marker in text for marker in _CHANGE_MARKERS):
         return 0
-    pieces = text.split("<")
-    if len(text) > LONG and max(map(len, pieces)) > LONG:
+    segments = text.split("<")
+    if len(text) > LONG and max(map(len, segments)) > LONG:
         return 0
-    return len(pieces) - 1 - text.count("</")
+    return len(segments) - 1 - text.count("</")

@@ -1,4 +1,4 @@
-"""Sessions: the inputs and the state of one expansion, with its packages, files, warnings and limits."""
+"""The inputs and the state of one expansion, with its packages, files, warnings and limits."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
 from linkwright.xacro.expressions.template import compile_template, package_fault, templates
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
-from linkwright.xacro.faults import Fault, Frame, attribute_part, text_part, trail, xml_hint
+from linkwright.xacro.faults import Fault, Frame, attribute_span, text_part, trail, xml_hint
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.plan import plan_document
 from linkwright.xmltree import Document, Element, Overlay, Text, parse
@@ -60,9 +60,9 @@ class Session:
         budget: the remaining budget.
         file: the file being processed, whose folder is the base of relative paths.
         frame: the innermost macro call or include being processed, or None.
-        place: the element or text being processed, which is the location of warnings.
-        attribute: the attribute of `place` that is being evaluated, or None.
-        resolving: the names of the nested properties being evaluated, outermost first.
+        current_node: the element or text being processed, which is the location of warnings.
+        current_attribute: the attribute of `current_node` that is being evaluated, or None.
+        property_stack: the names of the nested properties being evaluated, outermost first.
         dependencies: the files read so far, starting with the main file.
         root_dir: the base of relative paths; empty for the current folder.
         diagnostics: the warnings so far.
@@ -83,16 +83,16 @@ class Session:
         self.budget = Budget(limits)
         self.file = file
         self.frame: Frame | None = None
-        self.place: Element | Text | None = None
-        self.attribute: str | None = None
-        self.resolving: list[str] = []
+        self.current_node: Element | Text | None = None
+        self.current_attribute: str | None = None
+        self.property_stack: list[str] = []
         self.dependencies: dict[str, None] = {file: None}
         self.root_dir = root_dir
         self._overlay = overlay or Overlay()
         self.diagnostics: list[Diagnostic] = []
         self._reported: set[tuple[str, str, Span | None]] = set()
         self._packages = packages
-        self._known_packages: dict[str, str] = {}
+        self._package_paths: dict[str, str] = {}
         self._main_file = file
         self.globals = Scope(None, self, symbols.global_names(self))
 
@@ -151,26 +151,26 @@ class Session:
 
     def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
         """Return the fault for a name that no scope defines."""
-        provided = self.globals.values
-        python = provided["python"].values
+        provided_names = self.globals.values
+        python = provided_names["python"].values
         if name in ("true", "false"):
             hint: Phrase | None = phrase("write {name}", name=name.capitalize())
         elif name in python:
             hint = phrase("write python.{name}", name=name)
         elif name in self.arguments:
             hint = phrase("'{name}' is an argument: write $(arg {name})", name=name)
-        elif name.lower() in provided:
+        elif name.lower() in provided_names:
             hint = phrase("write {name}", name=name.lower())
         elif f"**{name}" in set(environment.blocks()):
             hint = phrase(
                 '\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>', name=name
             )
         else:
-            hint = did_you_mean(name, [other for other in environment.names() if other not in provided])
+            hint = did_you_mean(name, [other for other in environment.names() if other not in provided_names])
             if hint is None and len(name) > len("pi"):
-                hint = did_you_mean(name, provided)
+                hint = did_you_mean(name, provided_names)
         fault = Fault("XAC201", phrase("the property '{name}' is not defined", name=name), start, end, hint)
-        fault.missing = name
+        fault.missing_name = name
         return fault
 
     def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
@@ -205,9 +205,9 @@ class Session:
         Raises:
             Fault: if the package is not found.
         """
-        known = self._known_packages.get(name)
+        known = self._package_paths.get(name)
         if known is None:
-            known = self._known_packages[name] = self._find_package(name)
+            known = self._package_paths[name] = self._find_package(name)
         return known
 
     def _find_package(self, name: str) -> str:
@@ -292,7 +292,7 @@ class Session:
 
     def warn_of_unused_arguments(self) -> None:
         """Warn about passed arguments that no file declares or uses, which are probably misspelt."""
-        self.place = self.frame = None
+        self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
                 hint = did_you_mean(name, self.known_arguments)
@@ -325,7 +325,7 @@ class Session:
         Returns:
             The finding, or None if it was recorded before.
         """
-        place = self.place
+        place = self.current_node
         if span is None and place is not None:
             span = self._place_of_call(place, called)
         if (code, message, span) in self._reported:
@@ -342,7 +342,7 @@ class Session:
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
     def _place_of_call(self, place: Element | Text, function: str | None) -> Span | None:
-        attribute = self.attribute
+        attribute = self.current_attribute
         if isinstance(place, Element) and attribute is None:
             return place.span()
         text = place.data if isinstance(place, Text) else place.attributes.get(attribute or "", "")
@@ -350,7 +350,7 @@ class Session:
         start, end = match.span() if match else (None, None)
         if isinstance(place, Text):
             return text_part(place, start, end)
-        return attribute_part(place, attribute or "", start, end) or place.span()
+        return attribute_span(place, attribute or "", start, end) or place.span()
 
     def _warn_of_encoding(self, source: SourceText, encoding: str) -> None:
         key = ("XAC905", source.name, None)
@@ -399,7 +399,7 @@ _NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 def _check_characters(text: str) -> None:
     found = None if text.isprintable() else re.search(_NOT_XML, text)
     if found:
-        message = phrase("the value has a character that XML cannot hold: U+{ord:04X}", ord=ord(found[0]))
+        message = phrase("the value contains a character that XML cannot represent: U+{ord:04X}", ord=ord(found[0]))
         raise Fault("XAC206", message, hint=phrase("'\\' in a string begins an escape; write '\\\\' for a backslash"))
 
 
@@ -411,7 +411,7 @@ def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
         if text[at - 1 : at] == "\t":
             at -= 1
         fault.span = source.span(at)
-        fault.passing = phrase("the file is loaded here")
+        fault.next_note = phrase("the file is loaded here")
         if text[at : at + 1] == "\t":
             fault.hint = phrase("indent YAML with spaces, not tabs")
     return fault

@@ -1,4 +1,4 @@
-"""Plain error messages for texts that are not well-formed XML."""
+"""Error messages for texts that are not well-formed XML."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _UNCLOSED_CDATA = _CODE[expat_errors.XML_ERROR_UNCLOSED_CDATA_SECTION]
 _CLOSING_TAG = lazy_pattern(r"</\s*([^\s>]*)\s*>?")
 _BARE_ATTRIBUTE = lazy_pattern(r"([^\s=/>\"'<]+)\s*$")
 _UNQUOTED = lazy_pattern(r"([^\s=/>\"'<]+)\s*=\s*$")
-_QUOTE_LEFT_OPEN = lazy_pattern(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
-"""A value whose end looks like the next attribute: name="a type=" and so on."""
+_UNCLOSED_QUOTE = lazy_pattern(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
+"""A value that ends with the name of the next attribute, as in ``name="a type="``."""
 _LONE_AMPERSAND = lazy_pattern(r"&[^\s;&<>\"']*$")
-_TEMPLATES = (
+_TEMPLATE_LANGUAGES = (
     (
         lazy_pattern(r"<%.*?%>", re.DOTALL),
         "ERB",
@@ -35,20 +35,20 @@ _TEMPLATES = (
     ),
     (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("render it with Jinja, and pass that file")),
 )
-"""Signs of templates, the name of their language, and a hint."""
+"""A pattern for the tags of each template language, its name, and a hint."""
 _DASHES_IN_COMMENT = lazy_pattern(r"<!--(?:(?!-->).)*--$", re.DOTALL)
 _NAME = lazy_pattern(r"[^\s=/>\"'&;<]+")
 
 _CURVED_QUOTES = tuple("\u201c\u201d\u2018\u2019\u201e")
-_AS_FAR_BACK = 200
-"""The number of characters before a mistake that are searched."""
+_SEARCH_LENGTH = 200
+"""The number of characters before an error that are searched for its cause."""
 
-_ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org/2001/XInclude"}
-"""Of the prefixes that descriptions use."""
+_NAMESPACES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org/2001/XInclude"}
+"""The namespaces of the prefixes that descriptions use."""
 _AMPERSAND_HINT = phrase("write '&amp;' for the character '&'")
 _AND_HINT = phrase("write 'and' in an expression, or '&amp;' for each '&'")
 _MERGE_MARK = "<<<<<<< "
-"""The beginning of a conflict that git leaves in a file."""
+"""The text at the start of a merge conflict that git writes into a file."""
 _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;' for the character '<'")
 
 
@@ -77,7 +77,7 @@ def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightE
             hint=phrase(
                 'declare it on the root element: xmlns:{prefix}="{addresses}"',
                 prefix=prefix,
-                addresses=_ADDRESSES.get(prefix, "..."),
+                addresses=_NAMESPACES.get(prefix, "..."),
             ),
             source=source,
         )
@@ -128,27 +128,27 @@ class _Fault:
             return self._diagnostic(
                 "XML207",
                 phrase("there is content after the end of the root element"),
-                hint=phrase("a file has one root element"),
+                hint=phrase("an XML file has exactly one root element"),
             )
         if code == _MISPLACED_DECLARATION:
-            message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
+            message = phrase("the XML declaration '<?xml' must be at the very start of the file")
             return self._diagnostic("XML206", message, 5, hint=phrase("remove everything before it"))
         if code == _NO_ELEMENT:
             return self._diagnostic(
                 "XML206", phrase("there is no root element"), hint=phrase("a robot starts with <robot name=...>")
             )
         if code == _UNCLOSED_CDATA:
-            at = self._text.rfind("<![CDATA[", 0, self._offset)
+            start = self._text.rfind("<![CDATA[", 0, self._offset)
             return self._diagnostic(
-                "XML203", phrase("this CDATA section is never closed"), 9, at=at, hint=phrase("close it with ']]>'")
+                "XML203", phrase("this CDATA section is never closed"), 9, at=start, hint=phrase("close it with ']]>'")
             )
         if code == _SYNTAX and self._open == []:
-            return self._no_xml()
-        return self._diagnostic("XML206", _words(error))
+            return self._not_xml()
+        return self._diagnostic("XML206", _expat_message(error))
 
     def _template(self) -> Diagnostic | None:
         """Return the error for a template whose placeholders are not valid XML, or None."""
-        for pattern, language, hint in _TEMPLATES:
+        for pattern, language, hint in _TEMPLATE_LANGUAGES:
             tag = pattern.search(self._text)
             if tag is not None and tag.start() <= self._offset:
                 message = phrase("this is a {language} template, not XML", language=language)
@@ -169,16 +169,19 @@ class _Fault:
         span = self._source.span(start, closing.end() if closing else start + 2)
         if not self._open:
             return Diagnostic(
-                "XML201", phrase("'</{name}>' closes no element", name=name), span=span, source=self._source
+                "XML201",
+                phrase("'</{name}>' does not close an element, because none is open", name=name),
+                span=span,
+                source=self._source,
             )
         inner, opened_at = self._open[-1]
         note = Note(
             phrase("'<{inner}>' is opened here", inner=inner), self._source.span(opened_at, opened_at + 1 + len(inner))
         )
-        outer = any(name == other for other, _ in self._open[:-1])
+        closes_ancestor = any(name == tag for tag, _ in self._open[:-1])
         hint = (
             phrase("write '</{inner}>' before it", inner=inner)
-            if outer
+            if closes_ancestor
             else phrase("write '</{inner}>', or remove it", inner=inner)
         )
         return Diagnostic(
@@ -191,8 +194,8 @@ class _Fault:
         )
 
     def _never_closed(self) -> Diagnostic:
-        name, at = self._open[-1]
-        span = self._source.span(at, at + 1 + len(name))
+        name, offset = self._open[-1]
+        span = self._source.span(offset, offset + 1 + len(name))
         hint = phrase("write '</{name}>' where it ends", name=name)
         return Diagnostic(
             "XML202", phrase("'<{name}>' is never closed", name=name), span=span, hint=hint, source=self._source
@@ -210,20 +213,20 @@ class _Fault:
         name = _NAME.match(self._text, self._offset + 1)
         length = 1 + (len(name[0]) if name else 0)
         hint = phrase("look for a missing '>' or a missing quote")
-        return self._diagnostic("XML203", phrase("this tag is never finished"), length, hint=hint)
+        return self._diagnostic("XML203", phrase("this tag has no closing '>'"), length, hint=hint)
 
-    def _no_xml(self) -> Diagnostic:
+    def _not_xml(self) -> Diagnostic:
         hint = phrase("an XML file may have only comments before its root element")
-        begin = len(self._text) - len(self._text.lstrip())
-        return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
+        start = len(self._text) - len(self._text.lstrip())
+        return self._diagnostic("XML206", phrase("this is not XML"), at=start, hint=hint)
 
     # --- invalid tokens: recognized common mistakes -------------------------------------------------------------------
 
     def _invalid_token(self) -> Diagnostic:
-        for usual_mistake in (
+        for find_mistake in (
             self._unfinished_merge,
             self._forbidden_character,
-            self._no_markup,
+            self._missing_markup,
             self._lone_ampersand,
             self._dashes_in_comment,
             self._lone_less_than,
@@ -231,16 +234,16 @@ class _Fault:
             self._broken_by_entities,
             self._less_than_in_tag,
             self._unclosed_quote,
-            self._missing_blank,
+            self._missing_space,
             self._attribute_without_value,
         ):
-            found = usual_mistake()
-            if found is not None:
-                return found
+            diagnostic = find_mistake()
+            if diagnostic is not None:
+                return diagnostic
         character = self._character
         if not character:
             return self._diagnostic("XML206", phrase("the file ends unexpectedly"))
-        return self._diagnostic("XML206", phrase("{character} is not expected here", character=repr(character)))
+        return self._diagnostic("XML206", phrase("unexpected character {character}", character=repr(character)))
 
     @property
     def _character(self) -> str:
@@ -248,9 +251,9 @@ class _Fault:
         return self._text[self._offset : self._offset + 1]
 
     @property
-    def _before(self) -> str:
+    def _preceding_text(self) -> str:
         """The text directly before the character at which expat stopped."""
-        return self._text[max(0, self._offset - _AS_FAR_BACK) : self._offset]
+        return self._text[max(0, self._offset - _SEARCH_LENGTH) : self._offset]
 
     def _unfinished_merge(self) -> Diagnostic | None:
         line = self._text.rfind("\n", 0, self._offset) + 1
@@ -270,32 +273,32 @@ class _Fault:
             return None
         return self._diagnostic("XML206", phrase("the character U+{ord:04X} is not allowed in XML", ord=ord(character)))
 
-    def _no_markup(self) -> Diagnostic | None:
-        return None if self._character == "<" or "<" in self._text[: self._offset] else self._no_xml()
+    def _missing_markup(self) -> Diagnostic | None:
+        return None if self._character == "<" or "<" in self._text[: self._offset] else self._not_xml()
 
     def _lone_ampersand(self) -> Diagnostic | None:
-        found = _LONE_AMPERSAND.search(self._before)
-        if found is None:
+        match_ = _LONE_AMPERSAND.search(self._preceding_text)
+        if match_ is None:
             return None
-        start = self._offset - len(found[0])
+        start = self._offset - len(match_[0])
         hint = _AND_HINT if self._text[start : start + 2] == "&&" else _AMPERSAND_HINT
         return self._diagnostic("XML206", phrase("'&' does not begin an entity"), at=start, hint=hint)
 
     def _dashes_in_comment(self) -> Diagnostic | None:
-        if not _DASHES_IN_COMMENT.search(self._before):
+        if not _DASHES_IN_COMMENT.search(self._preceding_text):
             return None
         message = phrase("'--' is not allowed inside a comment")
         hint = phrase("use other characters, such as '=='")
         return self._diagnostic("XML206", message, 2, at=self._offset - 2, hint=hint)
 
     def _lone_less_than(self) -> Diagnostic | None:
-        if not self._before.endswith("<"):
+        if not self._preceding_text.endswith("<"):
             return None
         message = phrase("'<' does not begin a tag")
         return self._diagnostic("XML206", message, at=self._offset - 1, hint=phrase("write '&lt;'"))
 
     def _unquoted_value(self) -> Diagnostic | None:
-        unquoted = _UNQUOTED.search(self._before)
+        unquoted = _UNQUOTED.search(self._preceding_text)
         if unquoted is None:
             return None
         name = unquoted[1]
@@ -309,7 +312,7 @@ class _Fault:
         return self._diagnostic("XML206", message, len(value[0]) if value else 1, hint=hint)
 
     def _broken_by_entities(self) -> Diagnostic | None:
-        if self._character != "<" or "<!ENTITY" not in self._text or not self._before.rstrip().endswith(">"):
+        if self._character != "<" or "<!ENTITY" not in self._text or not self._preceding_text.rstrip().endswith(">"):
             return None
         hint = phrase("check the entities that the document declares")
         return self._diagnostic("XML206", phrase("this is not well-formed once its entities are expanded"), hint=hint)
@@ -320,41 +323,43 @@ class _Fault:
         return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
 
     def _unclosed_quote(self) -> Diagnostic | None:
-        found = _QUOTE_LEFT_OPEN.search(self._before)
-        if found is None:
+        match_ = _UNCLOSED_QUOTE.search(self._preceding_text)
+        if match_ is None:
             return None
-        message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=found[1])
-        start, hint = self._offset - len(found[0]), phrase("write a quote at the end of the value")
-        return self._diagnostic("XML206", message, len(found[1]), at=start, hint=hint)
+        message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
+        start, hint = self._offset - len(match_[0]), phrase("write a quote at the end of the value")
+        return self._diagnostic("XML206", message, len(match_[1]), at=start, hint=hint)
 
-    def _missing_blank(self) -> Diagnostic | None:
-        if not self._before.endswith(('"', "'")) or not _NAME.match(self._character):
+    def _missing_space(self) -> Diagnostic | None:
+        if not self._preceding_text.endswith(('"', "'")) or not _NAME.match(self._character):
             return None
         hint = phrase("write a space here, or look for a missing quote before it")
         return self._diagnostic("XML206", phrase("a space is missing between two attributes"), hint=hint)
 
     def _attribute_without_value(self) -> Diagnostic | None:
-        bare = _BARE_ATTRIBUTE.search(self._before)
-        if bare is None:
+        bare_attribute = _BARE_ATTRIBUTE.search(self._preceding_text)
+        if bare_attribute is None:
             return None
-        message = phrase("the attribute '{bare}' has no value", bare=bare[1])
-        hint = phrase('write {bare}="..."', bare=bare[1])
-        return self._diagnostic("XML206", message, len(bare[1]), at=self._offset - len(bare[0]), hint=hint)
+        message = phrase("the attribute '{bare}' has no value", bare=bare_attribute[1])
+        hint = phrase('write {bare}="..."', bare=bare_attribute[1])
+        return self._diagnostic(
+            "XML206", message, len(bare_attribute[1]), at=self._offset - len(bare_attribute[0]), hint=hint
+        )
 
     # --- entities and attributes --------------------------------------------------------------------------------------
 
     def _undefined_entity(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset + 1)
-        written = f"&{name[0]};" if name else "&"
-        message = phrase("the entity '{written}' is not defined", written=written)
-        return self._diagnostic("XML208", message, len(written), hint=_AMPERSAND_HINT)
+        entity = f"&{name[0]};" if name else "&"
+        message = phrase("the entity '{written}' is not defined", written=entity)
+        return self._diagnostic("XML208", message, len(entity), hint=_AMPERSAND_HINT)
 
     def _duplicate_attribute(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset)
-        written = name[0] if name else ""
-        message = phrase("the attribute '{name}' is given twice", name=written)
-        return self._diagnostic("XML204", message, max(1, len(written)), hint=phrase("keep one of the two"))
+        attribute = name[0] if name else ""
+        message = phrase("the attribute '{name}' occurs twice in this element", name=attribute)
+        return self._diagnostic("XML204", message, max(1, len(attribute)), hint=phrase("keep one of the two"))
 
 
-def _words(error: ExpatError) -> Phrase:
+def _expat_message(error: ExpatError) -> Phrase:
     return phrase("this is not well-formed XML: {partition}", partition=foreign(str(error).partition(":")[0]))

@@ -1,4 +1,4 @@
-"""A formatter for XML that only changes indentation, spaces in tags, and blank lines.
+"""A formatter for XML that changes only indentation, spaces in tags, and blank lines.
 
 Everything else is unchanged: the order of attributes, quotes, entities, comments, processing instructions, line
 endings, elements with text, and values that contain line endings. An element on one line stays on one line if it
@@ -20,11 +20,11 @@ from linkwright.xmltree.style import Style
 from linkwright.xmltree.tokens import Kind, Token, TokenAttribute, tokens
 
 _BOM = "\ufeff"
-_SPACED_END, _TIGHT_END = lazy_pattern(r"[^\S\n]/>"), lazy_pattern(r"\S/>")
+_SPACED_TAG_END, _TIGHT_TAG_END = lazy_pattern(r"[^\S\n]/>"), lazy_pattern(r"\S/>")
 
 
 class TextEdit(NamedTuple):
-    """A replacement of the lines `first` to `last` (exclusive, from 0) of a text by `lines`."""
+    """A replacement of the lines from `first` up to but excluding `last`, counted from 0, by `lines`."""
 
     first: int
     last: int
@@ -33,11 +33,11 @@ class TextEdit(NamedTuple):
 
 @dataclass(slots=True)
 class _Node:
-    """A token, with the content of its element.
+    """A token, with the content of its element if it is a start tag.
 
     Attributes:
         token: the start tag of an element, or any other token.
-        children: the nodes in an element, including texts.
+        children: the nodes inside the element, including text nodes.
         closing: the end tag of an element, or None for ``<a/>`` and other tokens.
     """
 
@@ -52,14 +52,14 @@ class _Node:
 
     @property
     def is_blank(self) -> bool:
-        """Whether the node is a text of blanks."""
+        """Whether the node is a text that consists of whitespace."""
         return self.token.kind is Kind.TEXT and not self.token.text.strip()
 
     @property
     def is_verbatim(self) -> bool:
-        """Whether blanks in the content may matter, so that the content must not change.
+        """Whether whitespace in the content may be significant, so that the content must not change.
 
-        This is so if the content has other text or only blanks, or if the element has the attribute ``xml:space``.
+        This is the case if the content has other text or only whitespace, or if the element has ``xml:space``.
         """
         kinds = (Kind.TEXT, Kind.CDATA)
         return (
@@ -81,28 +81,28 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
         LinkwrightError: if the text is not XML (see `linkwright.xmltree.parse`), or XML303 if formatting would change
             its meaning.
     """
-    before = parse(text, name)
-    mark = _BOM if text.startswith(_BOM) else ""
+    original = parse(text, name)
+    byte_order_mark = _BOM if text.startswith(_BOM) else ""
     newline = "\r\n" if text.count("\r\n") * 2 > text.count("\n") else "\n"
-    body = text[len(mark) :]
+    body = text[len(byte_order_mark) :]
     layout = _Layout(body, style, newline)
-    formatted = mark + layout.document(_nodes(body))
-    if not _alike(_top(before), _top(parse(formatted, name))):
+    formatted = byte_order_mark + layout.document(_nodes(body))
+    if not _are_equal(_top_nodes(original), _top_nodes(parse(formatted, name))):
         message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
         raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("please report this file as an error")))
     return formatted
 
 
-def changes(before: str, after: str, lines: tuple[int, int] | None = None) -> list[TextEdit]:
-    """Return the edits of lines that turn one text into another.
+def changes(original: str, changed: str, lines: tuple[int, int] | None = None) -> list[TextEdit]:
+    """Return the line edits that turn one text into another.
 
     Args:
-        before: the original text.
-        after: the new text.
+        original: the original text.
+        changed: the new text.
         lines: the first and the last line (exclusive, counted from 0) of the range that an edit must touch, or None for
             all edits.
     """
-    old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
+    old, new = original.splitlines(keepends=True), changed.splitlines(keepends=True)
     matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
     return [
         TextEdit(first, last, tuple(new[start:end]))
@@ -111,9 +111,9 @@ def changes(before: str, after: str, lines: tuple[int, int] | None = None) -> li
     ]
 
 
-def with_changes(before: str, edits: Sequence[TextEdit]) -> str:
-    """Return a text with edits of its lines applied."""
-    lines = before.splitlines(keepends=True)
+def apply_edits(original: str, edits: Sequence[TextEdit]) -> str:
+    """Return a text after applying edits to its lines."""
+    lines = original.splitlines(keepends=True)
     for edit in sorted(edits, reverse=True):
         lines[edit.first : edit.last] = edit.lines
     return "".join(lines)
@@ -121,17 +121,17 @@ def with_changes(before: str, edits: Sequence[TextEdit]) -> str:
 
 def _nodes(text: str) -> list[_Node]:
     """Return the top-level nodes of a well-formed text."""
-    top: list[_Node] = []
+    top_nodes: list[_Node] = []
     parents: list[_Node] = []
     for token in tokens(text):
         if token.kind is Kind.END:
             parents.pop().closing = token
             continue
         node = _Node(token)
-        (parents[-1].children if parents else top).append(node)
+        (parents[-1].children if parents else top_nodes).append(node)
         if token.kind is Kind.START and not token.is_whole:
             parents.append(node)
-    return top
+    return top_nodes
 
 
 class _Layout:
@@ -147,32 +147,32 @@ class _Layout:
         self._text = text
         self._style = style
         self._newline = newline
-        spaced, others = len(_SPACED_END.findall(text)), len(_TIGHT_END.findall(text))
-        self._whole = " />" if spaced > others else "/>"
+        spaced_count, tight_count = len(_SPACED_TAG_END.findall(text)), len(_TIGHT_TAG_END.findall(text))
+        self._empty_tag_end = " />" if spaced_count > tight_count else "/>"
 
     def document(self, nodes: Sequence[_Node]) -> str:
         """Return the formatted text of a document."""
         return self._lines(nodes, 0).strip("\r\n") + self._newline
 
     def _lines(self, nodes: Sequence[_Node], depth: int) -> str:
-        """Return nodes on lines of their own, each with its line ending.
+        """Return the formatted text of nodes, each on separate lines with its line ending.
 
-        A comment that is beside another node in the original stays beside it.
+        A comment stays on the line of another node if it is on that line in the original.
         """
         parts: list[str] = []
-        before: _Node | None = None
+        previous: _Node | None = None
         blanks = ""
         for node in nodes:
             if node.is_blank:
                 blanks = node.token.text
                 continue
-            if before is not None and "\n" not in blanks and self._is_beside(before, node):
+            if previous is not None and "\n" not in blanks and self._is_beside(previous, node):
                 parts[-1:] = [" ", self._node(node, depth), self._newline]
             else:
                 if blanks.count("\n") > 1:
                     parts.append(self._newline)
                 parts += [self._margin(depth), self._node(node, depth), self._newline]
-            before, blanks = node, ""
+            previous, blanks = node, ""
         if blanks.count("\n") > 1:
             parts.append(self._newline)
         return "".join(parts)
@@ -211,24 +211,24 @@ class _Layout:
         if node.is_verbatim:
             content = self._text[node.token.end : node.closing.start]
         else:
-            content = "".join(self._beside(node.children))
+            content = "".join(self._one_line_texts(node.children))
         return f"{start}{content}</{node.closing.name}>"
 
-    def _beside(self, nodes: Sequence[_Node]) -> Iterator[str]:
-        """Yield the texts of nodes for one line.
+    def _one_line_texts(self, nodes: Sequence[_Node]) -> Iterator[str]:
+        """Yield the texts of nodes that are written on one line.
 
-        Blanks beside a comment become one space, and other blanks are left out.
+        Whitespace beside a comment becomes one space, and other whitespace is removed.
         """
-        before: _Node | None = None
+        previous: _Node | None = None
         has_blanks = False
         for node in nodes:
             if node.is_blank:
                 has_blanks = True
                 continue
-            if has_blanks and before is not None and self._is_beside(before, node):
+            if has_blanks and previous is not None and self._is_beside(previous, node):
                 yield " "
             yield self._line(node)
-            before, has_blanks = node, False
+            previous, has_blanks = node, False
 
     def _start_tag(self, tag: Token, depth: int) -> str:
         """Return a formatted start tag.
@@ -247,16 +247,16 @@ class _Layout:
         if rows[0] and len(rows) > 1 and self._column(rows[1][0]) == self._column(rows[0][0]):
             step = margin + " " * (len(opening) + 1)
         lines = [margin + opening]
-        for number, row in enumerate(rows):
-            if number:
+        for index, row in enumerate(rows):
+            if index:
                 lines.append(step.removesuffix(" "))
             for attribute in row:
-                written = _written(attribute)
-                has_company = lines[-1].strip() not in ("", opening)
-                first_line = written.split("\n")[0].rstrip("\r")
-                if has_company and len(lines[-1].rsplit("\n", 1)[-1]) + 1 + len(first_line) > self._style.width:
+                attribute_text = _attribute_text(attribute)
+                has_content = lines[-1].strip() not in ("", opening)
+                first_line = attribute_text.split("\n")[0].rstrip("\r")
+                if has_content and len(lines[-1].rsplit("\n", 1)[-1]) + 1 + len(first_line) > self._style.width:
                     lines.append(step.removesuffix(" "))
-                lines[-1] += " " + written
+                lines[-1] += " " + attribute_text
         ending = self._ending(tag)
         if not rows[0] and "\n" in tag.text[attributes[-1].end - tag.start :]:
             lines.append(margin + ending.strip())
@@ -268,11 +268,11 @@ class _Layout:
         return attribute.start - self._text.rfind("\n", 0, attribute.start)
 
     def _one_line(self, tag: Token) -> str:
-        written = "".join(f" {_written(attribute)}" for attribute in tag.attributes())
+        written = "".join(f" {_attribute_text(attribute)}" for attribute in tag.attributes())
         return f"<{tag.name}{written}{self._ending(tag)}"
 
     def _ending(self, tag: Token) -> str:
-        return self._whole if tag.is_whole else ">"
+        return self._empty_tag_end if tag.is_whole else ">"
 
     @staticmethod
     def _rows(tag: Token, attributes: Sequence[TokenAttribute]) -> list[list[TokenAttribute]]:
@@ -281,29 +281,29 @@ class _Layout:
         The first row is on the line of the tag's name, and may be empty.
         """
         rows: list[list[TokenAttribute]] = [[]]
-        at = tag.name_start + len(tag.name)
+        end = tag.name_start + len(tag.name)
         for attribute in attributes:
-            if "\n" in tag.text[at - tag.start : attribute.start - tag.start]:
+            if "\n" in tag.text[end - tag.start : attribute.start - tag.start]:
                 rows.append([])
             rows[-1].append(attribute)
-            at = attribute.end
+            end = attribute.end
         return rows
 
     def _margin(self, depth: int) -> str:
         return " " * (self._style.indent * depth)
 
 
-def _written(attribute: TokenAttribute) -> str:
+def _attribute_text(attribute: TokenAttribute) -> str:
     return f"{attribute.name}={attribute.quote}{attribute.value}{attribute.quote}"
 
 
-def _top(document: Document) -> list[Node]:
+def _top_nodes(document: Document) -> list[Node]:
     return [*document.prolog, document.root, *document.epilog]
 
 
-def _alike(some: Sequence[Node], others: Sequence[Node]) -> bool:
-    """Return whether two lists of nodes are equal, ignoring texts of blanks."""
-    pairs = [([*some], [*others])]
+def _are_equal(first: Sequence[Node], second: Sequence[Node]) -> bool:
+    """Return whether two lists of nodes are equal, apart from texts that consist of whitespace."""
+    pairs = [([*first], [*second])]
     while pairs:
         left, right = ([node for node in nodes if not _is_blank(node)] for nodes in pairs.pop())
         if len(left) != len(right):

@@ -15,8 +15,8 @@ from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.lean_typing import Any, SupportsIndex
 from linkwright.xmltree.decoding import UTF_8
 
-_SELDOM = 50_000
-"""After how many new objects the collector looks all the same."""
+_COLLECTION_THRESHOLD = 50_000
+"""The number of new objects after which the collector still runs inside the context."""
 _depth_lock = allocate_lock()
 _active = 0
 _before = (0, 0, 0)
@@ -25,7 +25,7 @@ _before = (0, 0, 0)
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """A context in which the garbage collector runs less often.
 
-    At the end, all objects become part of the oldest generation.
+    At the end of the context, all objects become part of the oldest generation.
     """
 
     def __enter__(self) -> None:
@@ -33,8 +33,8 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _depth_lock:
             if _active == 0:
                 _before = gc.get_threshold()
-                if 0 < _before[0] < _SELDOM:
-                    gc.set_threshold(_SELDOM, *_before[1:])
+                if 0 < _before[0] < _COLLECTION_THRESHOLD:
+                    gc.set_threshold(_COLLECTION_THRESHOLD, *_before[1:])
             _active += 1
 
     def __exit__(self, *_: object) -> None:
@@ -51,7 +51,7 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
 class Text:
     """Character data.
 
-    `cdata` marks a CDATA section, which is written as such and never evaluated.
+    `cdata` marks a CDATA section, which is written as CDATA and is never evaluated.
     """
 
     __slots__ = ("cdata", "data", "offset", "source")
@@ -90,12 +90,12 @@ class Element:
     """An XML element.
 
     Attributes:
-        tag: the name as written, with its prefix.
+        tag: the name as written, including its prefix.
         attributes: the values of attributes in document order, by name as written.
         children: elements, texts, comments and processing instructions, in document order.
         source: the text that contains the element, or None for an element created by a program.
-        offset: the character offset of the element's ``<`` in this text.
-        origin: the chain of macro calls and includes that produced the element in an expansion, else None.
+        offset: the character offset of the element's ``<`` in the source.
+        origin: the chain of macro calls and includes that produced the element in an expansion, or None.
         plan: the plan of the xacro room for expanding the element, else None. Before changing an element of an expanded
             tree, set it to None, also in all enclosing elements.
     """
@@ -128,7 +128,7 @@ class Element:
                 yield child
 
     def walk(self) -> Iterator[Element]:
-        """Yield the element itself and all elements inside it, in document order."""
+        """Yield this element and all elements inside it, in document order."""
         pending = [self]
         while pending:
             element = pending.pop()
@@ -147,29 +147,29 @@ class Element:
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """Return the location of the start tag's name with its ``<``; None if created by a program."""
+        """Return the location of the ``<`` and the name in the start tag; None if a program created the element."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))
 
     def attribute_span(self, name: str) -> Span | None:
-        """Return the location of an attribute's value in the source, or else that of the element.
+        """Return the location of an attribute's value in the source.
 
-        The location is that of the element if the attribute is absent or created by a program.
+        If the attribute is absent or was created by a program, the location of the element is returned.
         """
         from linkwright.xmltree.positions import attribute_value_range
 
         if self.source is None:
             return None
-        found = attribute_value_range(self.source.text, self.offset, name)
-        return self.source.span(*found) if found else self.span()
+        value_range = attribute_value_range(self.source.text, self.offset, name)
+        return self.source.span(*value_range) if value_range else self.span()
 
 
 class CachedText:
-    """A cache for the text that is written for an element.
+    """A cache for the text that is written for an element, so that it is created only once.
 
     Attributes:
-        written: the blanks before the text, and the text, or None until the element is written.
+        written: the whitespace before the element, and the element's text; None until the element is written.
     """
 
     __slots__ = ("written",)
@@ -184,7 +184,7 @@ _lock = allocate_lock()
 class LazyCopy(Element):
     """An unchanged copy of an element that creates its attributes and children on first access.
 
-    Most copies are only written again, for which the original suffices.
+    Most copies are only written, which does not require attributes and children of their own.
 
     Attributes:
         original: the copied element, or None once the copy has its own attributes and children.
@@ -225,20 +225,20 @@ def _fill(copy: LazyCopy, original: Element) -> None:
     origin = copy.origin
     pending: list[tuple[Element, Element]] = [(copy, original)]
     while pending:  # no recursion, because elements may be nested more deeply than Python's call stack allows
-        made, original = pending.pop()
+        target, original = pending.pop()
         while isinstance(original, LazyCopy) and original.original is not None:
             original = original.original
-        made.attributes = original.attributes.copy()
+        target.attributes = original.attributes.copy()
         children: list[Node] = []
         for child in original.children:
             if isinstance(child, Element):
-                inner = Element(child.tag, None, child.source, child.offset, origin)
-                inner.plan = child.plan
-                pending.append((inner, child))
-                children.append(inner)
+                child_copy = Element(child.tag, None, child.source, child.offset, origin)
+                child_copy.plan = child.plan
+                pending.append((child_copy, child))
+                children.append(child_copy)
             else:
                 children.append(child)
-        made.children = children
+        target.children = children
 
 
 Node = Element | Text | Comment | ProcessingInstruction

@@ -15,8 +15,8 @@ from linkwright.xmltree.nodes import Element
 _TAG_NAME = lazy_pattern(r"<[^\s/>]+")
 _START_TAG_REST = lazy_pattern(r"""(?:[^"'>]|"[^"]*"|'[^']*')*>""")
 _MARKUP = lazy_pattern(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</[^>]*>|<", re.DOTALL)
-_STEP = "  "
-_UNSAFE = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
+_INDENT = "  "
+_ENTITIES = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,49 +34,49 @@ class StartTag:
 
     Attributes:
         start: the character offset of the tag's ``<``.
-        room: the character offset after the last attribute, where another attribute can be inserted.
+        insertion_offset: the character offset after the last attribute, where another attribute can be inserted.
         end: the character offset after the tag's ``>``.
-        is_whole: whether the tag is the whole element, ``<a/>``.
+        is_whole: whether the tag is an empty-element tag, ``<a/>``.
     """
 
     start: int
-    room: int
+    insertion_offset: int
     end: int
     is_whole: bool
 
 
 def apply(text: str, edits: Iterable[Replacement]) -> str:
     """Return a text with replacements applied; the replacements must not overlap."""
-    parts, at = [], 0
+    parts, position = [], 0
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end)):
-        parts += [text[at : edit.start], edit.text]
-        at = edit.end
-    return "".join([*parts, text[at:]])
+        parts += [text[position : edit.start], edit.text]
+        position = edit.end
+    return "".join([*parts, text[position:]])
 
 
 def escaped(value: str) -> str:
     """Return a value escaped for use between double quotes."""
-    return "".join(_UNSAFE.get(character, character) for character in value)
+    return "".join(_ENTITIES.get(character, character) for character in value)
 
 
-def newline_of(text: str) -> str:
+def line_ending(text: str) -> str:
     """Return the line ending of a text."""
     return "\r\n" if "\r\n" in text else "\n"
 
 
 def indentation(text: str, offset: int) -> str | None:
-    """Return the blanks between the start of a line and an offset in it.
+    """Return the whitespace between the start of a line and an offset in it.
 
-    The result is None if the line has other characters there.
+    The result is None if other characters precede the offset in its line.
     """
-    before = text[text.rfind("\n", 0, offset) + 1 : offset]
-    return before if not before.strip() else None
+    preceding = text[text.rfind("\n", 0, offset) + 1 : offset]
+    return preceding if not preceding.strip() else None
 
 
-def start_tag_of(element: Element) -> StartTag | None:
-    """Return the start tag of an element in its source, or None if it is not written there.
+def find_start_tag(element: Element) -> StartTag | None:
+    """Return the start tag of an element in its source, or None if the source does not contain it.
 
-    An element is not written in its source if a program or an entity created it.
+    The source does not contain elements that a program or an entity created.
     """
     if element.source is None:
         return None
@@ -86,8 +86,8 @@ def start_tag_of(element: Element) -> StartTag | None:
     if not name or not rest or name[0] != f"<{element.tag}":
         return None
     is_whole = rest[0].endswith("/>")
-    inside = text[name.end() : rest.end() - (2 if is_whole else 1)]
-    return StartTag(element.offset, name.end() + len(inside.rstrip()), rest.end(), is_whole)
+    attribute_text = text[name.end() : rest.end() - (2 if is_whole else 1)]
+    return StartTag(element.offset, name.end() + len(attribute_text.rstrip()), rest.end(), is_whole)
 
 
 def element_range(element: Element) -> tuple[int, int] | None:
@@ -95,23 +95,23 @@ def element_range(element: Element) -> tuple[int, int] | None:
 
     The result is None for an element created by a program.
     """
-    tag = start_tag_of(element)
+    tag = find_start_tag(element)
     if element.source is None or tag is None:
         return None
     text, end = element.source.text, tag.end
     depth = 0 if tag.is_whole else 1
     while depth:
-        found = _MARKUP.search(text, end)
-        if found is None:
+        markup = _MARKUP.search(text, end)
+        if markup is None:
             return None
-        end = found.end()
-        if found[0] == "<":
+        end = markup.end()
+        if markup[0] == "<":
             rest = _START_TAG_REST.match(text, end)
             if rest is None:
                 return None
             end = rest.end()
             depth += not rest[0].endswith("/>")
-        elif found[0].startswith("</"):
+        elif markup[0].startswith("</"):
             depth -= 1
     return element.offset, end
 
@@ -121,11 +121,11 @@ def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
     line_end = len(text) if line_end < 0 else line_end + 1
-    alone = not text[line_start:start].strip() and not text[end:line_end].strip()
-    return (line_start, line_end) if alone else (start, end)
+    is_alone = not text[line_start:start].strip() and not text[end:line_end].strip()
+    return (line_start, line_end) if is_alone else (start, end)
 
 
-def block(element: Element, indent: str = "", step: str = _STEP, newline: str = "\n") -> str:
+def block(element: Element, indent: str = "", step: str = _INDENT, newline: str = "\n") -> str:
     """Return the text of an element for insertion into a file, without a final line ending.
 
     Args:
@@ -139,59 +139,63 @@ def block(element: Element, indent: str = "", step: str = _STEP, newline: str = 
     if not children:
         text = element.text()
         return f"<{opening}>{escaped(text)}</{element.tag}>" if text else f"<{opening}/>"
-    inner = indent + step
-    lines = [f"<{opening}>", *(inner + block(child, inner, step, newline) for child in children)]
+    child_indent = indent + step
+    lines = [f"<{opening}>", *(child_indent + block(child, child_indent, step, newline) for child in children)]
     return newline.join([*lines, f"{indent}</{element.tag}>"])
 
 
-def inserted(
-    owner: Element, new: Sequence[Element], *, after: Element | None = None, first: bool = False
+def insertion(
+    owner: Element, new_elements: Sequence[Element], *, after: Element | None = None, first: bool = False
 ) -> Replacement | None:
     """Return the replacement that inserts elements into an element with matching indentation.
 
     Args:
-        owner: the element in a file that receives the new elements.
-        new: the new elements, created by a program.
-        after: the child of the owner after which they are inserted, or None for the end.
-        first: whether they are inserted before all children, if `after` is None.
+        owner: the element of a file into which the new elements are inserted.
+        new_elements: the elements to insert, created by a program.
+        after: the child of the owner after which they are inserted; None for the end.
+        first: whether to insert them before all children if `after` is None.
 
     Returns:
-        The replacement, or None if the owner is not written in the file.
+        The replacement, or None if the owner's source does not contain it.
     """
-    found = element_range(owner)
-    tag = start_tag_of(owner)
-    if found is None or tag is None or owner.source is None:
+    owner_range = element_range(owner)
+    tag = find_start_tag(owner)
+    if owner_range is None or tag is None or owner.source is None:
         return None
-    text, (start, end) = owner.source.text, found
-    newline, outer = newline_of(text), _blanks(text, start)
+    text, (start, end) = owner.source.text, owner_range
+    newline, owner_indent = line_ending(text), _line_indent(text, start)
     child = next(owner.elements(), None)
-    inner = outer + _STEP if child is None else _blanks(text, child.offset)
+    child_indent = owner_indent + _INDENT if child is None else _line_indent(text, child.offset)
     in_line = child is not None and "\n" not in text[start : child.offset]
     if in_line:
-        inner = outer + _STEP
-    step = inner.removeprefix(outer) if inner.startswith(outer) and inner != outer else _STEP
+        child_indent = owner_indent + _INDENT
+    step = (
+        child_indent.removeprefix(owner_indent)
+        if child_indent.startswith(owner_indent) and child_indent != owner_indent
+        else _INDENT
+    )
     if tag.is_whole:
-        lines = newline.join(inner + block(element, inner, step, newline) for element in new)
-        return Replacement(tag.room, end, f">{newline}{lines}{newline}{outer}</{owner.tag}>")
-    behind = element_range(after) if after is not None else None
-    if in_line and not any(True for element in new for _ in element.elements()):
-        at = behind[1] if behind else tag.end if first else text.rindex("</", start, end)
-        return Replacement(at, at, "".join(block(element) for element in new))
-    lines = newline.join(inner + block(element, inner, step, newline) for element in new)
-    if behind is not None:
-        return Replacement(behind[1], behind[1], f"{newline}{lines}")
+        lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
+        return Replacement(tag.insertion_offset, end, f">{newline}{lines}{newline}{owner_indent}</{owner.tag}>")
+    after_range = element_range(after) if after is not None else None
+    if in_line and not any(True for element in new_elements for _ in element.elements()):
+        at = after_range[1] if after_range else tag.end if first else text.rindex("</", start, end)
+        return Replacement(at, at, "".join(block(element) for element in new_elements))
+    lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
+    if after_range is not None:
+        return Replacement(after_range[1], after_range[1], f"{newline}{lines}")
     if first and child is not None:
         if in_line:
-            return Replacement(tag.end, tag.end, f"{newline}{lines}{newline}{inner}")
-        return Replacement(child.offset, child.offset, f"{lines.removeprefix(inner)}{newline}{inner}")
+            return Replacement(tag.end, tag.end, f"{newline}{lines}{newline}{child_indent}")
+        return Replacement(child.offset, child.offset, f"{lines.removeprefix(child_indent)}{newline}{child_indent}")
     closing = text.rindex("</", start, end)
     line = text.rfind("\n", 0, closing) + 1
     if line > start and not text[line:closing].strip():
         return Replacement(line, line, f"{lines}{newline}")
-    return Replacement(closing, closing, f"{newline}{lines}{newline}{outer}")
+    return Replacement(closing, closing, f"{newline}{lines}{newline}{owner_indent}")
 
 
-def _blanks(text: str, offset: int) -> str:
-    """Return the blanks at the beginning of the line that contains an offset."""
+def _line_indent(text: str, offset: int) -> str:
+    """Return the whitespace at the beginning of the line that contains an offset."""
     line = text[text.rfind("\n", 0, offset) + 1 : offset]
     return line[: len(line) - len(line.lstrip())]

@@ -27,14 +27,14 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
     Returns:
         The start and end (exclusive), or None if the tag does not have the attribute.
     """
-    found = _attributes(text, offset).get(name)
-    return found and found[1]
+    ranges = _attributes(text, offset).get(name)
+    return ranges and ranges[1]
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Return the character offsets of an attribute's name, or None if it is missing.
+    """Return the character offsets of an attribute's name, or None if the tag does not have the attribute.
 
-    `offset` is that of the start tag's ``<``.
+    `offset` is the character offset of the start tag's ``<``.
     """
     found = _attributes(text, offset).get(name)
     return found and found[0]
@@ -49,7 +49,7 @@ def start_tag_end(text: str, offset: int) -> int:
 
 _Ranges = dict[str, tuple[tuple[int, int], tuple[int, int]]]
 _read_last: tuple[str, int, _Ranges] = ("", -1, {})
-"""The tag that was read last: callers often ask for its next attribute, and a tag may have thousands."""
+"""The last tag that was read: callers often ask for several attributes of a tag, which may have thousands."""
 
 
 def _attributes(text: str, offset: int) -> _Ranges:
@@ -62,11 +62,11 @@ def _attributes(text: str, offset: int) -> _Ranges:
     if last_text is text and last_offset == offset:
         return ranges
     ranges = {}
-    at = _TAG_NAME.match(text, offset)
-    while at is not None:
-        at = _ATTRIBUTE.match(text, at.end())
-        if at is not None:
-            ranges.setdefault(at[1], (at.span(1), (at.start(2) + 1, at.end(2) - 1)))
+    match_ = _TAG_NAME.match(text, offset)
+    while match_ is not None:
+        match_ = _ATTRIBUTE.match(text, match_.end())
+        if match_ is not None:
+            ranges.setdefault(match_[1], (match_.span(1), (match_.start(2) + 1, match_.end(2) - 1)))
     _read_last = (text, offset, ranges)
     return ranges
 
@@ -74,8 +74,8 @@ def _attributes(text: str, offset: int) -> _Ranges:
 def raw_offset(text: str, start: int, end: int, index: int) -> int:
     """Return the offset in the source of the character at an index of a parsed value.
 
-    The parsed value may be shorter than its source: an entity such as ``&lt;`` becomes one character, and so do the two
-    characters of a Windows line ending.
+    The parsed value may be shorter than its source: an entity such as ``&lt;`` becomes one character, and a Windows
+    line ending of two characters also becomes one.
 
     Args:
         text: the complete source text.
@@ -83,10 +83,10 @@ def raw_offset(text: str, start: int, end: int, index: int) -> int:
         end: the offset after the value in the source.
         index: the index of the character in the parsed value.
     """
-    at = start
+    position = start
     for _ in range(index):
-        character = _CHARACTER.match(text, at, end)
+        character = _CHARACTER.match(text, position, end)
         if character is None:
             return end
-        at = character.end()
-    return at
+        position = character.end()
+    return position

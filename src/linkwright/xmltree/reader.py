@@ -1,6 +1,6 @@
 """The XML reader, which builds a tree with the position of each node.
 
-It reads a file, or the text that replaces the file's.
+It reads a file, or a text that replaces the content of a file, such as an unsaved one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.files.input_files import LARGEST_TEXT, NoWriterError, read_file
+from linkwright.files.input_files import MAX_TEXT_BYTES, NoWriterError, read_file
 from linkwright.loading.lean_typing import TYPE_CHECKING, NoReturn
 from linkwright.xmltree.decoding import Decoded, decoded, unsaved
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 
 
 GROWTH_LIMIT = 1_000_000
-"""How many characters the entities of one document may expand to, all together."""
+"""The maximum number of characters to which all entities of one document may expand."""
 
-_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here because few files need it
+_ENTITY_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here because few files need it
 
 
 class EntityGuard:
-    """The internal entities that a document declares, with the expanded length of each."""
+    """Computes how long a text becomes when the internal entities of its document are expanded."""
 
     def __init__(self) -> None:
         self._values: dict[str, str] = {}
@@ -49,25 +49,30 @@ class EntityGuard:
     def declare(self, name: str, value: str) -> None:
         """Record an internal entity.
 
-        As in XML, the first declaration of a name wins.
+        As XML requires, the first declaration of a name applies.
         """
         self._values.setdefault(name, value)
 
     def growth(self, text: str) -> int:
         """Return the total expanded length of the references to declared entities in a text."""
-        return sum(self._length(name, ()) for name in re.findall(_REFERENCE, text))
+        return sum(self._expanded_length(name, ()) for name in re.findall(_ENTITY_REFERENCE, text))
 
-    def _length(self, name: str, within: tuple[str, ...]) -> int:
+    def _expanded_length(self, name: str, enclosing_names: tuple[str, ...]) -> int:
         value = self._values.get(name)
-        if value is None or name in within:  # predefined, undeclared or recursive: the parser reports recursion
+        if (
+            value is None or name in enclosing_names
+        ):  # predefined, undeclared or recursive: the parser reports recursion
             return 0
-        known = self._lengths.get(name)
-        if known is None:
-            if len(within) > 100:
+        expanded_length = self._lengths.get(name)
+        if expanded_length is None:
+            if len(enclosing_names) > 100:
                 return GROWTH_LIMIT + 1
-            known = len(value) + sum(self._length(inner, (*within, name)) for inner in re.findall(_REFERENCE, value))
-            known = self._lengths[name] = min(known, GROWTH_LIMIT + 1)
-        return known
+            expanded_length = len(value) + sum(
+                self._expanded_length(nested_name, (*enclosing_names, name))
+                for nested_name in re.findall(_ENTITY_REFERENCE, value)
+            )
+            expanded_length = self._lengths[name] = min(expanded_length, GROWTH_LIMIT + 1)
+        return expanded_length
 
 
 _BEYOND_ASCII = rb"[\x80-\xff]+"  # not compiled here because few files need it
@@ -77,17 +82,16 @@ _CDATA_START = len("<![CDATA[")
 def parse(
     text: str | bytes, name: str, *, blanks: bool = True, read_as: str | None = None, any_prefix: bool = False
 ) -> Document:
-    """Return the document of an XML text.
+    """Parse an XML text into a document.
 
-    Names are returned as written. Entities that the document itself declares are expanded, and external entities are
-    refused.
+    Names keep their prefixes. Entities that the document declares are expanded, and external entities are refused.
 
     Args:
-        text: the XML text; bytes are decoded like those of a file.
+        text: the XML text, or the bytes of a file, which are decoded.
         name: the name of the text in messages: a path, or a name in angle brackets such as ``<stdin>``.
-        blanks: whether to keep texts that consist of blanks, which only matter if the document is written again.
-        read_as: a text to parse instead, with the same positions, for parsers that accept text that XML forbids.
-        any_prefix: whether names may have undeclared prefixes.
+        blanks: whether to keep text nodes that consist of whitespace; only documents that are written again need them.
+        read_as: a text of the same length to parse instead, in which a lenient parser corrected what XML forbids.
+        any_prefix: whether to accept names with undeclared prefixes.
 
     Raises:
         LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a Git LFS pointer) or XML2xx (not well-formed XML),
@@ -100,7 +104,7 @@ def parse(
 
 
 def parse_file(path: str | Path) -> Document:
-    """Return the document of an XML file.
+    """Parse an XML file into a document.
 
     Raises:
         LinkwrightError: XML101 (no such file), XML102 (a folder), XML103 (cannot be read), or an error of `parse`.
@@ -111,13 +115,13 @@ def parse_file(path: str | Path) -> Document:
 def read_bytes(path: str | Path) -> bytes:
     """Return the bytes of a file, or raise a `LinkwrightError` (XML101, XML102, XML103) with the reason."""
     try:
-        data = read_file(path, LARGEST_TEXT)
+        data = read_file(path, MAX_TEXT_BYTES)
     except FileNotFoundError:
         message = phrase("no such file: '{path}'", path=as_typed(path))
-        raise LinkwrightError(Diagnostic("XML101", message, hint=_missing(path))) from None
+        raise LinkwrightError(Diagnostic("XML101", message, hint=_missing_hint(path))) from None
     except IsADirectoryError:
         message = phrase("'{path}' is a folder, not a file", path=path)
-        hint = _missing(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
+        hint = _missing_hint(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except NoWriterError:
         pipe = phrase("it is a pipe without a writer")
@@ -127,20 +131,24 @@ def read_bytes(path: str | Path) -> bytes:
         ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        advice = phrase("do you have permission to read it?") if isinstance(error, PermissionError) else None
+        permission_hint = (
+            phrase("check that you have permission to read it") if isinstance(error, PermissionError) else None
+        )
         raise LinkwrightError(
             Diagnostic(
-                "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
+                "XML103",
+                phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)),
+                hint=permission_hint,
             )
         ) from None
-    if len(data) == LARGEST_TEXT:  # for example a device that produces endless data
-        reason = phrase("it has more than {count} million bytes", count=LARGEST_TEXT // 1_000_000)
+    if len(data) == MAX_TEXT_BYTES:  # for example a device that produces endless data
+        reason = phrase("it has more than {count} million bytes", count=MAX_TEXT_BYTES // 1_000_000)
         message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("XML103", message))
     return data
 
 
-def _missing(path: str | Path) -> Phrase:
+def _missing_hint(path: str | Path) -> Phrase:
     from pathlib import Path
 
     return missing_file_hint(Path(path))
@@ -149,9 +157,9 @@ def _missing(path: str | Path) -> Phrase:
 class _Reader:
     """A reader that builds the tree from expat's events.
 
-    During parsing, positions are expat's byte offsets. For a text that is not plain ASCII, they are converted to
-    character offsets at the end. Nearly all events are starts, ends and texts, so their handlers are closures for
-    speed.
+    During parsing, positions are expat's byte offsets. For a text with non-ASCII characters, they are converted to
+    character offsets at the end. Nearly all events are start tags, end tags and texts, so the handlers for these are
+    closures, which are faster than methods.
     """
 
     def __init__(self, source: SourceText, *, blanks: bool, read_as: str | None, any_prefix: bool) -> None:
@@ -175,7 +183,7 @@ class _Reader:
         parser.ExternalEntityRefHandler = self._external_entity
         parser.SkippedEntityHandler = self._skipped_entity
         self._entities = EntityGuard()
-        self._top = Element("")  # the parent of the root and of the nodes outside it
+        self._top = Element("")  # The parent of the root and of the nodes outside the root.
         self._open = [self._top]
         self._cdata_at: int | None = None
         self._doctype: str | None = None
@@ -208,14 +216,14 @@ class _Reader:
                 return
             children = open_elements[-1].children
             if self._cdata_at is not None or (children and isinstance(children[-1], Text)):
-                self._more_characters(data, children)
+                self._add_characters(data, children)
                 return
             # Expat reports text only when it reaches the next node, so subtract the length to get the start of the
             # text.
-            at = parser.CurrentByteIndex - len(data)
-            if not (is_ascii and text.startswith(data, at)):
-                at = self._text_start(data)
-            children.append(Text(data, source, at))
+            text_offset = parser.CurrentByteIndex - len(data)
+            if not (is_ascii and text.startswith(data, text_offset)):
+                text_offset = self._text_start(data)
+            children.append(Text(data, source, text_offset))
 
         return characters
 
@@ -226,16 +234,19 @@ class _Reader:
             from linkwright.xmltree.faults import syntax_error  # imported here because most texts are well-formed
 
             self._check_prefixes()
-            open_elements = [(element.tag, self._character(element.offset)) for element in self._open[1:]]
-            offset = self._character(self._parser.ErrorByteIndex)
+            open_elements = [(element.tag, self._character_offset(element.offset)) for element in self._open[1:]]
+            offset = self._character_offset(self._parser.ErrorByteIndex)
             raise syntax_error(self._source, error, offset, open_elements) from None
         finally:
             self._release()
         self._check_prefixes()
-        top = self._top.children
-        at, root = next((at, node) for at, node in enumerate(top) if isinstance(node, Element))
+        top_nodes = self._top.children
+        at, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
         document = Document(root, self._source)
-        document.prolog, document.epilog = _outside(top[:at]), _outside(top[at + 1 :])
+        document.prolog, document.epilog = (
+            _comments_and_instructions(top_nodes[:at]),
+            _comments_and_instructions(top_nodes[at + 1 :]),
+        )
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
         if not self._is_ascii:
             _to_character_offsets(document, self._data)
@@ -251,30 +262,30 @@ class _Reader:
         for handler in ("EntityDecl", "ExternalEntityRef", "SkippedEntity"):
             setattr(parser, f"{handler}Handler", None)
 
-    def _character(self, byte_offset: int) -> int:
+    def _character_offset(self, byte_offset: int) -> int:
         return len(self._data[: max(0, byte_offset)].decode("utf-8", "replace"))
 
     # prefixes
 
     def _check_prefixes(self) -> None:
-        """Refuse names whose prefix is not declared in an enclosing element."""
+        """Raise if the prefix of a name is not declared in the element or in an enclosing one."""
         if self._any_prefix:
             return
-        used = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}
+        used_prefixes = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}
         for root in self._top.elements():
-            declared = {"xml", "xmlns", *_declared_prefixes(root)}
-            if used <= declared:
+            declared_prefixes = {"xml", "xmlns", *_declared_prefixes(root)}
+            if used_prefixes <= declared_prefixes:
                 return  # the usual case
-            pending = [(root, declared)]
+            pending = [(root, declared_prefixes)]
             while pending:
-                element, declared = pending.pop()
-                declared = declared.union(_declared_prefixes(element))
+                element, declared_prefixes = pending.pop()
+                declared_prefixes = declared_prefixes.union(_declared_prefixes(element))
                 for name in (element.tag, *element.attributes):
                     prefix, colon, _ = name.partition(":")
-                    if colon and prefix not in declared:
-                        offset = self._source.text.find(name, self._character(element.offset))
+                    if colon and prefix not in declared_prefixes:
+                        offset = self._source.text.find(name, self._character_offset(element.offset))
                         self._refuse_prefix(offset, name)
-                pending.extend((child, declared) for child in reversed(list(element.elements())))
+                pending.extend((child, declared_prefixes) for child in reversed(list(element.elements())))
 
     def _refuse_prefix(self, offset: int, name: str) -> NoReturn:
         from linkwright.xmltree.faults import undeclared_prefix
@@ -288,27 +299,26 @@ class _Reader:
 
     # character data
 
-    def _more_characters(self, data: str, children: list[Node]) -> None:
-        """Handle character data in a CDATA section, or after other character data."""
-        last = children[-1] if children else None
+    def _add_characters(self, data: str, children: list[Node]) -> None:
+        """Add character data inside a CDATA section, or after other character data."""
+        last_child = children[-1] if children else None
         if self._cdata_at is not None:
-            if isinstance(last, Text) and last.cdata and last.offset == self._cdata_at:
-                last.data += data
+            if isinstance(last_child, Text) and last_child.cdata and last_child.offset == self._cdata_at:
+                last_child.data += data
             else:
                 children.append(Text(data, self._source, self._cdata_at, cdata=True))
-        elif isinstance(last, Text) and not last.cdata:
-            last.data += data
+        elif isinstance(last_child, Text) and not last_child.cdata:
+            last_child.data += data
         else:
             children.append(Text(data, self._source, self._text_start(data)))
 
     def _text_start(self, data: str) -> int:
-        # If the source of a text is longer than its parsed form (entities, Windows line endings), the text begins after
-        # the
-        # previous tag.
+        # If the source of a text is longer than its parsed form, because of entities or Windows line endings, the text
+        # begins after the previous tag.
         end = self._parser.CurrentByteIndex
-        raw = data.encode("utf-8", "surrogatepass")
-        if self._data.endswith(raw, 0, end):
-            return end - len(raw)
+        encoded = data.encode("utf-8", "surrogatepass")
+        if self._data.endswith(encoded, 0, end):
+            return end - len(encoded)
         return self._data.rfind(b">", 0, end) + 1
 
     def _start_cdata(self) -> None:
@@ -373,7 +383,7 @@ class _Reader:
     def _external_entity(
         self, context: str | None, _base: str | None, system_id: str | None, _public_id: str | None
     ) -> int:
-        offset = self._character(self._parser.CurrentByteIndex)
+        offset = self._character_offset(self._parser.CurrentByteIndex)
         message = phrase(
             "the entity '&{context};' would read another file ('{system_id}')", context=context, system_id=system_id
         )
@@ -381,7 +391,7 @@ class _Reader:
 
     def _skipped_entity(self, name: str, is_parameter: bool) -> None:
         if not is_parameter:
-            offset = self._character(self._parser.CurrentByteIndex)
+            offset = self._character_offset(self._parser.CurrentByteIndex)
             self._refuse_entity(offset, phrase("the entity '&{name};' is not defined", name=name))
 
 
@@ -389,30 +399,30 @@ def _declared_prefixes(element: Element) -> list[str]:
     return [name[6:] for name in element.attributes if name.startswith("xmlns:")]
 
 
-def _outside(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
+def _comments_and_instructions(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
     return [node for node in nodes if isinstance(node, (Comment, ProcessingInstruction))]
 
 
 def _to_character_offsets(document: Document, data: bytes) -> None:
     """Convert the byte offsets of all nodes to character offsets."""
     ends: list[int] = []
-    extra = [0]  # the surplus of bytes over characters up to the end of each run of non-ASCII characters
+    surplus = [0]  # bytes minus characters, up to the end of each run of non-ASCII characters
     for run in re.finditer(_BEYOND_ASCII, data):
         ends.append(run.end())
-        extra.append(extra[-1] + len(run[0]) - len(run[0].decode("utf-8", "replace")))
+        surplus.append(surplus[-1] + len(run[0]) - len(run[0].decode("utf-8", "replace")))
     nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
     while nodes:
         node = nodes.pop()
-        node.offset -= extra[bisect_right(ends, node.offset)]
+        node.offset -= surplus[bisect_right(ends, node.offset)]
         if isinstance(node, Element):
             nodes.extend(node.children)
 
 
 class Overlay:
-    """The files on disk, with replacement texts for some, such as unsaved ones.
+    """Reads files, some of which have a replacement text, such as the unsaved text in an editor.
 
     Args:
-        texts: the text to use for each file, by path. The file need not exist.
+        texts: the replacement texts by path; the files need not exist.
     """
 
     def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:
@@ -420,16 +430,16 @@ class Overlay:
         self._documents: dict[str, Document] = {}
 
     def text(self, path: str | os.PathLike[str]) -> str | None:
-        """Return the replacement text of a file, or None if the text on disk applies."""
+        """Return the replacement text of a file, or None if the file has no replacement."""
         return self._texts.get(_key(path)) if self._texts else None
 
     def document(self, path: str) -> Document | None:
-        """Return the document of a file's replacement text, or None if the text on disk applies.
+        """Return the document of a file's replacement text, or None if the file has no replacement.
 
         A replacement text is parsed only once.
 
         Raises:
-            LinkwrightError: if the text is not XML; see `linkwright.xmltree.parse`.
+            LinkwrightError: the text is not XML; see `linkwright.xmltree.parse`.
         """
         text = self.text(path)
         if text is None:
@@ -442,15 +452,15 @@ class Overlay:
         """Return the text and the encoding of a file.
 
         Raises:
-            LinkwrightError: XML101 to XML104 or XML106 if the text cannot be read.
+            LinkwrightError: XML101 to XML104 or XML106, the file cannot be read or is not text.
         """
         text = self.text(path)
         return decoded(read_bytes(path), path) if text is None else unsaved(text, path)
 
 
 def _key(path: str | os.PathLike[str]) -> str:
-    """Return a key for a file that does not depend on the symbolic links in its path.
+    """Return the real path of a file, so that all paths to it have the same key.
 
-    Packages are often installed as links.
+    Packages are often installed as symbolic links.
     """
     return os.path.realpath(path)

@@ -1,6 +1,6 @@
-"""The style of formatted XML.
+"""The style in which XML is formatted.
 
-This is a module of its own because the settings contain a style, and every check reads them.
+This is a separate module, so that the settings, which every check reads, do not import the formatter.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 
 
 class Style(NamedTuple):
-    """The style of formatted XML.
+    """The indentation and line width of formatted XML.
 
     Attributes:
         indent: the number of spaces for each level.
-        width: the maximum length of a line that can be broken, in characters.
+        width: the maximum length of a line in characters, if the line can be broken.
     """
 
     indent: int = 2

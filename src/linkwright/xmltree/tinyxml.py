@@ -1,15 +1,14 @@
-"""XML parsing as in TinyXML2, the lenient parser of urdfdom and the simulators.
+"""Parses XML as leniently as TinyXML2, the parser of urdfdom and the simulators.
 
 TinyXML2 does not support namespaces, and ends a comment only at ``-->``. It skips text before the root element and
 elements after the root, and stops at a closing tag without an open element. It also accepts an ``&`` that does not
 begin an entity, a ``<`` in a value, attributes without a blank between them, control characters, and a second XML
 declaration directly after the first. Such files work for their users, so they are accepted with a warning.
 
-Characters that TinyXML2 accepts and expat refuses are replaced by the same number of other characters.
-
-The arguments of a repair are a text and the offset of the text's first mistake. It returns the text with all mistakes
-of its kind replaced, or the unchanged text if the mistake is of another kind. `restore_characters` then
-restores the original characters in the tree.
+expat refuses some characters that TinyXML2 accepts. Before parsing, a repair replaces them with the same number of
+other characters. The arguments of a repair are a text and the offset of its first mistake. A repair returns the text
+with all mistakes of its kind replaced, or the unchanged text if the first mistake is of another kind. After parsing,
+`restore_characters` restores the original characters in the tree.
 """
 
 from __future__ import annotations
@@ -25,71 +24,75 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 from linkwright.xmltree.reader import parse
 
-_PRIVATE = 0xE000
-"""Where the characters begin that Unicode leaves to programs: XML allows them, and hardly a file has them."""
-_CONTROLS = frozenset({*map(chr, range(1, 0x20))} - {*"\t\n\r"})
-"""Without zero, which ends the text for TinyXML2."""
-_BLANKS = "\v\f"
-"""Control characters that are blanks for C, and for TinyXML2."""
-_STAND_INS = {character: chr(_PRIVATE + ord(character)) for character in ("&", "<", *_CONTROLS)}
-_WRITTEN = str.maketrans({there: character for character, there in _STAND_INS.items()})
-_ANY = lazy_pattern(f"[{''.join(_STAND_INS.values())}]")
+_PRIVATE_USE_START = 0xE000
+"""The start of Unicode's private use area: XML allows these characters, but files rarely contain them."""
+_CONTROL_CHARACTERS = frozenset({*map(chr, range(1, 0x20))} - {*"\t\n\r"})
+"""The control characters that XML forbids, without NUL, which ends the text for TinyXML2."""
+_CONTROL_BLANKS = "\v\f"
+"""Control characters that C and TinyXML2 treat as whitespace."""
+_SUBSTITUTES = {character: chr(_PRIVATE_USE_START + ord(character)) for character in ("&", "<", *_CONTROL_CHARACTERS)}
+_ORIGINALS = str.maketrans({there: character for character, there in _SUBSTITUTES.items()})
+_ANY_SUBSTITUTE = lazy_pattern(f"[{''.join(_SUBSTITUTES.values())}]")
 _BETWEEN_TAGS = lazy_pattern(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
-_TAG = lazy_pattern(r"""<[^\W\d][^\s=/>"'<]*""")
-_ATTRIBUTE = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re.ASCII)
+_TAG_START = lazy_pattern(r"""<[^\W\d][^\s=/>"'<]*""")
+_ATTRIBUTE_PATTERN = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re.ASCII)
 
 
 def stand_in(character: str) -> str:
-    """Return the substitute for a character, which `restore_characters` converts back.
+    """Return the substitute for ``&``, ``<`` or a control character.
 
-    The character is ``&``, ``<`` or a control character.
+    `restore_characters` converts it back.
     """
-    return _STAND_INS[character]
+    return _SUBSTITUTES[character]
 
 
 def can_stand_in(text: str) -> bool:
-    """Return whether a text has no substitute characters, so that they are unambiguous."""
-    return _ANY.search(text) is None
+    """Return whether substitutes can be used in a text, because it does not contain any of them yet."""
+    return _ANY_SUBSTITUTE.search(text) is None
 
 
 def blank_outside_tags(text: str) -> str:
     """Return a text of the same length in which comments and CDATA sections are blank."""
-    return _BETWEEN_TAGS.sub(lambda found: " " * len(found[0]), text)
+    return _BETWEEN_TAGS.sub(lambda section: " " * len(section[0]), text)
 
 
-def _control_characters(text: str, at: int) -> str:
-    if text[at : at + 1] not in _CONTROLS:
+def _replace_control_characters(text: str, at: int) -> str:
+    if text[at : at + 1] not in _CONTROL_CHARACTERS:
         return text
     return "".join(
-        " " if character in _BLANKS else _STAND_INS[character] if character in _CONTROLS else character
+        " "
+        if character in _CONTROL_BLANKS
+        else _SUBSTITUTES[character]
+        if character in _CONTROL_CHARACTERS
+        else character
         for character in text
     )
 
 
-def _less_than_in_values(text: str, at: int) -> str:
+def _replace_less_than(text: str, at: int) -> str:
     if text[at : at + 1] != "<":
         return text
     for value in _values(text):
-        written = text[value.start : value.end]
-        text = text[: value.start] + written.replace("<", _STAND_INS["<"]) + text[value.end :]
+        value_text = text[value.start : value.end]
+        text = text[: value.start] + value_text.replace("<", _SUBSTITUTES["<"]) + text[value.end :]
     return text
 
 
-def _missing_blanks(text: str, at: int) -> str:
-    """Return the text with a blank between attributes that lack one.
+def _insert_blanks(text: str, at: int) -> str:
+    """Return the text with a blank inserted between adjacent attributes.
 
-    Each closing quote replaces the last character of its value, so that positions stay valid.
+    To keep positions valid, the closing quote overwrites the last character of the value.
     """
     if text[at - 1 : at] not in ("'", '"'):
         return text
     for value in _values_without_blank_after(text):
         if value.start == value.end or text[value.end - 1] == ";":
-            return text  # the value is empty, or its last character ends an entity
+            return text  # An empty value, or one that ends with an entity, has no character to overwrite.
         text = text[: value.end - 1] + text[value.end] + " " + text[value.end + 1 :]
     return text
 
 
-REPAIRS = (_control_characters, _less_than_in_values, _missing_blanks)
+REPAIRS = (_replace_control_characters, _replace_less_than, _insert_blanks)
 
 
 def restore_characters(document: Document, text: str) -> None:
@@ -97,25 +100,28 @@ def restore_characters(document: Document, text: str) -> None:
 
     `text` is the text before the repairs.
     """
-    shortened: dict[int, list[_Value]] = {}
+    shortened_values: dict[int, list[_Value]] = {}
     for value in _values_without_blank_after(text):
-        shortened.setdefault(value.tag, []).append(value)
+        shortened_values.setdefault(value.tag, []).append(value)
     nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
     while nodes:
         node = nodes.pop()
         if isinstance(node, Element):
-            node.attributes = {name: value.translate(_WRITTEN) for name, value in node.attributes.items()}
-            for value in shortened.get(node.offset, ()):
+            node.attributes = {name: value.translate(_ORIGINALS) for name, value in node.attributes.items()}
+            for value in shortened_values.get(node.offset, ()):
                 node.attributes[value.name] += text[value.end - 1]
             nodes.extend(node.children)
         elif isinstance(node, Comment):
             node.data = text[node.offset + 4 : text.index("-->", node.offset + 4)]
         elif isinstance(node, Text):
-            node.data = node.data.translate(_WRITTEN)
+            node.data = node.data.translate(_ORIGINALS)
 
 
 class _Value(NamedTuple):
-    """The value of an attribute: offset of the tag, name, and range without the quotes."""
+    """The location of an attribute's value.
+
+    `tag` is the offset of the tag. `start` and `end` are the range of the value without its quotes.
+    """
 
     tag: int
     name: str
@@ -124,66 +130,69 @@ class _Value(NamedTuple):
 
 
 def _values(text: str) -> Iterator[_Value]:
-    return (value for value, _ in _with_blanks_before(text))
+    return (value for value, _ in _values_and_blanks(text))
 
 
 def _values_without_blank_after(text: str) -> Iterator[_Value]:
-    """Yield the values that another attribute follows without a blank."""
-    last: _Value | None = None
-    for value, blanks in _with_blanks_before(text):
-        if last is not None and last.tag == value.tag and not blanks:
-            yield last
-        last = value
+    """Yield each value that is followed by another attribute without a blank between them."""
+    previous_value: _Value | None = None
+    for value, blanks in _values_and_blanks(text):
+        if previous_value is not None and previous_value.tag == value.tag and not blanks:
+            yield previous_value
+        previous_value = value
 
 
-def _with_blanks_before(text: str) -> Iterator[tuple[_Value, str]]:
+def _values_and_blanks(text: str) -> Iterator[tuple[_Value, str]]:
     markup = blank_outside_tags(text)
-    at = 0
-    while tag := _TAG.search(markup, at):
-        at = tag.end()
-        while found := _ATTRIBUTE.match(markup, at):
-            at = found.end()
-            yield _Value(tag.start(), found[2], found.start(3) + 1, found.end(3) - 1), found[1]
+    position = 0
+    while tag := _TAG_START.search(markup, position):
+        position = tag.end()
+        while attribute_match := _ATTRIBUTE_PATTERN.match(markup, position):
+            position = attribute_match.end()
+            yield (
+                _Value(tag.start(), attribute_match[2], attribute_match.start(3) + 1, attribute_match.end(3) - 1),
+                attribute_match[1],
+            )
 
 
-_UNDECLARED, _AFTER_ROOT, _NOT_XML = "XML205", "XML207", "XML206"
+_UNDECLARED_PREFIX_CODE, _AFTER_ROOT_CODE, _NOT_XML_CODE = "XML205", "XML207", "XML206"
 _OUTSIDE_TAGS = lazy_pattern(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 COMMENT = "<!--[^-]*(?:-(?!->)[^-]*)*-->"
-"""The pattern of one comment; with ``.*?`` one of several may also end at a later one, in exponentially many ways."""
+"""Matches one comment; ``.*?`` could extend over several comments, which takes exponential time to backtrack."""
 _BEFORE_ROOT = lazy_pattern(rf"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|{COMMENT})*([^<\s][^<]*)(?=<(?!\?xml\s))")
-"""Text before the root element; a declaration that follows it is one mistake too many for TinyXML2, too."""
+"""Finds text before the root element, but not before a declaration, because TinyXML2 rejects that too."""
 _SECOND_DECLARATION = lazy_pattern(r"\s*<\?xml\s[^>]*\?>\s*(?=(<\?xml\s[^>]*\?>))")
 _BARE_AMPERSAND = lazy_pattern(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
-_DEFINITION = "<!ENTITY"
+_ENTITY_DEFINITION = "<!ENTITY"
 
 
 def parse_as_tinyxml(
     text: str, name: str, readers: Phrase, *, read_as: str | None = None
 ) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Return the document of a text as TinyXML2 parses it, and the warnings.
+    """Parse a text as TinyXML2 does, and return the document and the warnings.
 
     There is one warning for each kind of mistake that XML forbids (XML205 to XML207).
 
     Args:
-        text: the text.
+        text: the text to parse.
         name: the name of the file in messages.
-        readers: a phrase about the programs that accept the file nevertheless, and those that do not.
-        read_as: a text to parse instead, with the same positions.
+        readers: a note for the warnings: which programs accept such a file, and which do not.
+        read_as: a text of the same length to parse instead; None for `text`.
 
     Raises:
-        LinkwrightError: if TinyXML2 does not accept the text either (XML###).
+        LinkwrightError: TinyXML2 does not accept the text either (XML###).
     """
     warnings: list[Diagnostic] = []
     source = SourceText(name, text)
     read_as = text if read_as is None else read_as
-    for forgive in (_text_before_root, _second_declaration, _dashes, _ampersands):
-        read_as, mistake = forgive(source, read_as)
+    for tolerate in (_tolerate_text_before_root, _tolerate_second_declaration, _tolerate_dashes, _tolerate_ampersands):
+        read_as, mistake = tolerate(source, read_as)
         if mistake:
             warnings.append(forbidden(mistake.message, mistake.span, source, mistake.hint, readers))
-    document, more = _parsed(source, read_as, readers)
-    if warnings or more:
+    document, parser_warnings = _parse_leniently(source, read_as, readers)
+    if warnings or parser_warnings:
         restore_characters(document, text)
-    return document, (*warnings, *more)
+    return document, (*warnings, *parser_warnings)
 
 
 class _Mistake(NamedTuple):
@@ -192,60 +201,62 @@ class _Mistake(NamedTuple):
     hint: Phrase
 
 
-def _text_before_root(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
-    before = _BEFORE_ROOT.match(source.text)
-    if before is None:
+def _tolerate_text_before_root(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
+    text_match = _BEFORE_ROOT.match(source.text)
+    if text_match is None:
         return read_as, None
-    place = source.span(before.start(1), before.start(1) + len(before[1].rstrip()))
-    advice = phrase("an XML file may have only comments before its root element")
-    return _without(read_as, before), _Mistake(phrase("there is text before the root element"), place, advice)
+    span = source.span(text_match.start(1), text_match.start(1) + len(text_match[1].rstrip()))
+    hint = phrase("an XML file may have only comments before its root element")
+    return _with_blank_group(read_as, text_match), _Mistake(phrase("there is text before the root element"), span, hint)
 
 
-def _second_declaration(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
-    second = _SECOND_DECLARATION.match(source.text)
-    if second is None:
+def _tolerate_second_declaration(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
+    declaration = _SECOND_DECLARATION.match(source.text)
+    if declaration is None:
         return read_as, None
-    place = source.span(second.start(1), second.start(1) + len("<?xml"))
+    span = source.span(declaration.start(1), declaration.start(1) + len("<?xml"))
     message = phrase("a second XML declaration follows the first")
-    return _without(read_as, second), _Mistake(message, place, phrase("remove it"))
+    return _with_blank_group(read_as, declaration), _Mistake(message, span, phrase("remove it"))
 
 
-def _dashes(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
+def _tolerate_dashes(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     text = source.text
-    dashed = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
-    if not dashed:
+    comments_with_dashes = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
+    if not comments_with_dashes:
         return read_as, None
-    for found in dashed:
+    for found in comments_with_dashes:
         read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
-    at = text.index("--", dashed[0].start(1))
+    dash_offset = text.index("--", comments_with_dashes[0].start(1))
     message = phrase("'--' is not allowed inside a comment")
-    return read_as, _Mistake(message, source.span(at, at + 2), phrase("use other characters, such as '=='"))
-
-
-def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
-    text = source.text
-    if not can_stand_in(text) or _DEFINITION in text:
-        return read_as, None
-    bare = [match.start() for match in _BARE_AMPERSAND.finditer(blank_outside_tags(text))]
-    if not bare:
-        return read_as, None
-    for at in bare:
-        read_as = read_as[:at] + stand_in("&") + read_as[at + 1 :]
-    place = source.span(bare[0], bare[0] + 1)
     return read_as, _Mistake(
-        phrase("'&' does not begin an entity"), place, phrase("write '&amp;' for the character '&'")
+        message, source.span(dash_offset, dash_offset + 2), phrase("use other characters, such as '=='")
     )
 
 
-def _without(text: str, match: re.Match[str]) -> str:
-    """Return a text of the same length in which the first group of a match is blank."""
+def _tolerate_ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
+    text = source.text
+    if not can_stand_in(text) or _ENTITY_DEFINITION in text:
+        return read_as, None
+    ampersand_offsets = [match.start() for match in _BARE_AMPERSAND.finditer(blank_outside_tags(text))]
+    if not ampersand_offsets:
+        return read_as, None
+    for offset in ampersand_offsets:
+        read_as = read_as[:offset] + stand_in("&") + read_as[offset + 1 :]
+    span = source.span(ampersand_offsets[0], ampersand_offsets[0] + 1)
+    return read_as, _Mistake(
+        phrase("'&' does not begin an entity"), span, phrase("write '&amp;' for the character '&'")
+    )
+
+
+def _with_blank_group(text: str, match: re.Match[str]) -> str:
+    """Return the text with the first group of a match replaced by blanks."""
     return text[: match.start(1)] + blank_out(match[1]) + text[match.end(1) :]
 
 
 def blank_out(text: str) -> str:
-    """Return a text with all characters except blanks and line endings replaced by blanks.
+    """Return a text with all characters replaced by blanks, except whitespace and line endings.
 
-    Positions in the rest of a file therefore stay valid.
+    Positions in the rest of a file stay valid.
     """
     return re.sub(r"\S", " ", text)
 
@@ -255,12 +266,12 @@ def forbidden(message: Phrase, span: Span, source: SourceText, hint: Phrase, rea
     return Diagnostic("XML206", message, span, Severity.WARNING, (Note(readers),), hint, source)
 
 
-def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document, tuple[Diagnostic, ...]]:
+def _parse_leniently(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document, tuple[Diagnostic, ...]]:
     try:
         return parse(source.text, source.name, blanks=False, read_as=read_as), ()
     except LinkwrightError as error:
         first = error.diagnostics[0]
-        if first.code == _UNDECLARED:
+        if first.code == _UNDECLARED_PREFIX_CODE:
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
             return document, (first.with_changes(severity=Severity.WARNING),)
         end = _end_of_root(first, read_as)
@@ -272,12 +283,14 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
                 _repair_text(source, error, read_as),
             )
         try:
-            document, more = _parsed(source, read_as, readers)
+            document, later_warnings = _parse_leniently(source, read_as, readers)
         except LinkwrightError:
             raise error from None
-        if warning.code == _AFTER_ROOT and any(diagnostic.code == _AFTER_ROOT for diagnostic in more):
-            return document, more
-        return document, (warning, *more)
+        if warning.code == _AFTER_ROOT_CODE and any(
+            diagnostic.code == _AFTER_ROOT_CODE for diagnostic in later_warnings
+        ):
+            return document, later_warnings
+        return document, (warning, *later_warnings)
 
 
 def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
@@ -287,10 +300,10 @@ def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
         LinkwrightError: `error`, if no repair applies.
     """
     diagnostic = error.diagnostics[0]
-    if diagnostic.code == _NOT_XML and diagnostic.span is not None and can_stand_in(source.text):
-        at = source.offset(diagnostic.span.line, diagnostic.span.column)
+    if diagnostic.code == _NOT_XML_CODE and diagnostic.span is not None and can_stand_in(source.text):
+        offset = source.offset(diagnostic.span.line, diagnostic.span.column)
         for repair in REPAIRS:
-            repaired = repair(text, at)
+            repaired = repair(text, offset)
             if repaired != text:
                 return repaired
     raise error
@@ -299,22 +312,28 @@ def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
 def _ignored_content_warning(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
     """Return the warning about content after the root."""
     message = phrase("there is content after the end of the root element")
-    hint = phrase("a file has one root element")
-    return Diagnostic(_AFTER_ROOT, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source)
+    hint = phrase("an XML file has exactly one root element")
+    return Diagnostic(
+        _AFTER_ROOT_CODE, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source
+    )
 
 
 def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
-    """Return the offset at which the content after the root may begin, or None for other errors."""
+    """Return the offset at which ignored content after the root may begin, or None for any other error."""
     if diagnostic.span is None or diagnostic.source is None:
         return None
-    at = diagnostic.source.offset(diagnostic.span.line, diagnostic.span.column)
-    return at if diagnostic.code == _AFTER_ROOT or (diagnostic.code == _NOT_XML and text.startswith("</", at)) else None
+    offset = diagnostic.source.offset(diagnostic.span.line, diagnostic.span.column)
+    return (
+        offset
+        if diagnostic.code == _AFTER_ROOT_CODE or (diagnostic.code == _NOT_XML_CODE and text.startswith("</", offset))
+        else None
+    )
 
 
-def _is_ignored_content(rest: str) -> bool:
+def _is_ignored_content(content: str) -> bool:
     """Return whether TinyXML2 ignores the content after the root.
 
-    This is so if the elements are well-formed up to an unmatched closing tag or the end.
+    It does if the elements are well-formed up to the end or to a closing tag without a start tag.
     """
     parser = ParserCreate()
     depth = 0
@@ -329,12 +348,12 @@ def _is_ignored_content(rest: str) -> bool:
 
     parser.StartElementHandler, parser.EndElementHandler = opened, closed
     try:
-        parser.Parse(f"<rest>{rest}</rest>", True)
+        parser.Parse(f"<rest>{content}</rest>", True)
     except ExpatError as error:
         return depth == 1 and error.code == codes[XML_ERROR_TAG_MISMATCH]
     return True
 
 
 def _has_dashes(comment: str | None) -> bool:
-    """Return whether a comment has dashes that XML forbids; False for None (no comment)."""
+    """Return whether a comment has dashes that XML forbids; False if `comment` is None."""
     return comment is not None and ("--" in comment or comment.endswith("-"))

@@ -1,8 +1,8 @@
-"""The tokens of a text that need not be XML: every character belongs to one token.
+"""Splits any text into XML tokens; every character belongs to one token.
 
-Editors request the tokens of incomplete texts, and a formatter must preserve text that a tree leaves out. Therefore,
-every text can be split into tokens. An incomplete tag ends before the next ``<``. An attribute without its closing
-quote ends with its line or tag.
+Editors request the tokens of incomplete XML, and a formatter must preserve text that a tree leaves out. Therefore, the
+text need not be well-formed. An incomplete tag ends before the next ``<``. An attribute without its closing quote ends
+with its line or tag.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from enum import Enum
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
 
-_MARKUP = lazy_pattern(
+_MARKUP_PATTERN = lazy_pattern(
     r"""
     (?P<comment><!--.*?(?:-->|\Z))
     | (?P<cdata><!\[CDATA\[.*?(?:\]\]>|\Z))
@@ -26,14 +26,14 @@ _MARKUP = lazy_pattern(
     """,
     re.DOTALL | re.VERBOSE,
 )
-_NAME = lazy_pattern(r"</?\s*([^\s/>=\"'<]*)")
-_ATTRIBUTE = lazy_pattern(
+_TAG_NAME = lazy_pattern(r"</?\s*([^\s/>=\"'<]*)")
+_ATTRIBUTE_PATTERN = lazy_pattern(
     r"""([^\s=/>"'<]+)            # the name
         (?:(\s*=\s*)              # the equals sign
         (?:(["'])([^"'<]*?)\3 | (["'])([^<]*?)\5 | ["']([^<>\n]*?)(?=\s*/?>|\n|<|\Z) | ([^\s"'<>/]*)))?""",
     re.VERBOSE,
 )
-_ENDS = {"comment": "-->", "cdata": "]]>", "instruction": "?>"}
+_TERMINATORS = {"comment": "-->", "cdata": "]]>", "instruction": "?>"}
 
 
 class Kind(Enum):
@@ -54,11 +54,11 @@ class TokenAttribute(NamedTuple):
     Attributes:
         name: the name as written.
         start: the offset of the name.
-        value: the value as written, with unresolved entities, or None if there is no ``=``.
-        value_start: the offset of the value or, if there is none, the offset where a value can be inserted.
+        value: the value as written, with entities not resolved; None if the attribute has no ``=``.
+        value_start: the offset of the value; without a value, the offset at which a value can be inserted.
         value_end: the offset after the value.
-        quote: the quote around the value; empty if there is none.
-        end: the offset after the closing quote.
+        quote: the quotation mark around the value; empty if the value is not quoted.
+        end: the offset after the attribute, including the closing quote.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Token(NamedTuple):
         kind: the kind of the token.
         text: the characters of the token, as written.
         start: the character offset of the token.
-        is_closed: whether the end of the token is written, such as the ``>`` of a tag; always True for texts.
+        is_closed: whether the token has its end, such as the ``>`` of a tag.
     """
 
     kind: Kind
@@ -92,62 +92,66 @@ class Token(NamedTuple):
 
     @property
     def is_whole(self) -> bool:
-        """Whether the token is a whole element, ``<a/>``."""
+        """Whether the token is an empty element, such as ``<a/>``."""
         return self.kind is Kind.START and self.text.endswith("/>")
 
     @property
     def name(self) -> str:
-        """The name of a tag as written; empty if it is not yet typed, and for other tokens."""
-        found = _NAME.match(self.text) if self.kind in (Kind.START, Kind.END) else None
-        return "" if found is None else str(found[1])
+        """The name of a tag as written; empty for a tag without a name and for other tokens."""
+        name_match = _TAG_NAME.match(self.text) if self.kind in (Kind.START, Kind.END) else None
+        return "" if name_match is None else str(name_match[1])
 
     @property
     def name_start(self) -> int:
-        """The character offset of a tag's name."""
-        found = _NAME.match(self.text)
-        return self.start if found is None else self.start + found.start(1)
+        """The character offset of a tag's name in the text."""
+        name_match = _TAG_NAME.match(self.text)
+        return self.start if name_match is None else self.start + name_match.start(1)
 
     def attributes(self) -> list[TokenAttribute]:
-        """Return the attributes of a start tag in source order; empty for other tokens."""
+        """Return the attributes of a start tag in source order, or an empty list for other tokens."""
         if self.kind is not Kind.START:
             return []
         return [*_attributes(self)]
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a text, which need not be XML.
+    """Yield the tokens of a text, which need not be well-formed XML.
 
-    The joined texts of the tokens are the whole text.
+    The texts of the tokens, joined in order, are equal to the text.
     """
-    at = 0
-    while at < len(text):
-        opening = text.find("<", at)
-        if opening < 0:
-            opening = len(text)
-        if opening > at:
-            yield Token(Kind.TEXT, text[at:opening], at, True)
-        at = opening
-        if at == len(text):
+    position = 0
+    while position < len(text):
+        markup_start = text.find("<", position)
+        if markup_start < 0:
+            markup_start = len(text)
+        if markup_start > position:
+            yield Token(Kind.TEXT, text[position:markup_start], position, True)
+        position = markup_start
+        if position == len(text):
             return
-        found = _MARKUP.match(text, at)
-        assert found is not None  # a start tag always matches, even if it is only a ``<``
-        name = str(found.lastgroup)
-        yield Token(Kind(name), found[0], at, found[0].endswith(_ENDS.get(name, ">")))
-        at = found.end()
+        markup_match = _MARKUP_PATTERN.match(text, position)
+        assert markup_match is not None  # a start tag always matches, even if it is only a ``<``
+        name = str(markup_match.lastgroup)
+        yield Token(Kind(name), markup_match[0], position, markup_match[0].endswith(_TERMINATORS.get(name, ">")))
+        position = markup_match.end()
 
 
 def _attributes(tag: Token) -> Iterator[TokenAttribute]:
-    at = tag.name_start - tag.start + len(tag.name)
-    for found in _ATTRIBUTE.finditer(tag.text, at):
-        name, equals = found[1], found[2]
-        start = tag.start + found.start(1)
+    position = tag.name_start - tag.start + len(tag.name)
+    for attribute_match in _ATTRIBUTE_PATTERN.finditer(tag.text, position):
+        name, equals = attribute_match[1], attribute_match[2]
+        start = tag.start + attribute_match.start(1)
         if equals is None:
-            end = tag.start + found.end(1)
+            end = tag.start + attribute_match.end(1)
             yield TokenAttribute(name, start, None, end, end, "", end)
             continue
-        group = next((number for number in (4, 6, 7, 8) if found[number] is not None), 8)
-        value = found[group] or ""
-        value_start = tag.start + found.start(group)
-        quote = found[3] or found[5] or (tag.text[found.start(group) - 1] if group == 7 else "")
-        end = tag.start + found.end()
+        value_group = next((number for number in (4, 6, 7, 8) if attribute_match[number] is not None), 8)
+        value = attribute_match[value_group] or ""
+        value_start = tag.start + attribute_match.start(value_group)
+        quote = (
+            attribute_match[3]
+            or attribute_match[5]
+            or (tag.text[attribute_match.start(value_group) - 1] if value_group == 7 else "")
+        )
+        end = tag.start + attribute_match.end()
         yield TokenAttribute(name, start, value, value_start, value_start + len(value), quote, end)

@@ -165,7 +165,7 @@ async def test_a_command_that_is_no_number_stops_the_robot(wheels, value):
     command(wheels, 1.0, value, at=2)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
-    assert warnings(wheels) == ["a command that is not a finite number is rejected: the drive stops"]
+    assert warnings(wheels) == ["a velocity command that is not a finite number is rejected, and the drive stops"]
 
 
 async def test_commands_of_humble_may_have_no_header(wheels):
@@ -226,7 +226,7 @@ async def test_the_limits_of_jazzy_have_two_directions(wheels):
 async def test_another_controller_may_command_it(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     assert [reference.name for reference in controller.references] == ["base/linear/velocity", "base/angular/velocity"]
-    controller.chained = True
+    controller.is_chained = True
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
     controller.references[0].value, controller.references[1].value = 1.0, 0.5
@@ -243,7 +243,7 @@ async def test_it_stops_when_it_is_deactivated(wheels):
     command(wheels, 1.0)
     await wheels.graph.settle()
     wheels.exchange.run_commands()
-    assert warnings(wheels) == ["Can't accept new commands. subscriber is inactive"]
+    assert warnings(wheels) == ["a velocity command is ignored because the controller is not active"]
     controller.on_activate()
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
@@ -295,21 +295,24 @@ async def test_others_may_say_where_the_robot_is(wheels):
 @pytest.mark.parametrize(
     ("parameters", "words"),
     [
-        ({"left_wheel_names": [], "right_wheel_names": []}, "Wheel names parameters are empty!"),
+        (
+            {"left_wheel_names": [], "right_wheel_names": []},
+            "the parameters left_wheel_names and right_wheel_names must not be empty",
+        ),
         (
             {"left_wheel_names": ["left", "other"]},
             "The number of left wheels [2] and the number of right wheels [1] are different",
         ),
         ({"wheel_radius": 0.0}, "Parameter 'wheel_radius' with the value 0 must be above 0"),
         ({"wheel_separation": -1.0}, "Parameter 'wheel_separation' with the value -1 must be above 0"),
-        ({"pose_covariance_diagonal": [1.0]}, "'pose_covariance_diagonal' needs 6 numbers, but has 1"),
+        ({"pose_covariance_diagonal": [1.0]}, "'pose_covariance_diagonal' must have 6 numbers, but it has 1"),
         (
             {"linear": {"x": {"has_velocity_limits": True}}},
             "Error configuring linear.x speed limiter: Cannot apply velocity limits if max_velocity is not specified",
         ),
         (
             {"angular": {"z": {"max_velocity": 1.0, "min_velocity": 2.0}}},
-            "the minimum velocity of 'angular.z', 2, is above the maximum, 1",
+            "the minimum velocity of 'angular.z' (2) is greater than the maximum (1)",
         ),
     ],
 )

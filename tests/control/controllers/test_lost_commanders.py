@@ -72,7 +72,7 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock
         await clock.advance(0.1)
     await stand.step(controller)
     (logged,) = [each.text for each in stand.log if each.level >= LogLevel.WARN]
-    assert logged.startswith("two nodes drive the robot: '/keys', '/planner' send commands on '/base/cmd_vel'")
+    assert logged.startswith("several nodes drive the robot: '/keys', '/planner' send commands on '/base/cmd_vel'")
 
 
 async def test_nothing_is_said_of_a_command_that_has_ended(stand):

@@ -99,7 +99,7 @@ async def test_another_controller_may_command_it_and_its_state_is_published(whee
         "base/angular/z/velocity",
     ]
     heard = wheels.heard("control_msgs/msg/MecanumDriveControllerState", f"/{NAME}/controller_state")
-    controller.chained = True
+    controller.is_chained = True
     for reference, value in zip(controller.references, (0.0, 1.0, 0.0), strict=True):
         reference.value = value
     await roll(wheels, controller)

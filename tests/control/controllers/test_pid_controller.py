@@ -80,7 +80,7 @@ async def test_another_controller_may_command_the_references(stand):
         "controller/wheel/position",
         "controller/wheel/velocity",
     ]
-    controller.chained = True
+    controller.is_chained = True
     controller.references[0].value = 0.5
     ask(stand, 9.0)
     await stand.step(controller)

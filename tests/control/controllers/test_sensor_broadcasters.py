@@ -139,7 +139,7 @@ async def test_either_the_sensor_or_its_interfaces_are_named(stand, kind, name):
         (
             ImuBroadcaster,
             {"sensor_name": "imu", "frame_id": "base", "static_covariance_orientation": [1.0]},
-            "Parameter 'static_covariance_orientation' has 1 numbers and must have 9",
+            "parameter 'static_covariance_orientation' must have 9 numbers, but it has 1",
         ),
     ],
 )
@@ -153,4 +153,4 @@ def test_the_admittance_controller_is_left_out_with_a_word():
         controller_class("admittance_controller/AdmittanceController")
     (found,) = raised.value.diagnostics
     assert found.code == "CTL103"
-    assert "does not have this controller" in str(found.hint)
+    assert "does not support admittance control" in str(found.hint)

@@ -175,7 +175,7 @@ async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(st
 async def test_another_controller_may_command_it(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     assert [reference.name for reference in controller.references] == ["car/linear/velocity", "car/angular/velocity"]
-    controller.chained = True
+    controller.is_chained = True
     controller.references[0].value, controller.references[1].value = 1.0, 0.0
     await stand.step(controller)
     assert commanded(stand, "wheel") == [10.0]

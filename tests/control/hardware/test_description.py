@@ -52,8 +52,8 @@ def test_mistakes_are_told_and_left_out():
     (hardware,), findings = described(text)
     assert [joint.name for joint in hardware.joints] == ["hip", "knee"]
     assert findings == [
-        "CTL113 <ros2_control> has joint 'kne', which the robot does not have",
-        "CTL114 Mimicked joint 'hipp' not found",
+        "CTL113 <ros2_control> names the joint 'kne', which the robot does not have",
+        "CTL114 the mimicked joint 'hipp' is not in this <ros2_control>",
         "CTL111 <ros2_control> has no name, or its type 'sytem' is not valid",
         "CTL112 <ros2_control> 'c' does not name a hardware plugin",
     ]

@@ -68,7 +68,7 @@ async def test_a_drive_commands_pid_controllers_in_chained_mode(graph):
     assert base.wheels() == pytest.approx([9.0, 11.0])
     place, turn = base.odometry[-1].pose.pose.position, 0.5 * 3.0
     assert (place.x, place.y) == pytest.approx((2.0 * sin(turn), 2.0 * (1.0 - cos(turn))), abs=0.05)
-    assert base.manager.controllers["pid_left"].controller.chained
+    assert base.manager.controllers["pid_left"].controller.is_chained
 
 
 async def test_a_drive_whose_wheel_tells_no_number_is_deactivated_and_stands(graph, log):

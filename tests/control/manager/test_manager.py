@@ -169,12 +169,12 @@ async def test_a_chain(made):
     it.cycle(1, 0.01)
     assert value(it, "hip/velocity") == 0.5
     assert it.switch(["high"], [], STRICT)[0]
-    assert it.controllers["low"].controller.chained
+    assert it.controllers["low"].controller.is_chained
     it.cycle(2, 0.01)
     assert value(it, "hip/velocity") == 2.0
     assert not it.switch([], ["low"], STRICT)[0]
     assert it.switch([], ["high"], STRICT)[0]
-    assert not it.controllers["low"].controller.chained
+    assert not it.controllers["low"].controller.is_chained
     it.cycle(3, 0.01)
     assert value(it, "hip/velocity") == 0.5
 
@@ -183,7 +183,7 @@ async def test_a_chain_is_activated_together_or_by_itself(made):
     it = made()
     started(it, "low", "high")
     assert it.switch(["high", "low"], [], STRICT)[0]
-    assert it.controllers["low"].controller.chained
+    assert it.controllers["low"].controller.is_chained
     assert it.switch([], ["high", "low"], STRICT)[0]
     assert it.switch(["high"], [], AUTO)[0]
     assert all(controller.controller.state is ACTIVE for controller in it.controllers.values())
@@ -279,7 +279,7 @@ async def test_initial_states_of_hardware(graph, logged):
 async def test_hardware_of_others_is_stood_in_for(graph, logged):
     it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert it.resources.components["arm"].state is ACTIVE
-    assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver'; mock_components")
+    assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver', so mock_components")
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
@@ -294,6 +294,6 @@ async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, 
     logged = [each for each in logged("INFO") if "is_async" in each]
     assert (
         logged[0]
-        == "hardware 'arm' requests is_async, which is not supported: it is read and written in the control loop"
+        == "hardware 'arm' requests is_async, which is not supported, so it is read and written in the control loop"
     )
     assert len(logged) == (1 if distribution == "humble" else 2)

@@ -13,7 +13,7 @@ def test_an_arc_is_exact_however_many_steps_it_takes():
     odometer = Odometer(10)
     for _ in range(1000):
         odometer.measure((0.5, 0.0, 0.4), 0.01)
-    assert (odometer.place.x, odometer.place.y, odometer.place.yaw) == pytest.approx(
+    assert (odometer.pose.x, odometer.pose.y, odometer.pose.yaw) == pytest.approx(
         (1.25 * sin(4.0), 1.25 * (1.0 - cos(4.0)), 4.0), abs=1e-9
     )
     assert odometer.velocity == pytest.approx((0.5, 0.0, 0.4))
@@ -33,7 +33,7 @@ def test_what_is_told_is_not_smoothed():
     odometer = Odometer(4)
     odometer.add_commanded((1.0, 0.0, 0.0), 0.5)
     odometer.add_commanded((0.0, 0.0, 0.0), 0.5)
-    assert (odometer.place.x, odometer.velocity) == (0.5, (0.0, 0.0, 0.0))
+    assert (odometer.pose.x, odometer.velocity) == (0.5, (0.0, 0.0, 0.0))
 
 
 def test_it_may_begin_anywhere():
@@ -42,4 +42,4 @@ def test_it_may_begin_anywhere():
     odometer.reset(2.0, 3.0, 0.0)
     assert odometer.velocity == (0.0, 0.0, 0.0)
     odometer.measure((1.0, 0.0, 0.0), 1.0)
-    assert (odometer.place.x, odometer.place.y) == (3.0, 3.0)
+    assert (odometer.pose.x, odometer.pose.y) == (3.0, 3.0)

@@ -80,7 +80,7 @@ def test_a_trajectory_begins_where_the_joints_are_and_ends_at_its_last_point():
         pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0, 2.0])
     )
     assert [sampled(trajectory, time).index for time in (10.0, 11.0, 12.9, 13.0)] == [0, 0, 0, 1]
-    assert [sampled(trajectory, time).ended for time in (12.9, 13.0)] == [False, True]
+    assert [sampled(trajectory, time).has_ended for time in (12.9, 13.0)] == [False, True]
     assert sampled(trajectory, 99.0).point_ns == 13 * SECOND
     assert sampled(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
 
@@ -95,7 +95,7 @@ def test_a_trajectory_with_a_start_in_the_future_goes_to_its_first_point_from_no
     trajectory = Trajectory([point(0.0, [1.0])], start_ns=4 * SECOND)
     trajectory.begin(2 * SECOND, MotionState([0.0]))
     assert sampled(trajectory, 3.0).state.positions == pytest.approx([0.5])
-    assert sampled(trajectory, 4.0).ended
+    assert sampled(trajectory, 4.0).has_ended
 
 
 def test_a_trajectory_with_a_start_in_the_past_goes_on_at_the_segment_that_is_due():
@@ -132,7 +132,7 @@ def test_a_trajectory_goes_through_its_points_without_a_jump(points, begin, know
         assert then is not None
         assert just_before.state.positions == pytest.approx([position], abs=1e-5)
         assert then.state.positions == pytest.approx([position], abs=1e-9)
-    assert sampled(trajectory, float(times[-1])).ended
+    assert sampled(trajectory, float(times[-1])).has_ended
 
 
 def test_without_interpolation_the_next_point_is_sent_at_once():

@@ -124,7 +124,7 @@ async def test_sticky_buttons_stay(joystick, stage, heard, start):
 async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, start, logged):
     node = start(autorepeat_rate=0.0)
     await stage.clock.advance(5.0)
-    assert logged("WARN") == ["there is no joystick /dev/input/js0; waiting for it"]
+    assert logged("WARN") == ["the joystick /dev/input/js0 is not connected; waiting for it"]
     joystick.plug_in()
     joystick.say((BUTTON | INITIAL, 0, 1))
     await stage.clock.advance(1.0)
@@ -151,7 +151,7 @@ async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, sta
 async def test_a_joystick_that_may_not_be_read_is_told_of(tmp_path, stage, start, logged):
     start(JoyLinuxNode, dev=str(tmp_path))  # a folder
     (text,) = logged("WARN")
-    assert text.startswith(f"joystick {tmp_path} cannot be read: ")
+    assert text.startswith(f"the joystick {tmp_path} cannot be read: ")
 
 
 async def test_joy_linux_takes_a_device_by_its_path(tmp_path, stage, heard, start):
@@ -247,7 +247,7 @@ async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, logged
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
     assert [each.linear.x for each in pilot.velocities] == [0.0]
-    assert logged("WARN") == ["no node publishes '/joy' any more: the robot is stopped"]
+    assert logged("WARN") == ["no node publishes '/joy' any more, so the robot is stopped"]
 
 
 async def test_its_end_stops_the_robot(stage):

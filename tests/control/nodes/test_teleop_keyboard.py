@@ -160,7 +160,7 @@ async def test_nobody_listening_is_told_once(start, stage, logged):
     os.write(driver.typing, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
     await stage.clock.advance(3.0)
-    assert logged("WARN") == ["no node subscribes to /cmd_vel; `linkwright doctor` shows more"]
+    assert logged("WARN") == ["no node subscribes to /cmd_vel; run `linkwright doctor` for details"]
 
 
 @pytest.mark.parametrize("end", ["\x03", "closed"])

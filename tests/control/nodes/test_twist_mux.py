@@ -150,7 +150,7 @@ async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between
                 await traffic.stage.clock.advance(0.1)
 
     def logged():
-        return [each.text for each in traffic.stage.log if "two nodes drive the robot" in each.text]
+        return [each.text for each in traffic.stage.log if "several nodes drive the robot" in each.text]
 
     await drive(tablet, joystick)
     assert not logged()
@@ -175,4 +175,4 @@ async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
     await traffic.stage.graph.settle()
     assert [each.linear.x for each in traffic.out] == [0.1, 0.3, 0.0]
     (logged,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
-    assert logged.endswith("a stop is sent to '/cmd_vel_out'")
+    assert logged.endswith("a stop command is sent to '/cmd_vel_out'")

@@ -240,7 +240,7 @@ def test_of_two_texts_that_change_as_much_it_is_not_the_one_that_says_a_side(tmp
     assert "joint 'right_joint'" in refused(tmp_path, SIDES, request).message
     (tmp_path / "robot.urdf.xacro").write_text(SIDES)
     plan = plan_edit(examine(tmp_path / "robot.urdf.xacro"), replace(request, together=True))
-    assert plan.also == ("joint 'right_joint'",)
+    assert plan.side_effects == ("joint 'right_joint'",)
     assert changed_lines(SIDES, *plan.texts.values()) == ['<axis xyz="0 ${reflect - 0.2} 0"/>']
 
 
@@ -248,7 +248,7 @@ def test_all_of_them_are_changed_where_that_is_asked_for(tmp_path: Path) -> None
     path = tmp_path / "robot.urdf.xacro"
     path.write_text(WHEELS)
     plan = plan_edit(examine(path), EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3), together=True))
-    assert plan.also == ("joint 'right_joint'",)
+    assert plan.side_effects == ("joint 'right_joint'",)
     assert changed_lines(WHEELS, *plan.texts.values()) == ['<xacro:property name="lift" value="0.15"/>']
 
 
@@ -256,7 +256,7 @@ def test_a_factor_that_says_which_side_is_meant_stays(tmp_path: Path) -> None:
     text = WHEELS.replace('side="left" y="0.2"', 'side="left" y="1"').replace('y="${{-0.2}}"', 'y="-1"')
     text = text.replace("0.1 ${y}", "0.1 ${y * 0.3}").replace('y="${-0.2}"', 'y="-1"')
     found = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.25, 0.1)))
-    assert any("selects the side" in note.message for note in found.notes)
+    assert any("selects a side" in note.message for note in found.notes)
 
 
 def test_a_property_that_a_plugin_reads_too_is_left_alone(tmp_path: Path) -> None:
@@ -432,4 +432,4 @@ def test_expansions_differ_in_exactly_what_was_edited(data: st.DataObject) -> No
     assert after.robot is not None
     assert facts(after.robot) == facts(with_edit(before.robot, request))
     assert list(unedited(after.document.root)) == list(unedited(before.document.root))
-    assert [each for path, each in plan.before.items() if each == plan.texts[path]] == []
+    assert [each for path, each in plan.old_texts.items() if each == plan.texts[path]] == []

@@ -134,16 +134,16 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
 def test_the_warning_names_the_nodes_and_says_what_to_do(message_type):
     (text,) = warned(Known({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
     assert text == (
-        "two nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot jerks because it "
-        "follows each message in turn. Stop one of them, remap its topic (-r /cmd_vel:=...), or let twist_mux choose "
-        "by priority"
+        "several nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot jerks because "
+        "it follows each message in turn. Stop all but one of them, remap their topics (-r /cmd_vel:=...), or let "
+        "twist_mux choose by priority"
     )
 
 
 def test_two_nodes_of_one_name_are_two_and_two_publishers_of_one_node_are_one():
     assert warned(Known({b"1": "keys", b"2": "keys"})) == []
     (text,) = warned(Known({b"1": "keys", b"2": "keys"}, twice="keys"))
-    assert text.startswith("two nodes drive the robot: '/keys', '/keys' send commands on")
+    assert text.startswith("several nodes drive the robot: '/keys', '/keys' send commands on")
 
 
 def test_nothing_is_said_of_publishers_that_nobody_knows():

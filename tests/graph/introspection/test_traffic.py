@@ -27,7 +27,7 @@ def test_figures_of_a_steady_topic():
     assert traffic is not None
     assert traffic.messages_per_second == pytest.approx(10)
     assert traffic.bytes_per_second == pytest.approx(sum(range(100, 111)))
-    assert (traffic.least_size, traffic.mean_size, traffic.most_size, traffic.count) == (100, 105, 110, 11)
+    assert (traffic.min_size, traffic.mean_size, traffic.max_size, traffic.count) == (100, 105, 110, 11)
     assert traffic.age_ns == SECOND
 
 
@@ -44,7 +44,7 @@ def test_in_silence_both_figures_fall():
 
 
 def test_old_messages_are_forgotten_but_for_the_last_two():
-    window = filled(101, 100 * MS, longest_ns=2 * SECOND)
+    window = filled(101, 100 * MS, max_age_ns=2 * SECOND)
     assert window.traffic(10 * SECOND).count == 21
     assert window.traffic(1000 * SECOND).count == 2
 

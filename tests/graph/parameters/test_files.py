@@ -169,26 +169,35 @@ def test_files_may_say_nothing(text):
         (
             "node:\n  ros_parameters:\n    a: 1",
             "3:8",
-            "'a' has a value before 'ros__parameters'",
-            "it maps node names to 'ros__parameters', which maps names to values",
+            "'a' has a value, but only parameters below 'ros__parameters' can have values",
+            (
+                "write a mapping from node names to 'ros__parameters', and below it a mapping from parameter "
+                "names to values"
+            ),
         ),
         (
             "node:\n  ros__parametrs: 1",
             "2:19",
-            "'ros__parametrs' has a value before 'ros__parameters'",
+            "'ros__parametrs' has a value, but only parameters below 'ros__parameters' can have values",
             "did you mean 'ros__parameters'?",
         ),
         (
             "ros__parameters:\n  a: 1",
             "1:1",
             "there is no node name above 'ros__parameters'",
-            "it maps node names to 'ros__parameters', which maps names to values",
+            (
+                "write a mapping from node names to 'ros__parameters', and below it a mapping from parameter "
+                "names to values"
+            ),
         ),
         (
             "- a",
             "1:1",
             "a parameter file must be a mapping",
-            "it maps node names to 'ros__parameters', which maps names to values",
+            (
+                "write a mapping from node names to 'ros__parameters', and below it a mapping from parameter "
+                "names to values"
+            ),
         ),
         (
             "my-node:\n  ros__parameters:\n    a: 1",

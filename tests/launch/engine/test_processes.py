@@ -185,7 +185,7 @@ class TestOutput:
 
     async def test_an_unknown_mode(self, launch) -> None:
         done = await launch(python("0", output="scren"))
-        assert "error[LAUNCH141]: there is no output 'scren'" in done.err
+        assert "error[LAUNCH141]: output destination 'scren' does not exist" in done.err
         assert "did you mean 'screen'?" in done.err
 
     async def test_format_and_cache(self, launch) -> None:

@@ -179,7 +179,13 @@ def test_an_element_of_python_s_own_xml_will_do() -> None:
 
 
 CASES = [
-    ('<launch>\n <argg name="x"/></launch>', "LAUNCH115", (2, 2), "there is no action 'argg'", "did you mean 'arg'?"),
+    (
+        '<launch>\n <argg name="x"/></launch>',
+        "LAUNCH115",
+        (2, 2),
+        "no action has the tag 'argg'",
+        "did you mean 'arg'?",
+    ),
     ('<launch><arg nam="x"/></launch>', "LAUNCH117", (1, 9), "'arg' needs an attribute 'name'", "it has 'nam'"),
     ('<launch><arg name="x" defalt="2"/></launch>', "LAUNCH116", (1, 23), "no attribute 'defalt'", "mean 'default'?"),
     ('<launch><let name="a" value="b$(vr x)"/></launch>', "LAUNCH119", (1, 31), "substitution 'vr'", "mean 'var'?"),
@@ -190,7 +196,7 @@ CASES = [
     ('<launch>\n<arg name="x">\n</launch>', "XML", (3, 1), "", None),
     ("launch:\n- arg: {nam: x}\n", "LAUNCH117", (2, 3), "'arg' needs an attribute 'name'", "it has 'nam'"),
     ("launch:\n- arg: {name: x, defalt: y}\n", "LAUNCH116", (2, 18), "'arg' has no key 'defalt'", "'default'?"),
-    ("launch:\n- arg:\n    name: x\n   default: 3\n", "LAUNCH108", (4, 4), "YAML syntax", None),
+    ("launch:\n- arg:\n    name: x\n   default: 3\n", "LAUNCH108", (4, 4), "is not valid YAML", None),
     (
         "launch:\n- let: {name: a, value: []}\n",
         "LAUNCH118",
@@ -201,8 +207,8 @@ CASES = [
     ("launch:\n- arg: {name: a, choices: [b, 3]}\n", "LAUNCH118", (2, 3), "'choices' of 'arg' must be a list", None),
     ("launch:\n- let: {name: a, value: '$(vr x)'}\n", "LAUNCH119", (2, 26), "substitution 'vr'", "mean 'var'?"),
     ("launch:\n- arg: {name: a}\n  let: {name: b}\n", "LAUNCH118", (2, 3), "a mapping with one key", None),
-    ("launch:\n- arg: 3\n", "LAUNCH118", (2, 3), "'arg' needs attributes", None),
-    ("launch: 3\n", "LAUNCH118", (1, 1), "needs attributes", None),
+    ("launch:\n- arg: 3\n", "LAUNCH118", (2, 3), "'arg' must be a mapping of attributes", None),
+    ("launch: 3\n", "LAUNCH118", (1, 1), "must be a mapping of attributes", None),
     ("a: 1\nb: 2\n", "LAUNCH109", (1, 1), "single key 'launch'", None),
 ]
 

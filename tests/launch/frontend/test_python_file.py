@@ -146,7 +146,7 @@ def test_a_misspelt_argument_of_a_node(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", f"{NODE}Node(executable='a', paramters=[])\n"))
     assert diagnostic.hint == "did you mean 'parameters'?"
     diagnostic = fault(write("b.launch.py", f"{NODE}Node(exectuable='a')\n"))
-    assert diagnostic.hint == "'executable' is missing; the call has 'exectuable'"
+    assert diagnostic.hint == "argument 'executable' is missing; the call passes 'exectuable'"
 
 
 def test_the_place_of_a_call_of_several_lines(write: Write) -> None:

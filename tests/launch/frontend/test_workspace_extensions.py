@@ -114,6 +114,6 @@ def test_a_module_that_fails_is_told_and_the_tag_stays_unknown(
     write(f"src/{name}/{name}/tags.py", "1 / 0")
     with (
         pytest.warns(UserWarning, match="Failed to load the launch extension: waving_wrong.tags"),
-        pytest.raises(LinkwrightError, match="there is no action 'wave_wrong'"),
+        pytest.raises(LinkwrightError, match="no action has the tag 'wave_wrong'"),
     ):
         read('<launch><wave_wrong hands="1"/></launch>', tmp_path)

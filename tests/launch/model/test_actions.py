@@ -65,7 +65,7 @@ class TestDeclareLaunchArgument:
 
     async def test_required(self, launch) -> None:
         done = await launch(DeclareLaunchArgument("x", description="the x"), say("after"))
-        assert "error[LAUNCH114]: argument 'x' (the x) is required and was not given" in done.err
+        assert "error[LAUNCH114]: argument 'x' (the x) is required, but was not given" in done.err
         assert "test_actions.py" in done.err
         assert done.messages == []
         assert not done.succeeded
@@ -291,7 +291,7 @@ class TestIncludeLaunchDescription:
         done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
         text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
         assert f"error[LAUNCH114]: {text}" in done.err
-        assert "'sped' is given; did you mean that?" in done.err
+        assert "'sped' was passed; is its name misspelt?" in done.err
         assert done.messages == []
 
     @pytest.mark.parametrize(

@@ -34,7 +34,9 @@ def test_substitutions(context: LaunchContext) -> None:
 
 
 def test_no_truth_value(context: LaunchContext) -> None:
-    with pytest.raises(LinkwrightError, match="the condition is 'fast', which is neither") as caught:
+    with pytest.raises(
+        LinkwrightError, match="the condition evaluates to 'fast', but must be 'true', '1', 'false' or '0'"
+    ) as caught:
         IfCondition(LaunchConfiguration("mode")).evaluate(context)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "LAUNCH127"

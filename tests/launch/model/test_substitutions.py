@@ -98,7 +98,7 @@ def test_local_substitution(context: LaunchContext) -> None:
 
 
 def test_this_launch_file(context: LaunchContext) -> None:
-    with pytest.raises(LinkwrightError, match="does not come from a file"):
+    with pytest.raises(LinkwrightError, match="the launch description was not read from a file"):
         text(ThisLaunchFile(), context)
     context.extend_locals({"current_launch_file_path": "/a/b.launch.py"})
     assert text(ThisLaunchFile(), context) == "/a/b.launch.py"
@@ -113,7 +113,7 @@ def test_path_join(context: LaunchContext) -> None:
 
 def test_find_executable(context: LaunchContext) -> None:
     assert os.access(text(FindExecutable(name="sh"), context), os.X_OK)
-    with pytest.raises(LinkwrightError, match="executable 'no-such-program' is not on PATH"):
+    with pytest.raises(LinkwrightError, match="program 'no-such-program' is not on PATH"):
         text(FindExecutable(name="no-such-program"), context)
 
 
@@ -268,7 +268,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("command", "message"),
         [
-            ("no-such-program x", "cannot be run: No such file or directory: 'no-such-program'"),
+            ("no-such-program x", "program 'no-such-program' does not start: No such file or directory"),
             ("echo 'open", "cannot be split"),
             ("  ", "is empty"),
             ("xacro", "the xacro command names no model file"),
@@ -299,7 +299,7 @@ class TestCommand:
         model.write_text('<robot name="a"><link name="x"/></robot>')
         assert '<link name="x"/>' in text(Command(["xacro ", str(model)]), context)
         assert '<link name="x"/>' in text(Command(["xacro ", str(model), " a:=b"]), context)
-        assert "contains spaces and is not quoted" in capsys.readouterr().err
+        assert "contains spaces but is not quoted" in capsys.readouterr().err
         assert '<link name="x"/>' in text(Command(['xacro "', str(model), '"']), context)
         assert capsys.readouterr().err == ""
 

@@ -97,8 +97,8 @@ class TestRequests:
     @pytest.mark.parametrize(
         ("section", "names", "message"),
         [
-            ("/tkr", {"name": "tk"}, "no section of "),
-            ("/tk", {"name": "tk", "namespace": "ns"}, "is for node '/ns/tk'"),
+            ("/tkr", {"name": "tk"}, "has no section for node"),
+            ("/tk", {"name": "tk", "namespace": "ns"}, "has no section for node '/ns/tk'"),
             ("/ns/tk", {"name": "tk", "namespace": "ns"}, ""),
             ("/**", {"name": "tk"}, ""),
             ("/other", {}, ""),  # the name that its code gives it is not known

@@ -117,7 +117,7 @@ class TestSources:
         assert subprocess.run([path], capture_output=True, text=True, check=True).stdout == "nod\n"
 
     def test_a_module_that_is_not_there(self, arm: Path, finder: PackageFinder) -> None:
-        with pytest.raises(LinkwrightError, match=r"and there is no module .arm\.shake.") as caught:
+        with pytest.raises(LinkwrightError, match=r"but module .arm\.shake. does not exist") as caught:
             find_executable(finder, arm.name, "shake")
         assert caught.value.diagnostics[0].code == "LAUNCH131"
 

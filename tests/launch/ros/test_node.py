@@ -151,7 +151,7 @@ class TestProcessNodes:
         ("section", "node", "message"),
         [
             ("tller", {"name": "teller"}, "did you mean '/tller'?"),
-            ("teller", {"name": "teller", "namespace": "left"}, "is for node '/left/teller'"),
+            ("teller", {"name": "teller", "namespace": "left"}, "has no section for node '/left/teller'"),
             ("left: {teller", {"name": "teller", "namespace": "left"}, ""),
             ("/**", {"name": "teller"}, ""),
             ("other", {}, ""),
@@ -162,7 +162,7 @@ class TestProcessNodes:
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}" + "}" * section.count("{"))
         done = await launch(Node(package="arm", executable="tell", parameters=[str(path)], **node), finder=ros)
-        assert ("warning[LAUNCH149]: no section of" in done.err) is bool(message)
+        assert ("has no section for node" in done.err) is bool(message)
         assert message in done.err
         assert done.succeeded
 
@@ -186,7 +186,7 @@ class TestProcessNodes:
         done = await launch(Node(package=package, executable=executable, parameters=files))
         assert [plan.parameters for plan in planned] == [{"a": 1}]
         assert done.err.count("warning[LAUNCH149]") == 1
-        assert f"no section of '{wrong}' is for node '/{name}'" in done.err
+        assert f"parameter file '{wrong}' has no section for node '/{name}'" in done.err
 
     async def test_temporary_files_go_with_the_launch(self, launch, ros: PackageFinder) -> None:
         done = await launch(Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}]), finder=ros)
@@ -202,7 +202,7 @@ class TestProcessNodes:
         [
             ("arm", "tel", "package 'arm' has no executable 'tel'", "did you mean 'tell'?"),
             ("arm", "xyzzy", "package 'arm' has no executable 'xyzzy'", "the package has tell"),
-            ("amr", "tell", "package 'amr' of node executable 'tell' not found", "did you mean 'arm'?"),
+            ("amr", "tell", "package 'amr' of node executable 'tell' was not found", "did you mean 'arm'?"),
             ("robot_state_publishr", "x", "package 'robot_state_publishr'", "did you mean 'robot_state_publisher'"),
             ("rviz2", "rviz", "package 'rviz2' has no executable 'rviz'", "did you mean 'rviz2'?"),
             ("my_robot_description", "x", "has no executable 'x'", "name it in entry_points of setup.py"),

@@ -104,10 +104,10 @@ class TestParameters:
     @pytest.mark.parametrize(
         ("value", "message"),
         [
-            ("{a: 1}", "becomes a mapping, which is not a parameter type"),
-            ("[1, x]", "becomes a list of mixed items (int, str)"),
-            ("[]", "becomes an empty list"),
-            ("[[1], [2]]", "becomes a list of items of type list"),
+            ("{a: 1}", "its value is a mapping, which is not a parameter type"),
+            ("[1, x]", "is a list of mixed items (int, str)"),
+            ("[]", "is an empty list, whose type is unknown"),
+            ("[[1], [2]]", "is a list of items of type list"),
         ],
     )
     def test_what_no_parameter_can_be(self, context: LaunchContext, value: str, message: str) -> None:
@@ -192,8 +192,8 @@ listener:
     @pytest.mark.parametrize(
         ("text", "message"),
         [
-            ("a: [", "is not YAML"),
-            ("a: 1", "'a' has a value before 'ros__parameters'"),
+            ("a: [", "the parameter file is not valid YAML"),
+            ("a: 1", "'a' has a value, but only parameters below 'ros__parameters' can have values"),
             ("/**: {ros__parameters: {a: $(var nmber)}}", "launch configuration 'nmber' is not set"),
             ("/**: {ros__parameters: {a: $(vra number)}}", "there is no substitution 'vra'"),
             ("/**: {ros__parameters: {a: $(var number}}", "has no closing parenthesis"),

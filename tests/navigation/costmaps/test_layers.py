@@ -140,14 +140,14 @@ def test_rays_clear_no_more_than_they_pass():
     cells = eye.see((2.55, 2.05), (2.55, 2.55), (1.05, 1.05), (2.05, 3.05))
     marked = np.argwhere(cells == LETHAL).tolist()
     assert marked == [[10, 10], [20, 25], [25, 25], [30, 20]]
-    eye.layer.seen.cells[:] = LETHAL
+    eye.layer.layer_grid.cells[:] = LETHAL
     eye.see((2.55, 2.05))
-    assert np.argwhere(eye.layer.seen.cells != LETHAL).tolist() == [[20, each] for each in range(20, 25)]
+    assert np.argwhere(eye.layer.layer_grid.cells != LETHAL).tolist() == [[20, each] for each in range(20, 25)]
 
 
 def test_what_is_too_far_is_not_marked_and_not_cleared():
     eye = Eye(obstacle_max_range=1.0, raytrace_max_range=0.5)
-    eye.layer.seen.cells[:] = LETHAL
+    eye.layer.layer_grid.cells[:] = LETHAL
     eye.costmap.touch()
     cells = eye.see((3.55, 2.05))
     assert np.flatnonzero(cells[20] == FREE).tolist() == [20, 21, 22, 23, 24, 25]
@@ -157,14 +157,14 @@ def test_what_is_too_far_is_not_marked_and_not_cleared():
 
 def test_what_is_too_near_is_not_marked_and_not_cleared():
     eye = Eye(obstacle_min_range=0.3, raytrace_min_range=0.3)
-    eye.layer.seen.cells[20] = LETHAL
+    eye.layer.layer_grid.cells[20] = LETHAL
     cells = eye.see((2.25, 2.05), (3.05, 2.05))
     assert np.flatnonzero(cells[20, 20:] == FREE).tolist() == [3, 4, 5, 6, 7, 8, 9]
 
 
 def test_points_at_heights_that_do_not_count_neither_mark_nor_clear():
     eye = Eye(max_obstacle_height=1.0)
-    eye.layer.seen.cells[20, 22] = LETHAL
+    eye.layer.layer_grid.cells[20, 22] = LETHAL
     eye.costmap.touch()
     cells = eye.see((2.55, 2.05, 1.5), (np.nan, 2.05, 0.2))
     assert np.argwhere(cells).tolist() == [[20, 22]]
@@ -172,7 +172,7 @@ def test_points_at_heights_that_do_not_count_neither_mark_nor_clear():
 
 def test_a_ray_that_leaves_the_costmap_clears_up_to_its_rim():
     eye = Eye(raytrace_max_range=9.0)
-    eye.layer.seen.cells[20] = LETHAL
+    eye.layer.layer_grid.cells[20] = LETHAL
     cells = eye.see((9.0, 2.05))
     assert np.flatnonzero(cells[20] == FREE).tolist() == list(range(20, 40))
 
@@ -181,9 +181,9 @@ def test_points_count_as_long_as_they_persist():
     eye = Eye(observation_persistence=1.5, clearing=False)
     eye.see((2.55, 2.05))
     eye.see((3.05, 2.05))
-    eye.layer.seen.cells[:] = FREE
+    eye.layer.layer_grid.cells[:] = FREE
     assert eye.update()[20, [25, 30]].tolist() == [LETHAL, LETHAL]
-    eye.layer.seen.cells[:] = FREE
+    eye.layer.layer_grid.cells[:] = FREE
     eye.costmap.touch()
     assert eye.see()[20, [25, 30]].tolist() == [FREE, LETHAL]
 
@@ -323,7 +323,7 @@ def test_a_sonar_says_nothing_of_what_it_does_not_see():
     angles = np.arctan2(marked[:, 0] - 20, marked[:, 1] - 10)
     assert np.abs(angles).max() <= 0.25 + 0.05
     assert (marked[:, 1] > 15).all()
-    assert (sonar.layer.seen.cells[:, :10] == 127).all()
+    assert (sonar.layer.layer_grid.cells[:, :10] == 127).all()
 
 
 def test_a_sonar_that_meets_nothing_frees_its_view():
@@ -346,7 +346,7 @@ def test_likelihoods_are_forgotten():
     sonar.costmap.clear_around(HERE, 9.0)
     sonar.costmap.update(HERE, SECOND)
     assert not sonar.costmap.costmap.grid.cells.any()
-    assert (sonar.layer.seen.cells == 127).all()
+    assert (sonar.layer.layer_grid.cells == 127).all()
 
 
 # --- specks -----------------------------------------------------------------------------------------------------------
@@ -391,7 +391,7 @@ def test_clearing_around_the_robot_and_everywhere_else():
         eye = Eye(kind, *more)
         eye.see((2.55, 2.05), (3.55, 2.05))
         eye.buffer.add(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
-        eye.costmap.clear_around(HERE, 1.4, except_it=True)
+        eye.costmap.clear_around(HERE, 1.4, outside=True)
         assert np.argwhere(eye.update() == LETHAL).tolist() == [[20, 25]]
         eye.costmap.clear_around(HERE, 1.4)
         assert not (eye.update() == LETHAL).any()

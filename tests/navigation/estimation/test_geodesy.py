@@ -82,7 +82,7 @@ def test_zones(latitude, longitude, number):
 )
 def test_a_plane_that_touches_the_earth(latitude, longitude, x, y, z):
     plane = TangentPlane(latitude, longitude, 100.0)
-    assert plane.point_from_geodetic(*plane.place_of((x, y, z))) == pytest.approx((x, y, z), abs=1e-5)
+    assert plane.point_from_geodetic(*plane.geodetic_from_point((x, y, z))) == pytest.approx((x, y, z), abs=1e-5)
     assert plane.point_from_geodetic(latitude, longitude, 107.0) == pytest.approx((0.0, 0.0, 7.0), abs=1e-6)
 
 

@@ -36,7 +36,7 @@ FOLLOWERS = [
     SamplingFollower,
     lambda: RotationShim(RegulatedPurePursuit()),
     lambda: SamplingFollower(
-        SamplingParameters(limits=Limits(least=Velocity(0.0, -0.3, -1.0), most=Velocity(0.4, 0.3, 1.0)))
+        SamplingParameters(limits=Limits(min_velocity=Velocity(0.0, -0.3, -1.0), max_velocity=Velocity(0.4, 0.3, 1.0)))
     ),
 ]
 
@@ -132,7 +132,7 @@ class TestSampling:
         command = follower.velocity(situation(line((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), now))
         limits = follower.parameters.limits
         for before, after, least, most, faster in zip(
-            now, command, limits.least, limits.most, limits.acceleration, strict=True
+            now, command, limits.min_velocity, limits.max_velocity, limits.acceleration, strict=True
         ):
             assert least - 1e-9 <= after <= most + 1e-9
             assert abs(after - before) <= faster * PERIOD + 1e-9
@@ -181,7 +181,7 @@ class TestPath:
         eight = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -2.0))
         path = FollowedPath(eight, 1.0)
         path.progress(1.0, 0.0)
-        assert path.remaining(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
+        assert path.remaining_distance(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
         assert path.poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
 
     def test_its_end_is_two_poses(self):

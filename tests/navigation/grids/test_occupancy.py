@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.messages import Time
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.grids.occupancy import BadGridError, grid_of, occupancy_message
+from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message, occupancy_message
 
 
 def test_a_grid_becomes_a_message_and_back() -> None:
@@ -16,7 +16,7 @@ def test_a_grid_becomes_a_message_and_back() -> None:
     assert (message.info.width, message.info.height) == (3, 2)
     assert list(message.data) == [0, 100, -1, 5, 6, 7]
     assert (message.header.frame_id, message.header.stamp.sec, message.info.map_load_time.sec) == ("map", 3, 3)
-    again = grid_of(message)
+    again = grid_from_message(message)
     assert (again.cells == grid.cells).all()
     assert again.cells.dtype == np.int8
     assert (again.x, again.y) == (-1.0, 2.0)
@@ -34,4 +34,4 @@ def test_a_message_that_is_no_grid_is_refused(change: str, text: str) -> None:
     else:
         message.info.resolution = 0.0
     with pytest.raises(BadGridError, match=text):
-        grid_of(message)
+        grid_from_message(message)

@@ -45,7 +45,7 @@ def test_as_many_particles_are_kept_as_their_bins_ask_for() -> None:
 def test_particles_are_drawn_by_their_weights() -> None:
     particles = ParticleFilter(FilterSettings())
     particles.begin(np.array([(0.25, 0.25, 0.01), (3.25, 0.25, 0.01), (6.25, 0.25, 0.01)]))
-    particles.weigh(np.array([1.0, 0.0, 3.0]))
+    particles.update_weights(np.array([1.0, 0.0, 3.0]))
     particles.resample(_nowhere)
     found, counts = np.unique(particles.particles[:, 0], return_counts=True)
     assert found.tolist() == [0.25, 6.25]
@@ -77,7 +77,7 @@ def test_particles_come_from_anywhere_when_scans_fit_less_than_before() -> None:
         return np.full((count, 3), 9.0)
 
     for likelihood in (8.0, 8.0, 1.0):
-        particles.weigh(np.full(len(particles.particles), likelihood))
+        particles.update_weights(np.full(len(particles.particles), likelihood))
         particles.resample(anywhere)
     assert len(asked) == 1
     assert asked[0] / 2000 == pytest.approx(1 - 4.5 / 7.993, abs=0.05)
@@ -85,7 +85,7 @@ def test_particles_come_from_anywhere_when_scans_fit_less_than_before() -> None:
 
 def test_likelihoods_of_nothing_leave_all_alike() -> None:
     particles = ParticleFilter(FilterSettings())
-    particles.weigh(np.zeros(2000))
+    particles.update_weights(np.zeros(2000))
     assert particles.weights == pytest.approx(1.0 / 2000)
 
 
@@ -100,7 +100,9 @@ def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
         true += (0.25 * np.cos(true[2]), 0.25 * np.sin(true[2]), 0.05)
         after = (float(true[0]), float(true[1]), float(true[2]))
         differential(particles.particles, before, after, Noise(), particles.random)
-        particles.weigh(likelihoods.likelihoods("likelihood_field", particles.particles, beams_in_room(*after)))
+        particles.update_weights(
+            likelihoods.likelihoods("likelihood_field", particles.particles, beams_in_room(*after))
+        )
         particles.resample(_nowhere)
     x, y, yaw = particles.estimate().pose
     assert np.hypot(x - true[0], y - true[1]) < 0.1
@@ -111,7 +113,9 @@ def test_twice_the_same_gives_the_same() -> None:
     def run() -> list[list[float]]:
         particles = ParticleFilter(FilterSettings(), seed=7)
         particles.draw_around((2.0, 1.5, 0.0), np.eye(3) * 0.1)
-        particles.weigh(room().likelihoods("likelihood_field", particles.particles, beams_in_room(2.0, 1.5, 0.0)))
+        particles.update_weights(
+            room().likelihoods("likelihood_field", particles.particles, beams_in_room(2.0, 1.5, 0.0))
+        )
         particles.resample(_nowhere)
         drawn: list[list[float]] = particles.particles.tolist()
         return drawn

@@ -53,7 +53,7 @@ async def scene(graph, clock):
     planner = Planner(scene)
     options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True})
     for name, value in LOCAL.items():
-        options.for_others.set("/local_costmap/local_costmap", name, value)
+        options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
     own = NodeOptions(parameters={"autostart_node": True})
     nodes = [ControllerServer(graph, options), BehaviorServer(graph, own), BtNavigator(graph, own)]
     follower = {"autostart_node": True, "stop_on_failure": False}

@@ -54,7 +54,7 @@ async def start(graph, clock):
         scene = DrivingScene(graph, clock)
         options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True, **parameters})
         for name, value in LOCAL.items():
-            options.for_others.set("/local_costmap/local_costmap", name, value)
+            options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
         server = ControllerServer(graph, options)
         made.append(server)
         await scene.run(1.0)

@@ -54,7 +54,7 @@ def start(graph, scene):
     def start(name="global_costmap", parameters=GLOBAL, **more):
         options = NodeOptions()
         for key, value in {**parameters, **more}.items():
-            options.for_others.set(f"/{name}/{name}", key, value)
+            options.parameters_of_others.set(f"/{name}/{name}", key, value)
         node = make_costmap(scene.node, graph, options, name)
         made.append(node)
         if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
@@ -214,7 +214,7 @@ async def test_it_can_be_cleared(scene, start):
     assert node.costmap.cost_at(far) == LETHAL
     await call(scene, "/global_costmap/clear_except_global_costmap", "ClearCostmapExceptRegion", reset_distance=1.2)
     assert node.costmap.cost_at(far) == FREE
-    layer.seen.cells[20, 40] = LETHAL
+    layer.layer_grid.cells[20, 40] = LETHAL
     await call(scene, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
     assert node.costmap.cost_at(far) == FREE
     assert node.costmap.grid.cells[30, 0] == LETHAL
@@ -266,7 +266,7 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
     [
         ({"resolution": 0.0}, "parameter 'resolution' of 'global_costmap' cannot be '0.0'"),
         ({"footprint": "[[1, 2]]"}, "'[[1, 2]]' has 1"),
-        ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' is not given"),
+        ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' is not set"),
         ({"obstacle_layer.scan.data_type": "Image"}, "choose from LaserScan, PointCloud2"),
     ],
 )

@@ -286,9 +286,15 @@ async def test_the_unscented_filter_is_a_node_too(test):
     ("parameters", "text"),
     [
         ({"frequency": 0.0}, "parameter 'frequency' of 'ekf_filter_node' cannot be '0.0'"),
-        ({"process_noise_covariance": [1.0, 2.0]}, "'process_noise_covariance' must have 225 / 15 values, but has 2"),
-        ({"odom0": "a", "odom0_config": [True]}, "parameter 'odom0_config' must have 15 values, but has 1"),
-        ({"map_frame": "odom"}, "map_frame 'odom', odom_frame 'odom' and base_link_frame 'base_link' must differ"),
+        (
+            {"process_noise_covariance": [1.0, 2.0]},
+            "'process_noise_covariance' must have 225 / 15 values, but it has 2",
+        ),
+        ({"odom0": "a", "odom0_config": [True]}, "parameter 'odom0_config' must have 15 values, but it has 1"),
+        (
+            {"map_frame": "odom"},
+            "map_frame 'odom', odom_frame 'odom' and base_link_frame 'base_link' must be different frames",
+        ),
         ({"world_frame": "earth"}, "parameter 'world_frame' of 'ekf_filter_node' cannot be 'earth'"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.messages import get_service
-from linkwright.navigation.grids.occupancy import grid_of
+from linkwright.navigation.grids.occupancy import grid_from_message
 from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.nodes import NodeOptions
@@ -36,7 +36,9 @@ def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(mo
         mapper = AsyncSlamToolbox(test.graph, options)
         transforms = test.record("/drifting_tf")
         drive(test, TOUR)
-        grid = grid_of(test.call("/slam_toolbox/dynamic_map", get_service("nav_msgs/srv/GetMap").Request()).map)
+        grid = grid_from_message(
+            test.call("/slam_toolbox/dynamic_map", get_service("nav_msgs/srv/GetMap").Request()).map
+        )
         here = test.robot_pose()
         true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
         correction = [

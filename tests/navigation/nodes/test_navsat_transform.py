@@ -148,7 +148,7 @@ async def test_the_plane_that_touches_the_earth(test):
     start(test, wait_for_datum=True, datum=[*HERE, pi / 2], use_local_cartesian=True)
     ask = get_service("robot_localization/srv/FromLL").Request()
     place = ask.ll_point
-    place.latitude, place.longitude, place.altitude = TangentPlane(*HERE, 0.0).place_of((3.0, 50.0, 2.0))
+    place.latitude, place.longitude, place.altitude = TangentPlane(*HERE, 0.0).geodetic_from_point((3.0, 50.0, 2.0))
     there = (await test.call("/fromLL", ask)).map_point
     assert (there.x, there.y, there.z) == pytest.approx((50.0, -3.0, 2.0), abs=1e-5)
 
@@ -169,7 +169,7 @@ async def test_without_all_that_is_needed_nothing_is_published(test):
 @pytest.mark.parametrize(
     ("parameters", "text"),
     [
-        ({"datum": [1.0, 2.0]}, "parameter 'datum' must have 3 values, but has 2"),
+        ({"datum": [1.0, 2.0]}, "parameter 'datum' must have 3 values, but it has 2"),
         ({"datum": [200.0, 2.0, 0.0]}, "parameter 'datum' of 'navsat_transform_node' cannot be '[200.0, 2.0, 0.0]'"),
         ({"frequency": 0.0}, "parameter 'frequency' of 'navsat_transform_node' cannot be '0.0'"),
     ],

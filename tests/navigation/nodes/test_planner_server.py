@@ -14,7 +14,7 @@ from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.messages import classes, get_action, get_message, get_service
 from linkwright.messages.definitions.library import Library
-from linkwright.navigation.nodes.paths import path_message, poses_of
+from linkwright.navigation.nodes.paths import path_message, poses_from_messages
 from linkwright.navigation.nodes.planner_server import PlannerServer
 from linkwright.navigation.nodes.smoother_server import SmootherServer
 from linkwright.nodes import NodeOptions
@@ -72,7 +72,7 @@ async def server(graph, scene):
         rules = ParameterRules()
         for key, value in {**COSTMAP, **(costmap or {})}.items():
             rules.set("/global_costmap/global_costmap", key, value)
-        node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, for_others=rules))
+        node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, parameters_of_others=rules))
         made.append(node)
         scene.tell_map(walls() if grid is None else grid)
         scene.tell_pose()
@@ -103,7 +103,7 @@ async def test_a_path_to_a_pose(scene, server):
     scene.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
     status, result = await to_pose(scene, pose(3.0, 2.0, 1.0)).ended()
     assert status == SUCCEEDED
-    found = poses_of(result.path.poses)
+    found = poses_from_messages(result.path.poses)
     assert found[0, :2] == pytest.approx(scene.pose[:2])
     assert found[-1] == pytest.approx([3.0, 2.0, 1.0])
     assert result.path.header.frame_id == "map"
@@ -116,7 +116,7 @@ async def test_it_may_begin_elsewhere_and_end_in_another_frame(scene, server):
     await server()
     start = pose(0.5, 2.5)
     status, result = await to_pose(scene, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).ended()
-    found = poses_of(result.path.poses)
+    found = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
     assert found[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
@@ -126,7 +126,7 @@ async def test_a_path_through_poses(scene, server):
     goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
     goal = Goal(scene, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
     status, result = await goal.ended()
-    found = poses_of(result.path.poses)
+    found = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
     assert found[-1] == pytest.approx([3.0, 1.0, 2.0])
     for each in goals[:2]:
@@ -249,7 +249,7 @@ async def test_parameters_of_nav2_bringup_load_without_a_warning(graph, log, kin
 async def test_in_a_container_the_costmap_has_the_parameters_of_its_process(scene, graph):
     rules = ParameterRules()
     rules.set("/global_costmap/global_costmap", "robot_radius", 0.33)
-    container = ComponentContainer(graph, NodeOptions(for_others=rules))
+    container = ComponentContainer(graph, NodeOptions(parameters_of_others=rules))
     request = load_request()
     request.package_name, request.plugin_name = "nav2_planner", "nav2_planner::PlannerServer"
     client = scene.node.create_client(
@@ -300,7 +300,7 @@ async def test_a_path_is_smoothed(scene, server):
     status, result = await smooth(scene, CORNER, check_for_collisions=True).ended()
     assert status == SUCCEEDED
     assert result.was_completed
-    found = poses_of(result.path.poses)
+    found = poses_from_messages(result.path.poses)
     assert found[[0, -1], :2] == pytest.approx(np.array(CORNER)[[0, -1], :2])
     assert np.hypot(found[20, 0] - 2.0, found[20, 1] - 1.0) > 0.01
     assert np.abs(np.diff(found[:-1, 2])).max() < 1.0

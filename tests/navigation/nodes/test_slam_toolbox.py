@@ -14,7 +14,7 @@ from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
 from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
 from linkwright.navigation.grids.grid import FREE, OCCUPIED
-from linkwright.navigation.grids.occupancy import grid_of
+from linkwright.navigation.grids.occupancy import grid_from_message
 from linkwright.navigation.maps.map_files import load_map
 from linkwright.navigation.nodes.slam_toolbox.nodes import (
     AsyncSlamToolbox,
@@ -112,7 +112,7 @@ def map_to_odom(tf: Any) -> Any:
 
 
 def is_a_map(message: Any) -> bool:
-    grid = grid_of(message)
+    grid = grid_from_message(message)
     return bool((grid.cells == FREE).sum() > 2000 and (grid.cells == OCCUPIED).sum() > 100)
 
 
@@ -234,7 +234,7 @@ def test_the_map_is_saved_and_asked_for(test, tmp_path):
     test.advance(2.5)
     assert answer.info.width == maps.last.info.width
     saved = load_map(tmp_path / "flat.yaml")
-    assert ((saved.cells == OCCUPIED) == (grid_of(answer).cells == OCCUPIED)).all()
+    assert ((saved.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
 
 
 def test_a_new_map_begins_where_that_is_asked_for(test):
@@ -311,7 +311,11 @@ def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
 def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
     (tmp_path / "other.posegraph").write_bytes(b"22 serialization::archive 17 0 0")
     (tmp_path / "broken.posegraph").write_bytes(b"nothing of the kind")
-    for name, reason in (("other", "slam_toolbox itself"), ("broken", "not a pose graph"), ("none", "does not exist")):
+    for name, reason in (
+        ("other", "slam_toolbox wrote it"),
+        ("broken", "it does not contain a pose graph"),
+        ("none", "does not exist"),
+    ):
         with pytest.raises(LinkwrightError) as caught:
             start(test, LocalizationSlamToolbox, map_file_name=str(tmp_path / name), map_start_at_dock=True)
         assert caught.value.diagnostics[0].code == "NAV501"

@@ -21,16 +21,16 @@ LIMITS = [Limits(-0.5, 0.5, 2.5, -2.0), Limits(-1.0, 1.0, 0.0, 0.0), Limits(-2.5
 
 @given(wanted=st.tuples(*[velocities] * 3), now=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
 def test_no_axis_leaves_its_limits(wanted, now, scaled):
-    after = smooth_velocities(LIMITS, now, wanted, 0.05, scaled=scaled)
+    after = smooth_velocities(LIMITS, now, wanted, 0.05, keep_direction=scaled)
     for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
         assert abs(velocity - before) <= limits.change(before, limits.clamped(goal), 0.05) + 1e-12
-        assert min(before, limits.least) - 1e-12 <= velocity <= max(before, limits.most) + 1e-12
+        assert min(before, limits.min_velocity) - 1e-12 <= velocity <= max(before, limits.max_velocity) + 1e-12
 
 
 def test_the_direction_stays_where_it_is_asked_for():
     limits = [Limits(-1, 1, 1.0, -1.0), Limits(-1, 1, 4.0, -4.0)]
-    assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, scaled=True) == pytest.approx([0.1, 0.1])
-    assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, scaled=False) == pytest.approx([0.1, 0.4])
+    assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=True) == pytest.approx([0.1, 0.1])
+    assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=False) == pytest.approx([0.1, 0.4])
 
 
 class Line:
@@ -80,7 +80,7 @@ async def test_a_command_that_is_not_repeated_ends(line, stage, logged):
     await stage.clock.advance(2.0)
     assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
     assert logged("INFO")[-1:] == [
-        "no command for 0.2 s (velocity_timeout), and the last one was not a stop: the robot is stopped"
+        "no command was received for 0.2 s (velocity_timeout), and the last one was not a stop, so the robot is stopped"
     ]
 
 
@@ -106,7 +106,7 @@ async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, logg
     assert one.speeds()[-1] == 0.0
     assert logged("WARN") == [
         (
-            "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach): "
+            "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach); "
             "the robot is stopped"
         )
     ]

@@ -105,7 +105,9 @@ async def test_without_nav2_nothing_is_known_and_commands_say_so():
         first = await client.until("navigation_state")
         assert (first["navigation"], first["localization"], first["goal"]) == ("unknown", "unknown", "none")
         await client.send("command_navigation", command="pause")
-        await client.until("navigation_state", problem="no lifecycle manager of nav2 is running", busy=False)
+        await client.until(
+            "navigation_state", problem="no lifecycle manager of nav2 is running; start nav2 first", busy=False
+        )
 
 
 async def test_progress_of_the_goal_is_told_and_forgotten_with_the_next_goal():
@@ -165,7 +167,10 @@ async def test_buttons_command_both_managers_in_the_order_of_nav2():
         nav2.refuses = True
         await client.send("command_navigation", command="pause")
         message = await client.until("navigation_state", busy=False, navigation="active")
-        assert message["problem"] == "lifecycle_manager_navigation could not do this; see its log for the reason"
+        assert (
+            message["problem"]
+            == "lifecycle_manager_navigation could not execute the command; see its log for the reason"
+        )
 
 
 async def test_a_goal_is_cancelled_alone_and_by_a_reset():

@@ -15,14 +15,14 @@ AHEAD = (np.eye(3), np.zeros(3))
 def test_what_is_not_measured_tells_nothing():
     ranges = np.array([nan, inf, -inf, 0.0, 0.05, 40.0, 30.0, -1.0], dtype=np.float32)
     scan = planar_scan(ranges, np.zeros(8), (0.1, 30.0), (0.0, 20.0), AHEAD, 7)
-    assert len(scan.points) == len(scan.passed) == 0
+    assert len(scan.points) == len(scan.free_ends) == 0
     assert scan.stamp_ns == 7
 
 
 def test_a_range_that_is_longer_than_wanted_tells_what_is_free():
     scan = planar_scan(np.array([5.0, 25.0]), np.array([0.0, pi / 2]), (0.1, 30.0), (0.0, 20.0), AHEAD, 0)
     assert scan.points == pytest.approx(np.array([[5.0, 0.0]]))
-    assert scan.passed == pytest.approx(np.array([[0.0, 20.0]]), abs=1e-9)
+    assert scan.free_ends == pytest.approx(np.array([[0.0, 20.0]]), abs=1e-9)
 
 
 def test_a_range_that_is_shorter_than_wanted_is_left_out():

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.page.protocol.monitor import SAMPLES_KIND, pack_samples
-from linkwright.panels.monitor.plots import MOST_SENT, SampleQueue, thinned
+from linkwright.panels.monitor.plots import MAX_SENT, SampleQueue, thin_out
 
 
 def test_samples_are_taken_once_and_in_order():
@@ -30,7 +30,7 @@ def test_a_queue_that_nobody_empties_stays_short_and_keeps_the_extremes():
         queue.add(number, number, 1e6 if number == 31_415 else float(number % 100))
         assert len(queue) < 5000
     taken = queue.take()
-    assert taken.shape[1] <= MOST_SENT
+    assert taken.shape[1] <= MAX_SENT
     assert 1e6 in taken[2]
     assert (np.diff(taken[0]) > 0).all()
 
@@ -38,7 +38,7 @@ def test_a_queue_that_nobody_empties_stays_short_and_keeps_the_extremes():
 @given(st.lists(st.floats(allow_infinity=False, width=32), min_size=1, max_size=400), st.sampled_from([2, 4, 10, 64]))
 def test_thinning_keeps_least_and_greatest(values, most):
     samples = np.array([np.arange(len(values)), np.arange(len(values)), values], dtype=np.float64)
-    kept = thinned(samples, most)
+    kept = thin_out(samples, most)
     assert kept.shape[1] <= max(most, min(len(values), most))
     assert (np.diff(kept[0]) > 0).all()
     if not np.isnan(values).all():
@@ -56,7 +56,7 @@ def test_a_frame_of_samples():
     assert len(frame) == 16 + 8 + 24 + 8 + 48
 
 
-@pytest.mark.parametrize("count", [MOST_SENT, MOST_SENT - 1])
+@pytest.mark.parametrize("count", [MAX_SENT, MAX_SENT - 1])
 def test_what_fits_is_left_alone(count):
     samples = np.random.default_rng(1).random((3, count))
-    assert thinned(samples, MOST_SENT) is samples
+    assert thin_out(samples, MAX_SENT) is samples

@@ -6,7 +6,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Time, get_message
 from linkwright.nodes import NodeOptions
-from linkwright.perception.nodes.depthimage_to_laserscan import depths_of
+from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 from linkwright.perception.nodes.image_republisher import ImageRepublisher
 from linkwright.testing.stepped import AsyncSteppedGraph
 
@@ -65,7 +65,7 @@ async def test_depths_in_metres_go_through(test):
     depths = np.array([[0.5, 1.0, 2.0, 5.0, np.nan, 20.0]], np.float32)
     await send(test, "/in", image(depths, "32FC1"))
     assert back.last.encoding == "32FC1"
-    assert depths_of(back.last)[0] == pytest.approx([0.5, 1.0, 2.0, 5.0, np.nan, np.nan], rel=0.01, nan_ok=True)
+    assert read_depths(back.last)[0] == pytest.approx([0.5, 1.0, 2.0, 5.0, np.nan, np.nan], rel=0.01, nan_ok=True)
 
 
 async def test_depths_in_millimetres_go_through_unchanged(test):

@@ -11,7 +11,11 @@ from linkwright.graph import STATIC_TF_PUBLISHER_QOS
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.perception.nodes.depthimage_to_laserscan import DepthImageToLaserScan
-from linkwright.perception.nodes.pointcloud_to_laserscan import LaserScanToPointCloud, PointCloudToLaserScan, points_of
+from linkwright.perception.nodes.pointcloud_to_laserscan import (
+    LaserScanToPointCloud,
+    PointCloudToLaserScan,
+    read_points,
+)
 from linkwright.testing.stepped import AsyncSteppedGraph
 
 
@@ -146,7 +150,7 @@ async def test_a_scan_becomes_a_cloud(test):
     message.ranges, message.intensities = [1.0, inf, 2.0], [7.0, 8.0, 9.0]
     await send(test, "/scan_in", message)
     await send(test, "/scan_in", message)
-    points = points_of(clouds.last)
+    points = read_points(clouds.last)
     assert points[0] == pytest.approx([0.0, 1.0, 0.5], abs=1e-6)
     assert len(points) == 2
     assert [field.name for field in clouds.last.fields] == ["x", "y", "z", "intensity", "index"]

@@ -5,14 +5,14 @@ from math import atan, hypot, inf, nan, pi
 import numpy as np
 import pytest
 
-from linkwright.perception.scans.projection import Pinhole, Rays, points_of_scan, scan_of_depths, scan_of_points
+from linkwright.perception.scans.projection import Pinhole, Rays, points_from_scan, scan_from_depths, scan_from_points
 from tests.perception.scans.test_scan_filters import ranges, scan
 
 CAMERA = Pinhole(focal_length=4.0, centre_column=2.0, centre_row=1.5)
 
 
 def test_a_wall_across_the_view_is_a_wall_in_the_scan():
-    made, rays = scan_of_depths(np.full((3, 5), 2.0), CAMERA, 1, 0.1, 10.0)
+    made, rays = scan_from_depths(np.full((3, 5), 2.0), CAMERA, 1, 0.1, 10.0)
     assert (rays.angle_min, rays.angle_max) == (pytest.approx(-atan(0.5)), pytest.approx(atan(0.5)))
     assert rays.angle_increment == pytest.approx(atan(0.5) / 2)
     # The rays of the scan are apart by the same angle, those of the picture are not: two of these meet in the first.
@@ -22,14 +22,14 @@ def test_a_wall_across_the_view_is_a_wall_in_the_scan():
 def test_the_left_of_the_image_is_the_end_of_the_scan_and_the_nearest_row_counts():
     depths = np.full((3, 5), 9.0)
     depths[0, 0], depths[1, 0], depths[1, 4] = 1.0, 2.0, 3.0
-    made, _ = scan_of_depths(depths, CAMERA, 2, 0.1, 20.0)
+    made, _ = scan_from_depths(depths, CAMERA, 2, 0.1, 20.0)
     assert made[-1] == pytest.approx(hypot(1.0, 0.5))
     assert made[0] == pytest.approx(hypot(3.0, 1.5))
 
 
 def test_what_a_depth_image_does_not_know():
     depths = np.array([[nan, inf, 50.0, 0.2, 2.0]] * 3)
-    made, _ = scan_of_depths(depths, CAMERA, 1, 0.45, 10.0)
+    made, _ = scan_from_depths(depths, CAMERA, 1, 0.45, 10.0)
     assert np.isnan(made[-1])
     assert np.isposinf(made).sum() == 1
     assert np.isfinite(made).tolist() == [True, False, False, False, False]
@@ -37,7 +37,7 @@ def test_what_a_depth_image_does_not_know():
 
 def test_more_rows_than_there_are_is_an_error():
     with pytest.raises(ValueError, match="scan_height \\( 4 pixels\\) is too large for the image height"):
-        scan_of_depths(np.ones((3, 5)), CAMERA, 4, 0.1, 10.0)
+        scan_from_depths(np.ones((3, 5)), CAMERA, 4, 0.1, 10.0)
 
 
 def test_the_nearest_point_of_each_ray_within_the_heights():
@@ -50,19 +50,22 @@ def test_the_nearest_point_of_each_ray_within_the_heights():
             [nan, 0.0, 0.0],
         ]
     )  # fmt: skip
-    made = scan_of_points(points, rays, 0.0, 1.0, inf)
+    made = scan_from_points(points, rays, 0.0, 1.0, inf)
     assert list(made) == ranges([inf, hypot(3.0, 0.1), hypot(1.0, 0.1), inf])
 
 
 def test_a_point_at_the_very_end_of_the_scan_has_no_ray():
-    assert list(scan_of_points(np.array([[-1.0, 0.0, 0.0]]), Rays(-pi, pi, pi, 0.0, 9.0), 0.0, 1.0, 7.0)) == [7.0, 7.0]
+    assert list(scan_from_points(np.array([[-1.0, 0.0, 0.0]]), Rays(-pi, pi, pi, 0.0, 9.0), 0.0, 1.0, 7.0)) == [
+        7.0,
+        7.0,
+    ]
 
 
 def test_a_scan_becomes_points_and_back():
     given = scan(1.0, 2.0, nan, 20.0, 3.0, angle_min=-0.2)
-    points, places = points_of_scan(given)
+    points, places = points_from_scan(given)
     assert places.tolist() == [0, 1, 4]
     assert np.linalg.norm(points, axis=1) == pytest.approx([1.0, 2.0, 3.0])
     rays = Rays(-0.25, 0.25, 0.1, 0.1, 10.0)
-    back = scan_of_points(points.astype(float), rays, -1.0, 1.0, nan)
+    back = scan_from_points(points.astype(float), rays, -1.0, 1.0, nan)
     assert list(back) == ranges([1.0, 2.0, nan, nan, 3.0])

@@ -114,7 +114,7 @@ def test_a_size_that_does_not_match_is_refused_in_rvizs_words():
 def test_a_field_outside_of_the_point_is_refused():
     message = cloud(xyz([(1, 2, 3)]))
     message.fields[2].offset = 9
-    with pytest.raises(BadCloudError, match="Field 'z' ends at byte 13 of a point of 12 bytes"):
+    with pytest.raises(BadCloudError, match="Field 'z' ends at byte 13, but a point has only 12 bytes"):
         points_of_cloud(message)
 
 

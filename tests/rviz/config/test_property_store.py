@@ -141,7 +141,7 @@ def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, m
     assert PropertyStore("x", section, lambda: (spec,), reported.append).get("Selectable") is value
     assert len(reported) == message
     if message:
-        assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used"
+        assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used instead"
 
 
 def test_the_properties_of_many_links_are_read_in_time_that_grows_with_their_number():

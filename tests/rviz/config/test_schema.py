@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.rviz.config.schema import MAXIMUM_TEXT, PropertySpec, accept, from_text, to_text
+from linkwright.rviz.config.schema import MAX_TEXT_LENGTH, PropertySpec, accept, from_text, to_text
 
 ALPHA = PropertySpec("Alpha", "float", 1.0, minimum=0.0, maximum=1.0)
 LENGTH = PropertySpec("Length", "float", 0.0)
@@ -62,7 +62,7 @@ def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
         (FRAME, "/"),
         (BOX, 1),
         (BOX, "true"),
-        (TEXT, "x" * (MAXIMUM_TEXT + 1)),
+        (TEXT, "x" * (MAX_TEXT_LENGTH + 1)),
         (TEXT, ["x"]),
         (PropertySpec("Group", "group"), "x"),
     ],

@@ -210,10 +210,10 @@ async def test_a_scan_is_shown():
 @pytest.mark.parametrize(
     ("ranges", "expected"),
     [
-        ([math.nan, math.nan], "All 2 ranges are NaN: the sensor could not measure"),
+        ([math.nan, math.nan], "All 2 ranges are NaN: the sensor measured nothing"),
         (
             [0.05, 12.5],
-            "All ranges, 0.05 to 12.50 m, are outside of the message's range_min and range_max, 0.10 and 10.00 m",
+            "All ranges, from 0.05 to 12.50 m, are outside the limits of the message, which are 0.10 and 10.00 m",
         ),
         ([math.inf, math.inf], None),
         ([math.nan, math.inf], None),

@@ -184,7 +184,7 @@ async def test_a_filter_that_takes_too_long_is_not_used_and_says_so():
         made.move({("base", long): IDENTITY})
         await made.settle()
         (display,) = (await opened(made))["tree"]["displays"]
-        text = "This expression is not used: it takes too long to match the names of the frames"
+        text = "This expression is not used: matching it with the frame names takes too long"
         assert display["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
         assert {row["name"] for row in display["status"][1:]} == {"base", long}
         made.display("TF").set_property(("Filter (whitelist)",), "^b")

@@ -152,8 +152,8 @@ async def test_a_large_map_is_thinned_and_said_so():
 @pytest.mark.parametrize(
     ("broken", "text"),
     [
-        ({"layers": ["a"]}, "The map has no layer 'elevation'; its layers: 'a'"),
-        ({"layers": []}, "The map has 0 layers, but data for 1"),
+        ({"layers": ["a"]}, "The map has no layer 'elevation'; its layers are 'a'"),
+        ({"layers": []}, "The map has 0 layers, but data for 1 layers"),
         ({"resolution": 0.0}, "The resolution, lengths or pose of the map are not valid"),
         ({"length_x": NAN}, "The resolution, lengths or pose of the map are not valid"),
         ({"length_y": 0.0}, "The map has 2 x 0 cells"),

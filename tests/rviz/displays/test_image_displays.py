@@ -185,13 +185,13 @@ async def test_a_compressed_image_goes_to_the_page_as_it_is():
         (content,) = contents(w.display("Image"))
         assert content.fields["encoding"] == "file"
         assert content.fields["data"].tobytes() == data
-        assert w.status("Image")["Image"] == ("error", "The image's file is truncated")
+        assert w.status("Image")["Image"] == ("error", "The image file is truncated")
         publisher.publish(CompressedImage(format="jpeg", data=data + b"\xff\xd9"))
         await w.settle()
         assert "Image" not in w.status("Image")
         publisher.publish(CompressedImage(format="h264", data=b"0000"))
         await w.settle()
-        text = "Browsers do not support the image's format: 'h264'"
+        text = "Browsers do not support the image format 'h264'"
         assert w.status("Image")["Image"] == ("error", text)
 
 

@@ -331,7 +331,7 @@ async def test_a_description_may_come_from_a_xacro_file(tmp_path):
         assert any("gone.urdf" in text for _, text in rows.values())
         await client.set("display-1/Description File", "")
         await client.until("property_changed", id="display-1/Description File")
-        assert made.status("RobotModel")["Description File"] == ("error", "No description file is named")
+        assert made.status("RobotModel")["Description File"] == ("error", "No Description File is set")
         await client.set("display-1/Description Source", "Topic")
         rows = {row["name"] for row in (await client.until("display_properties"))["properties"]}
         assert "Description Topic" in rows

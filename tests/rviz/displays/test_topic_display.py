@@ -237,7 +237,7 @@ async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(mon
         assert status() == "the topic has no publisher"
         node = w.graph.create_node("clicks")
         node.create_publisher(PointStamped, "/other", 5)
-        there = "the topic has no publisher; geometry_msgs/msg/PointStamped is published on /other"
+        there = "the topic has no publisher, but geometry_msgs/msg/PointStamped is published on /other"
         await eventually(lambda: status() == there, what=status)
         for name in ("/a", "/b", "/clicked_points", "/c"):
             node.create_publisher(PointStamped, name, 5)

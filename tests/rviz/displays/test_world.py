@@ -138,7 +138,7 @@ async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
         assert made.status("World")["Frame"] == (
             "ok",
-            "tf has no 'world': the world is placed so that 'base' coincides in both",
+            "tf has no frame 'world': the world is placed so that 'base' has the same pose in both",
         )
 
 
@@ -146,7 +146,7 @@ async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns(
     async with world(config("world")) as made, page(made.viewer) as opened:
         await Simulation(made).describe(WORLD)
         await opened.until("display_status", display="global", level="ok")
-        assert made.status("World")["Frame"] == ("ok", "The world is at the frame 'world'")
+        assert made.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
         made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
         own = made.viewer.context.transforms.own
         await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
@@ -161,7 +161,7 @@ async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_wor
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         assert sent(made, "world_poses").frame == "world"
-        text = "tf has no 'world': its frames are placed so that 'base' coincides in both"
+        text = "tf has no frame 'world': the frames of tf are placed so that 'base' has the same pose in both"
         await eventually(lambda: made.status("World")["Frame"] == ("ok", text))
         transforms = made.viewer.context.transforms
         await eventually(lambda: transforms.own("world").parent == "odom")
@@ -172,7 +172,7 @@ async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_wor
         await eventually(lambda: "base" in made.viewer.manager.frames.placed)
 
         made.move({("map", "world"): IDENTITY}, static=True)
-        await eventually(lambda: made.status("World")["Frame"] == ("ok", "The world is at the frame 'world'"))
+        await eventually(lambda: made.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'"))
         assert transforms.own("world") is None
 
 
@@ -201,10 +201,10 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("<sdf", "<world>:1:1: this tag is never finished"),
+        ("<sdf", "<world>:1:1: this tag has no closing '>'"),
         ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
         ("<sdf version='1.6'/>", "<sdf> has neither a world nor a model in it"),
-        (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be placed"),
+        (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be determined"),
     ],
 )
 async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, message):

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from linkwright.page.protocol.configuration import EditName
-from linkwright.rviz.visualization.display_tree import LONGEST, PAUSE, Edit, History
+from linkwright.rviz.visualization.display_tree import MAX_EDITS, MERGE_INTERVAL, Edit, History
 
 
 class Value:
@@ -17,8 +17,8 @@ class Value:
         self.told += 1
 
     def set(self, number: int, subject: str | None = "number") -> None:
-        if subject is not None and self.history.is_at(subject):
-            self.history.prolong()
+        if subject is not None and self.history.would_merge(subject):
+            self.history.merge_change()
         else:
             self.history.add(Edit(EditName("set", "number"), self.swap, self.number, subject))
         self.number = number
@@ -52,9 +52,9 @@ def test_edits_are_taken_back_and_done_again():
 def test_a_drag_is_one_edit():
     value = Value()
     for number in (1, 2, 3):
-        value.now += PAUSE / 2
+        value.now += MERGE_INTERVAL / 2
         value.set(number)
-    value.now += PAUSE * 2
+    value.now += MERGE_INTERVAL * 2
     value.set(4)
     value.history.undo()
     assert value.number == 3
@@ -103,11 +103,11 @@ def test_what_undo_does_not_know_counts_as_unsaved_too():
 
 def test_history_does_not_grow_without_end():
     value = Value()
-    for number in range(LONGEST + 10):
+    for number in range(MAX_EDITS + 10):
         value.set(number, None)
     steps = 0
     while value.history.undoable:
         value.history.undo()
         steps += 1
-    assert steps == LONGEST
+    assert steps == MAX_EDITS
     assert value.history.unsaved

@@ -202,7 +202,7 @@ def test_copies_have_free_names_and_stand_beside():
 
 def test_what_is_deleted_is_gone_with_its_lines_and_nothing_else():
     assert delete(world_text(PLAIN), ["box"]).text == PLAIN.replace(BOX, "")
-    with pytest.raises(EditError, match="there is no 'crate' in the world's file"):
+    with pytest.raises(EditError, match="there is no model or light 'crate' in the world's file"):
         delete(world_text(PLAIN), ["crate"])
 
 
@@ -240,9 +240,9 @@ def test_a_thing_that_comes_from_an_entity_is_told():
         "<?xml version='1.0'?><!DOCTYPE sdf [<!ENTITY m \"<model name='m'><link name='l'/></model>\">]>\n"
         "<sdf version='1.6'><world name='w'>&m;</world></sdf>"
     )
-    with pytest.raises(EditError, match="comes from an entity, and cannot be edited"):
+    with pytest.raises(EditError, match="cannot be edited because it comes from an XML entity"):
         change(world_text(text), [Change("m", static=True)])
-    with pytest.raises(EditError, match="comes from an entity, and cannot be edited"):
+    with pytest.raises(EditError, match="cannot be edited because it comes from an XML entity"):
         delete(world_text(text), ["m"])
 
 

@@ -88,7 +88,7 @@ def test_included_models_can_be_grouped_and_static_ones_are_static():
         (["box", "box"], "at least two models"),
         (["box", "lamp"], "'lamp' is a light"),
         (["box", "ground_plane"], "'ground_plane' is static and 'box' is not"),
-        (["box", "none"], "there is no 'none'"),
+        (["box", "none"], "there is no model or light 'none' in the world's file"),
     ],
 )
 def test_what_cannot_be_a_group_is_told(names, why):
@@ -97,7 +97,7 @@ def test_what_cannot_be_a_group_is_told(names, why):
 
 
 def test_what_is_no_group_is_not_taken_apart():
-    with pytest.raises(EditError, match="'box' contains more than models"):
+    with pytest.raises(EditError, match="'box' cannot be ungrouped: it contains more than models"):
         ungroup(world_text(PLAIN), "box")
     with pytest.raises(EditError, match="'ground_plane' is not a group"):
         ungroup(world_text(PLAIN), "ground_plane")

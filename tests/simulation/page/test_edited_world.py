@@ -73,7 +73,7 @@ def test_no_other_file_is_written_over(tmp_path):
     path.write_text(PLAIN)
     other.write_text("mine")
     world = edited(path)
-    with pytest.raises(EditError, match=r"the file '.*other\.world' already exists"):
+    with pytest.raises(EditError, match=r"the file '.*other\.world' already exists: choose another name"):
         world.save("other.world")
     with pytest.raises(EditError, match=r"cannot write '.*none/w.world'"):
         world.save("none/w.world")

@@ -177,7 +177,9 @@ async def test_pages_share_what_is_edited(tmp_path):
 async def test_what_cannot_be_is_told_to_who_asked(tmp_path):
     async with modelled(written(tmp_path)) as (simulation, client, _):
         await client.send("delete_entities", names=["nobody"])
-        assert (await client.until("simulation_notice"))["text"] == "there is no 'nobody' in the world's file"
+        assert (await client.until("simulation_notice"))[
+            "text"
+        ] == "there is no model or light 'nobody' in the world's file"
         simulation.refusal = "too many links"
         await client.send("delete_entities", names=["box"])
         assert (await client.until("simulation_notice"))["text"] == "too many links"

@@ -14,7 +14,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
 from linkwright.sdf.optics import Optics, distort, optics_of, undistorted
 from linkwright.simulation.rendering import opengl
-from linkwright.simulation.rendering.choice import WAYS, make_renderer
+from linkwright.simulation.rendering.choice import METHODS, make_renderer
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block
@@ -36,7 +36,7 @@ def renderer_of(simulation: Simulation, way: str):
         pytest.skip(f"no {way} here: {error}")
 
 
-@pytest.fixture(params=WAYS)
+@pytest.fixture(params=METHODS)
 def make(request: pytest.FixtureRequest):
     """Makes a renderer one way; the ways that the system lacks are left out."""
     made = []

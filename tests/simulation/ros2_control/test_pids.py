@@ -62,4 +62,4 @@ async def test_a_gain_that_is_no_number_is_told(tmp_path):
     async with served(controlled(path)) as (server, graph, log):
         await Controlled(server, graph).describe(in_description("position", kp="stiff"))
         logged = [each.text for each in log if each.level == LogLevel.WARN]
-        assert logged == ["PID controller of joint 'left_joint': kp is not a number: 'stiff'"]
+        assert logged == ["the PID parameter kp of joint 'left_joint' is not a number: 'stiff'"]

@@ -262,4 +262,9 @@ async def test_a_vendors_copy_of_the_plugin_is_told_of_once(file):
     two = controlled(file, "copy", "<controller_manager_name>other</controller_manager_name>")
     async with served(GROUND, controlled(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
         logged = [each.text for each in log if "is simulated as" in each.text]
-    assert logged == ["'libvendor_ros2_control.so' is simulated as 'ign_ros2_control-system', whose class it names"]
+    assert logged == [
+        (
+            "'libvendor_ros2_control.so' is simulated as 'ign_ros2_control-system', because its plugin name "
+            "is a class of that library"
+        )
+    ]

@@ -92,7 +92,7 @@ def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
     simulation = simulated(GROUND, mesh_model(room))
     (found,) = simulation.scene.diagnostics
     assert found.code == "SIM115"
-    assert "has 8 triangles, but at most 7 can be simulated" in found.message
+    assert "has 8 triangles, but the maximum is 7" in found.message
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 

@@ -7,7 +7,7 @@ from math import pi
 import pytest
 
 from linkwright.speech.commands.numbers import number
-from linkwright.speech.commands.quantities import SAYABLE, quantity
+from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.words import words_of
 
 NUMBERS = {
@@ -106,7 +106,7 @@ def test_what_is_no_number(text: str) -> None:
 
 @pytest.mark.parametrize(("slot", "text", "value"), QUANTITIES)
 def test_quantities(slot: str, text: str, value: float) -> None:
-    assert quantity(slot, words_of(text)) == pytest.approx(value)
+    assert parse_quantity(slot, words_of(text)) == pytest.approx(value)
 
 
 @pytest.mark.parametrize(
@@ -120,9 +120,14 @@ def test_quantities(slot: str, text: str, value: float) -> None:
     ],
 )
 def test_what_is_no_quantity(slot: str, text: str) -> None:
-    assert quantity(slot, words_of(text)) is None
+    assert parse_quantity(slot, words_of(text)) is None
 
 
-@pytest.mark.parametrize("slot", SAYABLE)
+@pytest.mark.parametrize("slot", GRAMMAR_VALUES)
 def test_what_engines_are_told_is_understood(slot: str) -> None:
-    assert [text for texts in SAYABLE[slot].values() for text in texts if quantity(slot, words_of(text)) is None] == []
+    assert [
+        text
+        for texts in GRAMMAR_VALUES[slot].values()
+        for text in texts
+        if parse_quantity(slot, words_of(text)) is None
+    ] == []

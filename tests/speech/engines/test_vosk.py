@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.speech.engine import EngineOptions, Heard
-from linkwright.speech.engines.vosk_engine import LEAST_CONFIDENCE, VoskEngine
+from linkwright.speech.engines.vosk_engine import MIN_CONFIDENCE, VoskEngine
 from tests.speech.engines import fake_vosk
 
 BLOCK = np.zeros(1_600, np.int16)
@@ -73,7 +73,7 @@ def test_silence_is_nothing(model):
     [
         ([("[unk]", 1.0)], ""),
         ([("[unk]", 1.0), ("forward", 1.0)], ""),
-        ([("forward", LEAST_CONFIDENCE - 0.01)], "forward"),
+        ([("forward", MIN_CONFIDENCE - 0.01)], "forward"),
         ([("turn", 0.5), ("left", 1.0)], "turn left"),
         ([("forward", 0.2)], ""),
         ([("forward", 0.5), ("stop", 0.5)], ""),

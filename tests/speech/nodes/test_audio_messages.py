@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Time, get_message
-from linkwright.speech.nodes.audio_messages import AudioForm, AudioReader, audio_data, audio_info, audio_stamped
+from linkwright.speech.nodes.audio_messages import AudioFormat, AudioReader, audio_data, audio_info, audio_stamped
 
 TONE = np.sin(np.arange(1_600) * 2 * np.pi * 440 / 16_000) * 0.5
 
@@ -28,21 +28,21 @@ WHOLE = [f"{kind}{bits}{order}" for kind in "SU" for bits in (16, 24, 32) for or
 
 @pytest.mark.parametrize("name", ["S8", "U8", "F32LE", "F32BE", "F64LE", "F64BE", *WHOLE])
 def test_every_sample_format(name):
-    samples = AudioReader(AudioForm(sample_format=name)).read(coded(TONE, name))
+    samples = AudioReader(AudioFormat(sample_format=name)).read(coded(TONE, name))
     assert samples.dtype == np.int16
     assert np.abs(samples - TONE * 32_768).max() <= (256 if name.endswith("8") else 1)
 
 
 def test_channels_are_averaged():
     both = np.column_stack((TONE, -TONE / 2)).reshape(-1)
-    samples = AudioReader(AudioForm(channels=2)).read(coded(both, "S16LE"))
+    samples = AudioReader(AudioFormat(channels=2)).read(coded(both, "S16LE"))
     assert np.abs(samples - TONE / 4 * 32_768).max() <= 1
 
 
 @pytest.mark.parametrize("rate", [8_000, 44_100, 48_000])
 def test_rates_are_brought_to_that_of_the_engines(rate):
     tone = np.sin(np.arange(rate) * 2 * np.pi * 440 / rate) * 0.5
-    samples = AudioReader(AudioForm(rate=rate)).read(coded(tone, "S16LE"))
+    samples = AudioReader(AudioFormat(rate=rate)).read(coded(tone, "S16LE"))
     expected = np.sin(np.arange(len(samples)) * 2 * np.pi * 440 / 16_000) * 0.5 * 32_768
     assert 15_900 < len(samples) <= 16_000
     assert np.abs(samples - expected)[200:-200].max() < 100
@@ -51,19 +51,19 @@ def test_rates_are_brought_to_that_of_the_engines(rate):
 @pytest.mark.parametrize("channels", [1, 2])
 def test_messages_may_cut_samples_anywhere(channels):
     data = coded(np.column_stack((TONE,) * channels).reshape(-1), "S16LE")
-    reader = AudioReader(AudioForm(channels=channels))
+    reader = AudioReader(AudioFormat(channels=channels))
     pieces = [reader.read(data[at : at + 33]) for at in range(0, len(data), 33)]
-    assert np.array_equal(np.concatenate(pieces), AudioReader(AudioForm(channels=channels)).read(data))
+    assert np.array_equal(np.concatenate(pieces), AudioReader(AudioFormat(channels=channels)).read(data))
     assert np.abs(np.concatenate(pieces) - TONE * 32_768).max() <= 1
 
 
 def test_messages_as_they_are_published():
     data = coded(TONE, "S16LE")
-    reader = AudioReader(AudioForm.of(audio_info(AudioForm())))
+    reader = AudioReader(AudioFormat.of(audio_info(AudioFormat())))
     stamped = audio_stamped(data, Time(sec=3))
     assert stamped.header.stamp.sec == 3
     assert np.array_equal(reader.read(stamped.audio.data), reader.read(audio_data(data).data))
-    info = audio_info(AudioForm())
+    info = audio_info(AudioFormat())
     assert (info.channels, info.sample_rate, info.sample_format) == (1, 16_000, "S16LE")
     assert (info.coding_format, info.bitrate) == ("wave", 256)
 
@@ -82,7 +82,7 @@ def test_what_is_not_read_is_told(changed, word):
     for name, value in {"channels": 1, "sample_rate": 16_000, "sample_format": "S16LE", **changed}.items():
         setattr(info, name, value)
     with pytest.raises(LinkwrightError) as caught:
-        AudioForm.of(info)
+        AudioFormat.of(info)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "VOICE411"
     assert word in str(diagnostic.message)

@@ -14,7 +14,7 @@ from tests.waiting import eventually
     [
         ("en", "", "I heard something that is not a command"),
         ("zh", "", "我听到了声音，但不是任何命令"),
-        ("en", "turn left", "I heard something that is not a command: 'turn left' is the nearest"),
+        ("en", "turn left", "I heard something that is not a command; the most similar one is 'turn left'"),
         ("zh", "左转", "我听到了声音，但不是任何命令，最接近的是“左转”"),
     ],
 )
@@ -52,7 +52,7 @@ async def test_of_a_press_with_a_gap_anywhere_it_is_asked_for_again(engine, talk
     engine.says_at_end.append(final("", start=5.0, nearest="forward"))
     await robot.hold(False)
     await eventually(lambda: robot.said["response"])
-    assert robot.said["response"] == ["I did not hear all of that: please repeat"]
+    assert robot.said["response"] == ["I did not hear all of that, please repeat"]
 
 
 async def test_each_press_is_answered_by_itself_however_late_the_engine_is(engine, talk):

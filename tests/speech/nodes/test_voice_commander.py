@@ -218,7 +218,7 @@ async def test_who_listens_to_all_does_not_answer_what_is_uncertain_without_the_
     assert robot.said["response"] == []
     await robot.hold(True)
     await robot.say(final("forward", 0.4, start=2.0))
-    assert robot.said["response"] == ["I am not sure that I heard 'forward': please repeat"]
+    assert robot.said["response"] == ["I am not sure that I heard 'forward', please repeat"]
 
 
 async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
@@ -229,7 +229,7 @@ async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
     await robot.say(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
     assert robot.said["text"] == ["forward"]
     assert robot.said["command"] == []
-    assert robot.said["response"] == ["I did not hear all of that: please repeat"]
+    assert robot.said["response"] == ["I did not hear all of that, please repeat"]
     await robot.say(final("forward", start=0.8), stamp=11.1)
     assert robot.said["command"] == ["forward"]
     for each in range(3):
@@ -246,7 +246,7 @@ async def test_with_a_small_gap_it_is_done_if_it_is_certain_and_asked_for_again_
         await robot.say(stamp=10.0 + 0.1 * each)
     await robot.say(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
     assert robot.said["command"] == ["forward"]
-    assert robot.said["response"][-1] == "I did not hear all of that: please repeat"
+    assert robot.said["response"][-1] == "I did not hear all of that, please repeat"
 
 
 async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):

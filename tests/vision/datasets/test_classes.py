@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.datasets.classes import ClassRules, objects_of, read_classes, usual_class, usual_rules
+from linkwright.vision.datasets.classes import ClassRules, default_class, default_rules, find_objects, read_classes
 from tests.simulation.worlds import loaded
 from tests.vision.datasets.places import yard
 
@@ -16,14 +16,14 @@ from tests.vision.datasets.places import yard
      ("traffic_cone_clone_1", "traffic_cone"), ("red", "red"), ("7", "7"), ("stop_sign", "stop_sign")],
 )  # fmt: skip
 def test_a_class_is_a_name_without_numbers_and_colours(name, expected):
-    assert usual_class(name) == expected
+    assert default_class(name) == expected
 
 
 def test_what_stands_around_is_no_thing(tmp_path):
     simulation = loaded(yard(tmp_path))
-    rules = usual_rules([simulation])
+    rules = default_rules([simulation])
     assert list(rules.patterns) == ["ball", "crate", "drums"]
-    objects = objects_of(simulation, rules)
+    objects = find_objects(simulation, rules)
     assert [(scene_object.name, scene_object.label) for scene_object in objects] == [
         ("red_ball", 0),
         ("ball_2", 0),
@@ -34,7 +34,7 @@ def test_what_stands_around_is_no_thing(tmp_path):
 
 def test_visuals_that_touch_each_other_are_one_thing(tmp_path):
     simulation = loaded(yard(tmp_path))
-    objects = objects_of(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
+    objects = find_objects(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
     assert [(scene_object.name, scene_object.label, len(scene_object.geoms)) for scene_object in objects] == [
         ("red_ball", 1, 1),
         ("ball_2", 1, 1),
@@ -48,7 +48,7 @@ def test_classes_of_a_file_keep_their_order(tmp_path):
     path.write_text('mbot:\nball: [football, "*_ball"]\ncone: traffic_cone\n')
     rules = read_classes(path)
     assert list(rules.patterns) == ["mbot", "ball", "cone"]
-    assert [rules.class_of(name) for name in ("mbot", "red_ball", "traffic_cone", "ball")] == [0, 1, 2, None]
+    assert [rules.class_number(name) for name in ("mbot", "red_ball", "traffic_cone", "ball")] == [0, 1, 2, None]
 
 
 @pytest.mark.parametrize(

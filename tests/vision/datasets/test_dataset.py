@@ -133,7 +133,7 @@ def test_a_image_does_not_depend_on_those_before(source, monkeypatch, way):
     first, second = Studio(source), Studio(source)
     try:
         if way != "OpenGL":
-            assert f"by {way}," in str(first.way).replace("rays of", "by")
+            assert f"ray casting with {way}," in str(first.way)
         for number in (0, 49, 3, 51):
             first.make(number)
         assert first.make(52) == second.make(52)

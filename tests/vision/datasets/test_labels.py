@@ -10,7 +10,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Channels, axes_of
 from linkwright.vision.datasets.arranging import Shot, arrange
-from linkwright.vision.datasets.classes import objects_of, usual_rules
+from linkwright.vision.datasets.classes import default_rules, find_objects
 from linkwright.vision.datasets.labels import box_of, label_image, runs_of
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Stage
@@ -24,7 +24,7 @@ OPTIONS = Options(width=320, height=240)
 @pytest.fixture
 def stage(tmp_path):
     simulation = loaded(yard(tmp_path))
-    made = Stage(simulation, objects_of(simulation, usual_rules([simulation])), 2, 4)
+    made = Stage(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
     made.set_patterns(np.random.default_rng(0))
     yield made
     made.close()
@@ -163,7 +163,7 @@ def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored)
     path = tmp_path / "signs.world"
     path.write_text(world_text(SIGN))
     simulation = loaded(path)
-    stage = Stage(simulation, objects_of(simulation, usual_rules([simulation])), 1, 0)
+    stage = Stage(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
     try:
         stage.set_patterns(np.random.default_rng(0))
         stage.put(stage.props[0], np.zeros(3), np.eye(3))

@@ -155,7 +155,7 @@ def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
     output, *place = by_hand(path, image, 96, 128)
     detector = opened(path)
     check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
-    assert [str(note) for note in detector.notes] == ["only the boxes of 'seg.onnx' are used; masks are left out"]
+    assert [str(note) for note in detector.notes] == ["only the boxes of 'seg.onnx' are used; its masks are ignored"]
 
 
 def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
@@ -164,7 +164,7 @@ def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
     assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
-    assert "keypoints are left out" in str(detector.notes[0])
+    assert "keypoints are ignored" in str(detector.notes[0])
 
 
 def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
@@ -199,7 +199,7 @@ def test_a_device_that_is_not_there_is_told_of(tmp_path):
     if "CUDAExecutionProvider" in onnxruntime.get_available_providers():
         pytest.skip("there is a GPU")
     assert [str(note) for note in opened(path, device="cuda:0").notes] == [
-        "onnxruntime has no 'cuda:0' here; the network runs on the CPU"
+        "this installation of onnxruntime does not support 'cuda:0'; the network runs on the CPU"
     ]
 
 
@@ -209,7 +209,7 @@ def test_a_gpu_whose_libraries_are_missing_leaves_the_processor_and_a_note(tmp_p
     monkeypatch.setattr(sessions, "has_cuda", lambda: True)
     monkeypatch.setattr(sessions, "load_session", lambda file, gpu: load_session(file))
     assert [str(note) for note in opened(path, device="cuda:0").notes] == [
-        "CUDA does not work here with 'cuda:0'; the network runs on the CPU"
+        "CUDA does not work with 'cuda:0' on this machine; the network runs on the CPU"
     ]
 
 
@@ -329,7 +329,7 @@ def test_networks_in_other_forms(tmp_path, ending):
 @pytest.mark.parametrize(
     ("shape", "names", "words"),
     [
-        ((4, 3, 96, 128), ("images",), "4 images at once"),
+        ((4, 3, 96, 128), ("images",), "is a batch of 4 images, not 1"),
         ((1, 96, 128, 3), ("images",), "does not take an image"),
         ((1, 1, 96, 128), ("images",), "does not take an image"),
         ((1, 10), ("images",), "does not take an image"),
@@ -368,11 +368,11 @@ def test_rows_that_look_like_those_of_yolov5_and_are_none(tmp_path, rows, metada
 def test_names_that_do_not_fit(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)
-    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata name 3")
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata have 3 names")
     labels = tmp_path / "labels.txt"
     labels.write_text("one\ntwo\n")
     code, message, _ = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), labels=labels)
-    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, but '{labels}' names 2")
+    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, but '{labels}' has 2 names")
     assert refused(columns(tmp_path / "v8.onnx"), labels=labels)[0] == "VISION107"
 
 

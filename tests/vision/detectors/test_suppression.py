@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.vision.detectors.suppression import suppressed
+from linkwright.vision.detectors.suppression import non_maximum_suppression
 
 
 def slowly(boxes, scores, classes, iou, most):
@@ -36,4 +36,4 @@ def test_the_same_boxes_stay_inside_out_ones_too(rows, iou, most):
     scores = np.array([row[1] / 8 for row in rows], np.float32)
     classes = np.array([row[2] for row in rows], np.int32)
     expected = slowly(boxes.tolist(), scores.tolist(), classes.tolist(), iou, most)
-    assert suppressed(boxes, scores, classes, iou, most).tolist() == expected
+    assert non_maximum_suppression(boxes, scores, classes, iou, most).tolist() == expected

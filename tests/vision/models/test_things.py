@@ -17,7 +17,7 @@ from linkwright.simulation.simulation import Simulation
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
-from linkwright.vision.evaluation import overlap
+from linkwright.vision.evaluation import intersection_over_union
 from linkwright.vision.models.things import FILE
 
 pytest.importorskip("mujoco", reason="MuJoCo has no wheel here")
@@ -69,7 +69,7 @@ def look(playground, eye, model):
 def test_it_finds_what_stands_before_it(playground, things, eye, model, name):
     image, box = look(playground, eye, model)
     found = things.detect(image, Limits())
-    shares = overlap(box, found.boxes)[0]
+    shares = intersection_over_union(box, found.boxes)[0]
     right = [shares[place] for place in range(len(found)) if found.name(place) == name]
     assert max(right, default=0.0) > 0.5
 

@@ -9,7 +9,7 @@ import numpy as np
 from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.images import RangeFinder, decode_image
 from linkwright.messages import get_message
-from linkwright.vision.places.colours import COLOURS, named_colours
+from linkwright.vision.places.colours import COLOURS, classify_colours
 
 _LEAST_PIXELS = 60
 
@@ -35,7 +35,7 @@ class ColourDetector:
 
     def _see(self, image: Any) -> None:
         pixels = decode_image(image, self._ranges).pixels[:, :, :3]
-        names = named_colours(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
+        names = classify_colours(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
         rows, columns = np.nonzero(names == self._colour)
         found = self._array(header=image.header)
         if len(rows) >= _LEAST_PIXELS:

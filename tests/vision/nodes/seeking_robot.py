@@ -15,7 +15,7 @@ from linkwright.testing import SteppedSimulation
 from linkwright.vision.nodes.detect_3d_node import Detect3DNode
 from linkwright.vision.nodes.object_seeker import ObjectSeeker
 from linkwright.vision.nodes.tracking_node import TrackingNode
-from linkwright.vision.places.camera import camera_model
+from linkwright.vision.places.camera import make_camera_model
 from tests.places import GAZEBO_PACKAGE
 from tests.vision.nodes.colour_detector import ColourDetector, detection
 
@@ -145,7 +145,7 @@ class SeekingRobot(SteppedSimulation):
         self._info.publish(info)
         array = get_message("vision_msgs/msg/Detection2DArray")(header=header)
         x, y, z, *_ = compose(invert(compose(self.robot_pose(), _CAMERA)), self.simulation.model_pose("ball"))
-        camera = camera_model(_WIDTH, _HEIGHT, info.k)
+        camera = make_camera_model(_WIDTH, _HEIGHT, info.k)
         if self._visible and x > RADIUS:
             corners = np.array([[-y - RADIUS, -z - RADIUS, x], [-y + RADIUS, -z + RADIUS, x]])
             pixels = camera.pixels(corners).ravel() + self._numbers.normal(0, 0.7, 4)

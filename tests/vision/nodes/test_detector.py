@@ -316,7 +316,7 @@ async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_i
     await test.advance(30.0)
     assert warnings() == [
         "no images arrive: no node publishes '/yolo/image_raw'",
-        "there are images on '/camera/image_raw'; set the topic with the parameter 'input_image_topic'",
+        "images are published on '/camera/image_raw': set the topic with the parameter 'input_image_topic'",
     ]
 
 
@@ -327,8 +327,8 @@ async def test_a_topic_of_another_type_is_told(test, start, warnings):
     test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
     await test.advance(11.0)
     assert warnings()[-2:] == [
-        f"no images arrive: '/camera' has '{COMPRESSED}', not '{IMAGE}'",
-        "there are images on '/kinect/image_raw'; remap '/camera'",
+        f"no images arrive: the type of '/camera' is '{COMPRESSED}', not '{IMAGE}'",
+        "images are published on '/kinect/image_raw': remap '/camera'",
     ]
 
 
@@ -339,7 +339,10 @@ async def test_qos_that_does_not_fit_is_told(test, start, warnings):
     test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
     await test.advance(11.0)
     assert warnings()[-2:] == [
-        "no images arrive: '/yolo/image_raw' is published best effort, but this node requests reliable",
+        (
+            "no images arrive: the publisher of '/yolo/image_raw' offers best-effort reliability, but this "
+            "node requests reliable"
+        ),
         "set 'image_reliability' to 2",
     ]
 
@@ -402,7 +405,7 @@ async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
     (result,) = running.node.set_parameters([Parameter("threshold", value=0.2)])
     assert result.successful
     (result,) = running.node.set_parameters([Parameter("classes", value=["red"])])
-    assert (result.successful, "is being loaded" in result.reason) == (False, True)
+    assert (result.successful, "cannot be set until the detector is loaded" in result.reason) == (False, True)
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
     slow.proceed.set()
     await eventually(running.loaded.done)

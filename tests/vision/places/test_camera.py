@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.vision.places.camera import camera_model
+from linkwright.vision.places.camera import make_camera_model
 
 K = [500.0, 0.0, 319.5, 0.0, 510.0, 239.5, 0.0, 0.0, 1.0]
 P = [400.0, 0.0, 319.5, 0.0, 0.0, 400.0, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0]
@@ -20,7 +20,9 @@ P = [400.0, 0.0, 319.5, 0.0, 0.0, 400.0, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0]
     ],
 )
 def test_pixels_and_rays_agree(lens):
-    camera = camera_model(640, 480, K, lens, lens="rational_polynomial" if len(lens) > 5 else "plumb_bob")
+    camera = make_camera_model(
+        640, 480, K, lens, distortion_model="rational_polynomial" if len(lens) > 5 else "plumb_bob"
+    )
     pixels = np.array([[320.0, 240.0], [10.0, 20.0], [600.0, 30.0], [300.0, 470.0]])
     rays = camera.rays(pixels)
     assert rays[0] == pytest.approx([0, 0, 1], abs=1e-6)
@@ -28,14 +30,14 @@ def test_pixels_and_rays_agree(lens):
 
 
 def test_the_rectified_camera_counts_where_k_says_nothing():
-    camera = camera_model(640, 480, [0.0] * 9, [], P)
+    camera = make_camera_model(640, 480, [0.0] * 9, [], P)
     assert camera.rays(np.array([[720.0, 240.0]])) == pytest.approx(np.array([[1.0, 0.0, 1.0]]))
 
 
 def test_a_camera_that_says_too_little_is_refused():
     with pytest.raises(ValueError, match="no focal length"):
-        camera_model(640, 480, [0.0] * 9)
+        make_camera_model(640, 480, [0.0] * 9)
     with pytest.raises(ValueError, match="0 x 480"):
-        camera_model(0, 480, K)
+        make_camera_model(0, 480, K)
     with pytest.raises(ValueError, match="equidistant"):
-        camera_model(640, 480, K, [0.1, 0, 0, 0], lens="equidistant")
+        make_camera_model(640, 480, K, [0.1, 0, 0, 0], distortion_model="equidistant")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.vision.places.colours import COLOURS, colour_of, named_colours
+from linkwright.vision.places.colours import COLOURS, classify_colours, colour_of
 
 SAMPLES = {
     "red": [(200, 13, 15), (120, 10, 10), (230, 60, 50)],
@@ -26,7 +26,7 @@ SAMPLES = {
 @pytest.mark.parametrize("name", COLOURS)
 def test_colours_have_the_names_that_people_give_them(name):
     pixels = np.array(SAMPLES[name], np.uint8)
-    assert [COLOURS[named_colour] for named_colour in named_colours(pixels)] == [name] * len(pixels)
+    assert [COLOURS[named_colour] for named_colour in classify_colours(pixels)] == [name] * len(pixels)
 
 
 def disc(colour, ground=(180, 180, 180), shade=1.0):

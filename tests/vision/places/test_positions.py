@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.vision.places.camera import camera_model
-from linkwright.vision.places.positions import place_by_depth, place_on_ground
+from linkwright.vision.places.camera import make_camera_model
+from linkwright.vision.places.positions import position_from_depth, position_on_ground
 
-CAMERA = camera_model(640, 480, [500.0, 0.0, 319.5, 0.0, 500.0, 239.5, 0.0, 0.0, 1.0])
-SMALL = camera_model(320, 240, [250.0, 0.0, 159.5, 0.0, 250.0, 119.5, 0.0, 0.0, 1.0])
+CAMERA = make_camera_model(640, 480, [500.0, 0.0, 319.5, 0.0, 500.0, 239.5, 0.0, 0.0, 1.0])
+SMALL = make_camera_model(320, 240, [250.0, 0.0, 159.5, 0.0, 250.0, 119.5, 0.0, 0.0, 1.0])
 UP = np.array([0.0, -1.0, 0.0])
 
 
@@ -31,14 +31,14 @@ def ball(centre, radius, behind=4.0, camera=CAMERA):
 @pytest.mark.parametrize("centre", [(0.0, 0.0, 1.5), (0.5, 0.2, 2.0), (-0.9, -0.3, 3.0)])
 def test_a_ball_before_a_wall(centre):
     depths, box = ball(centre, 0.15)
-    place = place_by_depth(box, depths, CAMERA)
+    place = position_from_depth(box, depths, CAMERA)
     assert place.centre == pytest.approx(centre, abs=0.04)
     assert (place.width, place.height, place.depth) == pytest.approx((0.3, 0.3, 0.3), abs=0.04)
 
 
 def test_a_depth_image_of_another_size():
     depths, box = ball((0.3, 0.1, 2.0), 0.2, camera=SMALL)
-    place = place_by_depth(box, depths, CAMERA)
+    place = position_from_depth(box, depths, CAMERA)
     assert place.centre == pytest.approx((0.3, 0.1, 2.0), abs=0.05)
 
 
@@ -46,21 +46,21 @@ def test_depths_that_are_not_known_do_not_count():
     depths, box = ball((0.0, 0.0, 1.5), 0.15)
     holes = np.random.default_rng(1).random(depths.shape) < 0.5
     depths[holes] = np.random.default_rng(2).choice([np.nan, np.inf, 0.0], holes.sum())
-    assert place_by_depth(box, depths, CAMERA).centre == pytest.approx((0.0, 0.0, 1.5), abs=0.04)
+    assert position_from_depth(box, depths, CAMERA).centre == pytest.approx((0.0, 0.0, 1.5), abs=0.04)
 
 
 def test_a_box_without_depths_has_no_place():
     depths, box = ball((0.0, 0.0, 1.5), 0.15)
-    assert place_by_depth(box, np.full_like(depths, np.nan), CAMERA) is None
-    assert place_by_depth(box, depths, CAMERA, farthest=1.0) is None
-    assert place_by_depth(np.array([-50.0, -50.0, -10.0, -10.0]), depths, CAMERA) is None
-    assert place_by_depth(np.array([630.0, 100.0, 690.0, 140.0]), depths, CAMERA) is None
+    assert position_from_depth(box, np.full_like(depths, np.nan), CAMERA) is None
+    assert position_from_depth(box, depths, CAMERA, max_depth=1.0) is None
+    assert position_from_depth(np.array([-50.0, -50.0, -10.0, -10.0]), depths, CAMERA) is None
+    assert position_from_depth(np.array([630.0, 100.0, 690.0, 140.0]), depths, CAMERA) is None
 
 
 def test_the_nearest_surface_counts_though_more_is_behind():
     depths = np.full((480, 640), 5.0)
     depths[200:280, 310:330] = 1.0
-    place = place_by_depth(np.array([290.0, 200.0, 350.0, 280.0]), depths, CAMERA)
+    place = position_from_depth(np.array([290.0, 200.0, 350.0, 280.0]), depths, CAMERA)
     assert place.centre[2] == pytest.approx(1.0, abs=0.01)
     assert place.depth < 0.01, "what is flat is not as deep as wide"
 
@@ -68,7 +68,9 @@ def test_the_nearest_surface_counts_though_more_is_behind():
 def test_a_few_near_depths_are_no_thing():
     depths = np.full((480, 640), 2.0)
     depths[200:280:7, 300:340:7] = 0.3
-    assert place_by_depth(np.array([290.0, 190.0, 350.0, 290.0]), depths, CAMERA).centre[2] == pytest.approx(2.0, 0.02)
+    assert position_from_depth(np.array([290.0, 190.0, 350.0, 290.0]), depths, CAMERA).centre[2] == pytest.approx(
+        2.0, 0.02
+    )
 
 
 def drum(x, z, radius, height, above):
@@ -83,7 +85,7 @@ def drum(x, z, radius, height, above):
 @pytest.mark.parametrize(("x", "z"), [(0.0, 2.0), (0.8, 3.0), (-0.5, 1.6)])
 def test_what_stands_on_the_ground(x, z):
     box = drum(x, z, 0.15, 0.6, 0.5)
-    place = place_on_ground(box, CAMERA, UP, 0.5)
+    place = position_on_ground(box, CAMERA, UP, 0.5)
     assert (place.centre[0], place.centre[2]) == pytest.approx((x, z), abs=0.06)
     assert place.width == pytest.approx(0.3, abs=0.05)
     assert place.centre[1] == pytest.approx(0.2, abs=0.06), "in the middle of its height"
@@ -91,7 +93,7 @@ def test_what_stands_on_the_ground(x, z):
 
 def test_a_ball_on_the_ground_touches_it_below_its_middle():
     _, box = ball((0.4, 0.05, 2.0), 0.15)
-    place = place_on_ground(box, CAMERA, UP, 0.2)
+    place = position_on_ground(box, CAMERA, UP, 0.2)
     assert place.centre == pytest.approx((0.4, 0.05, 2.0), abs=0.06)
     assert place.width == pytest.approx(0.3, abs=0.03)
 
@@ -99,11 +101,11 @@ def test_a_ball_on_the_ground_touches_it_below_its_middle():
 def test_a_camera_that_looks_down():
     tilt = np.radians(20.0)
     up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
-    place = place_on_ground(np.array([300.0, 200.0, 340.0, 240.0]), CAMERA, up, 1.0)
+    place = position_on_ground(np.array([300.0, 200.0, 340.0, 240.0]), CAMERA, up, 1.0)
     assert place.centre[2] == pytest.approx(1.0 / np.sin(tilt), rel=0.05)
 
 
 def test_what_does_not_stand_on_ground_that_is_seen_has_no_place():
-    assert place_on_ground(np.array([300.0, 100.0, 340.0, 200.0]), CAMERA, UP, 0.5) is None, "above the horizon"
-    assert place_on_ground(np.array([300.0, 100.0, 340.0, 480.0]), CAMERA, UP, 0.5) is None, "cut by the edge"
-    assert place_on_ground(np.array([300.0, 200.0, 340.0, 260.0]), CAMERA, UP, 0.5, farthest=3.0) is None
+    assert position_on_ground(np.array([300.0, 100.0, 340.0, 200.0]), CAMERA, UP, 0.5) is None, "above the horizon"
+    assert position_on_ground(np.array([300.0, 100.0, 340.0, 480.0]), CAMERA, UP, 0.5) is None, "cut by the edge"
+    assert position_on_ground(np.array([300.0, 200.0, 340.0, 260.0]), CAMERA, UP, 0.5, max_distance=3.0) is None

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.vision.detections import Detections
 from linkwright.vision.evaluation import GroundTruth, evaluate
-from linkwright.vision.training.card import Examination, card, confusion, made_of, origin
+from linkwright.vision.training.card import Examination, confusion, dataset_facts, make_card, origin
 
 BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
@@ -23,7 +23,7 @@ def figures(classes):
 
 
 def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
-    text = card("eye", {"command": "`a | b`"}, [Examination("Rooms", figures([None, 0]))])
+    text = make_card("eye", {"command": "`a | b`"}, [Examination("Rooms", figures([None, 0]))])
     assert text.startswith("# eye\n")
     assert "| command | `a \\| b` |" in text
     assert "| ball | 1 | 0.000 | 0.000 | 0.000 | 0.000 |" in text
@@ -32,7 +32,7 @@ def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
 
 
 def test_a_card_of_a_network_without_faults_says_so():
-    text = card("eye", {}, [Examination("Rooms", figures([0, 1]))])
+    text = make_card("eye", {}, [Examination("Rooms", figures([0, 1]))])
     assert "| all | 2 | 1.000 | 1.000 | | |" in text
     assert text.endswith("## Where it fails\n\nNothing stands out in these images.\n")
 
@@ -68,7 +68,7 @@ def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
     )
     seen = origin(write_card(tmp_path / "seen", "maze", "house"), lesson)
     assert seen.endswith(" It was trained on other images of house.")
-    text = card("eye", {}, [Examination("Rooms", figures([0, 1]), seen)])
+    text = make_card("eye", {}, [Examination("Rooms", figures([0, 1]), seen)])
     assert f"## Rooms\n\n{seen}\n\n1 images." in text
     assert origin(tmp_path, lesson) == ""
     assert origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
@@ -76,7 +76,7 @@ def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
 
 def test_a_card_says_how_the_dataset_was_made(tmp_path):
     write_card(tmp_path, "playground", more=[{"seed": 3, "most": 10}, {"seed": 4, "most": 10}])
-    assert made_of(tmp_path) == {
+    assert dataset_facts(tmp_path) == {
         "worlds": f"playground (sha256 {sum_of('playground')[:12]})",
         "options of linkwright dataset": "seed 3, most 10; seed 4, most 10",
         "robots and models put in": "mbot.urdf",
@@ -87,4 +87,4 @@ def test_a_card_says_how_the_dataset_was_made(tmp_path):
 def test_of_datasets_that_others_made_it_says_nothing(tmp_path, content):
     if content is not None:
         (tmp_path / "dataset.json").write_text(content)
-    assert made_of(tmp_path) == {}
+    assert dataset_facts(tmp_path) == {}

@@ -16,7 +16,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.training.images import read_lesson
 from linkwright.vision.training.options import Options
 from linkwright.vision.training.reading import open_dataset
-from linkwright.vision.training.teaching import teach
+from linkwright.vision.training.teaching import train_network
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
 # `make test-train` sets the variable: there it is an error when PyTorch is missing, which would else skip everything.
@@ -31,7 +31,7 @@ if HERE:
     from linkwright.vision.training.learning.export import to_onnx
     from linkwright.vision.training.learning.losses import assign, loss, overlaps
     from linkwright.vision.training.learning.network import Network, Shape, cells
-    from linkwright.vision.training.learning.optimizer import orthogonal
+    from linkwright.vision.training.learning.optimizer import orthogonalize
     from linkwright.vision.training.learning.starting import load_weights
 
 
@@ -197,7 +197,7 @@ def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_start_at
         (None, 4, "does not exist"),
         (b"none", 4, "not an ONNX file"),
         (b"", 4, "not a network of"),
-        ("exported", 8, "its first layer has 4 channels, not 8"),
+        ("exported", 8, "its first layer has 4 channels, but this network has 8"),
     ],
 )
 def test_weights_that_cannot_be_begun_with_are_said(exported, tmp_path, content, channels, reason):
@@ -280,7 +280,7 @@ def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
         if epoch.number == 2:
             raise KeyboardInterrupt
 
-    result = teach(options(shapes, tmp_path), stop_after_two)
+    result = train_network(options(shapes, tmp_path), stop_after_two)
     assert result.interrupted
     assert result.network.is_file()
     assert "2 of 4" in result.card.read_text(encoding="utf-8")
@@ -292,7 +292,7 @@ def test_steps_of_kernels_are_as_long_in_all_directions(shape):
     torch.manual_seed(0)
     gradient = torch.randn(shape) * torch.logspace(-3, 0, shape[0])[:, None, None, None]
     spread = torch.linalg.svdvals(gradient.flatten(1))
-    found = torch.linalg.svdvals(orthogonal(gradient).flatten(1))
+    found = torch.linalg.svdvals(orthogonalize(gradient).flatten(1))
     assert spread.max() > 10 * spread.min()
     assert found.min() > 0.4
     assert found.max() < 1.3

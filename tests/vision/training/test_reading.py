@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.training.images import Lesson, changed, read_image, read_lesson, repeated, repeats
+from linkwright.vision.training.images import Lesson, changed, read_image, read_lesson, repeat_factors, repeated_indices
 from linkwright.vision.training.options import Options, View
 from linkwright.vision.training.reading import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
@@ -73,8 +73,11 @@ def test_the_yaml_file_itself_may_be_named(shapes):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("train: images/train\n", "'names' does not name the classes"),
-        ("train: images/train\nnames: {0: a, 2: b}\n", "'names' does not name the classes"),
+        ("train: images/train\n", "'names' must be a list of names, or a mapping from 0, 1, ... to names"),
+        (
+            "train: images/train\nnames: {0: a, 2: b}\n",
+            "'names' must be a list of names, or a mapping from 0, 1, ... to names",
+        ),
         ("names: [a]\n", "neither 'train' nor 'val'"),
         ("- 1\n", "not a mapping of names to values"),
         ("names: [a\n", "is not a dataset"),
@@ -182,11 +185,11 @@ def test_images_of_rare_classes_are_seen_more_often():
 
     objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
     lesson = Lesson(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
-    times = repeats(lesson, 4)
+    times = repeat_factors(lesson, 4)
     assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
     assert times[24] == pytest.approx(np.sqrt(8))
     assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
-    chosen = [repeated(times, np.random.default_rng(seed)) for seed in range(200)]
+    chosen = [repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
     counts = np.mean([np.bincount(each, minlength=len(objects)) for each in chosen], 0)
     assert counts[:24] == pytest.approx(1)
     assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)

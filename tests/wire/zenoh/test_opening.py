@@ -176,7 +176,7 @@ def obstacle_at(certificates) -> Callable[..., str]:
 def test_certificates_that_do_not_fit(obstacle_at):
     assert not obstacle_at()
     assert "the certificate of tls/localhost" in obstacle_at(authority="other")
-    assert "is refused here: " in obstacle_at(authority="other")
+    assert "is not accepted: " in obstacle_at(authority="other")
     assert "not valid for '127.0.0.1'" in obstacle_at("127.0.0.1")
     assert "other.pem': " in obstacle_at(certificate="other", key="other")
     assert "refuses the certificate" in obstacle_at(certificate="other", key="other")

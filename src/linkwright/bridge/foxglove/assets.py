@@ -13,7 +13,7 @@ _ENDINGS = frozenset(
     (".stl", ".dae", ".obj", ".glb", ".gltf", ".mtl", ".bin", ".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".tga",
      ".tif", ".tiff", ".urdf", ".xacro")
 )  # fmt: skip
-_LARGEST = 256 << 20
+_MAX_SIZE = 256 << 20
 
 
 class AssetRefusedError(Exception):
@@ -31,7 +31,7 @@ class Assets:
         self._finder = finder
         self._packages: set[str] = set()
 
-    def allow_packages_of(self, text: str) -> None:
+    def allow_packages_in(self, text: str) -> None:
         """Allow the packages that a robot description names."""
         self._packages.update(_PACKAGE.findall(text))
 
@@ -41,9 +41,9 @@ class Assets:
         Raises:
             AssetRefusedError: the file may not be read, or does not exist.
         """
-        found = _PACKAGE.match(uri)
-        relative = PurePosixPath(uri[found.end() :]) if found else PurePosixPath()
-        if found is None or found[1] not in self._packages:
+        match = _PACKAGE.match(uri)
+        relative = PurePosixPath(uri[match.end() :]) if match else PurePosixPath()
+        if match is None or match[1] not in self._packages:
             raise AssetRefusedError("only files of packages that a robot description names are given")
         if relative.suffix.lower() not in _ENDINGS:
             raise AssetRefusedError("only meshes and images are given")
@@ -52,10 +52,10 @@ class Assets:
         try:
             if self._finder is None:
                 self._finder = PackageFinder()
-            share = self._finder.find(found[1])
+            share = self._finder.find(match[1])
             if share is None:
-                raise AssetRefusedError(phrase("there is no package '{found}'", found=found[1]))
-            return _content(found[1], share, relative)
+                raise AssetRefusedError(phrase("there is no package '{found}'", found=match[1]))
+            return _content(match[1], share, relative)
         except LinkwrightError as error:
             raise AssetRefusedError(error.diagnostics[0].message) from None
         except OSError as error:
@@ -74,6 +74,6 @@ def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
             raise AssetRefusedError("a link leads out of the package")
     if not path.is_file() or path.suffix.lower() not in _ENDINGS:
         raise AssetRefusedError("it is neither a mesh nor an image")
-    if path.stat().st_size > _LARGEST:
+    if path.stat().st_size > _MAX_SIZE:
         raise AssetRefusedError("it is too large")
     return path.read_bytes()

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from aiohttp import web
 
 _CAPABILITIES = ("clientPublish", "parameters", "parametersSubscribe", "services", "connectionGraph", "assets")
-_EVERYTHING = [".*"]
-_MOST_CLIENTS = 32
-_LARGEST_MESSAGE = 16 << 20
-_LOOK_AFTER = 0.1
-"""Seconds for which changes of the graph are gathered."""
+_MATCH_ALL = [".*"]
+_MAX_CLIENTS = 32
+_MAX_MESSAGE_SIZE = 16 << 20
+_UPDATE_DELAY_S = 0.1
+"""Seconds for which changes of the graph are collected before clients are notified."""
 
 
 class FoxgloveBridge(SingleNode):
@@ -49,11 +49,11 @@ class FoxgloveBridge(SingleNode):
             declare = self._node.declare_parameter
             port, address = int(declare("port", 8765).value), str(declare("address", "127.0.0.1").value)
             filters = {
-                name: NameFilter(name, list(declare(name, _EVERYTHING).value))
+                name: NameFilter(name, list(declare(name, _MATCH_ALL).value))
                 for name in ("topic_whitelist", "service_whitelist", "param_whitelist", "client_topic_whitelist")
             }
             self._origins: Sequence[str] = list(declare("allowed_origins", [""]).value)
-            self._most_bytes = int(declare("send_buffer_limit", 10_000_000).value)
+            self._max_queue_bytes = int(declare("send_buffer_limit", 10_000_000).value)
             self._listener = _listen(address, port)
         self._offer = Offer(
             node=self._node,
@@ -68,10 +68,10 @@ class FoxgloveBridge(SingleNode):
         self._loop = asyncio.get_running_loop()
         self._runner: web.AppRunner | None = None
         self._server: asyncio.Server | None = None
-        self._look_due: asyncio.TimerHandle | None = None
+        self._update_timer: asyncio.TimerHandle | None = None
         self._identity = str(time.time_ns())
-        self._listen_to_the_graph(graph)
-        self._serving = self._loop.create_task(self._serve())
+        self._watch_graph(graph)
+        self._server_task = self._loop.create_task(self._serve())
 
     @property
     def address(self) -> str:
@@ -81,83 +81,83 @@ class FoxgloveBridge(SingleNode):
 
     def close(self) -> None:
         """Close the connections and the server."""
-        self._graph.unwatch(self._graph_changed)
-        if self._look_due is not None:
-            self._look_due.cancel()
+        self._graph.unwatch(self._on_graph_change)
+        if self._update_timer is not None:
+            self._update_timer.cancel()
         for session in list(self._sessions):
             session.close()
         self._offer.parameters.close()
-        self._serving.cancel()
+        self._server_task.cancel()
         (self._server or self._listener).close()  # not in a callback, which may not run before the loop ends
         if self._runner is not None:
-            self._goodbye = self._loop.create_task(self._runner.cleanup())
+            self._cleanup_task = self._loop.create_task(self._runner.cleanup())
         super().close()
 
     # --- the graph ---------------------------------------------------------------------------------------------
 
-    def _listen_to_the_graph(self, graph: Graph) -> None:
+    def _watch_graph(self, graph: Graph) -> None:
         self._graph = graph
         node = self._node
-        graph.watch(self._graph_changed)
+        graph.watch(self._on_graph_change)
         node.create_subscription(
             String,
             "/robot_description",
-            lambda message: self._offer.assets.allow_packages_of(message.data),
+            lambda message: self._offer.assets.allow_packages_in(message.data),
             DESCRIPTION_QOS,
         )
         node.create_subscription(
-            "rcl_interfaces/msg/ParameterEvent", "/parameter_events", self._parameters_changed, 100
+            "rcl_interfaces/msg/ParameterEvent", "/parameter_events", self._on_parameter_event, 100
         )
         if node.get_parameter("use_sim_time").value:
             self._capabilities.append("time")
-            node.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._ticked, 10)
+            node.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._on_clock, 10)
         self._offer.channels.poll_changes()
         self._offer.services.poll_changes()
 
-    def _graph_changed(self) -> None:
+    def _on_graph_change(self) -> None:
         with suppress(RuntimeError):  # the event loop was closed
-            self._loop.call_soon_threadsafe(self._look_soon)
+            self._loop.call_soon_threadsafe(self._schedule_update)
 
-    def _look_soon(self) -> None:
-        if self._look_due is None and not self._node.handle.is_destroyed:
-            self._look_due = self._loop.call_later(_LOOK_AFTER, self._look)
+    def _schedule_update(self) -> None:
+        if self._update_timer is None and not self._node.handle.is_destroyed:
+            self._update_timer = self._loop.call_later(_UPDATE_DELAY_S, self._look)
 
     def _look(self) -> None:
-        self._look_due = None
-        channels, gone = self._offer.channels.poll_changes()
-        services, ended = self._offer.services.poll_changes()
+        self._update_timer = None
+        channels, removed_channels = self._offer.channels.poll_changes()
+        services, removed_services = self._offer.services.poll_changes()
         messages: list[dict[str, Any]] = []
-        if gone:
-            messages.append({"op": "unadvertise", "channelIds": gone})
+        if removed_channels:
+            messages.append({"op": "unadvertise", "channelIds": removed_channels})
         if channels:
             messages.append({"op": "advertise", "channels": [channel.advertisement() for channel in channels]})
-        if ended:
-            messages.append({"op": "unadvertiseServices", "serviceIds": ended})
+        if removed_services:
+            messages.append({"op": "unadvertiseServices", "serviceIds": removed_services})
         if services:
             messages.append({"op": "advertiseServices", "services": [service.advertisement() for service in services]})
         for session in self._sessions:
             for message in messages:
                 session.client.send(message)
-            session.graph_changed(gone)
+            session.graph_changed(removed_channels)
 
-    def _parameters_changed(self, event: Any) -> None:
+    def _on_parameter_event(self, event: Any) -> None:
         from linkwright.graph.parameters.files import plain_value
 
         watching = [session for session in self._sessions if session.parameters is not None]
         if not watching:
             return
-        changed = [
+        entries = [
             parameter_entry(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
             for new_parameter in (*event.new_parameters, *event.changed_parameters)
         ]
         for session in watching:
-            wanted = [
-                parameter for parameter in changed if not session.parameters or parameter["name"] in session.parameters
+            client_entries = [
+                parameter for parameter in entries if not session.parameters or parameter["name"] in session.parameters
             ]
-            if wanted:
-                session.client.send({"op": "parameterValues", "parameters": wanted})
+            if client_entries:
+                session.client.send({"op": "parameterValues", "parameters": client_entries})
 
-    def _ticked(self, message: Any) -> None:
+    def _on_clock(self, message: Any) -> None:
         frame = time_frame(message.clock.nanoseconds)
         for session in self._sessions:
             session.client.send_data(frame)
@@ -168,7 +168,7 @@ class FoxgloveBridge(SingleNode):
         from linkwright.page.http_server import SERVER_LOGGER, web
 
         application = web.Application()
-        application.router.add_get("/", self._connected)
+        application.router.add_get("/", self._on_connection)
         self._runner = web.AppRunner(
             application, handle_signals=False, access_log=None, logger=SERVER_LOGGER, shutdown_timeout=0.5
         )
@@ -178,29 +178,29 @@ class FoxgloveBridge(SingleNode):
         await self._server.start_serving()
         self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self.address}")
 
-    async def _connected(self, request: web.Request) -> web.StreamResponse:
+    async def _on_connection(self, request: web.Request) -> web.StreamResponse:
         from linkwright.page.http_server import web
 
         if not is_allowed_origin(request.headers.get("Origin"), self._origins):
             return web.Response(status=403, text="Pages of other sites may not connect.\n")
-        if len(self._sessions) >= _MOST_CLIENTS:
+        if len(self._sessions) >= _MAX_CLIENTS:
             return web.Response(status=503, text="Too many clients are connected.\n")
-        socket_ = web.WebSocketResponse(
-            protocols=SUBPROTOCOLS, heartbeat=15.0, timeout=0.5, compress=False, max_msg_size=_LARGEST_MESSAGE
+        websocket = web.WebSocketResponse(
+            protocols=SUBPROTOCOLS, heartbeat=15.0, timeout=0.5, compress=False, max_msg_size=_MAX_MESSAGE_SIZE
         )
-        if not socket_.can_prepare(request).ok:
+        if not websocket.can_prepare(request).ok:
             return web.Response(status=426, text="Open this address in Foxglove or Lichtblick.\n")
-        await socket_.prepare(request)
-        if socket_.ws_protocol is None:
-            await socket_.close(code=1002, message=b"the client speaks none of the protocols")
-            return socket_
-        client = Client(socket_, self._most_bytes)
+        await websocket.prepare(request)
+        if websocket.ws_protocol is None:
+            await websocket.close(code=1002, message=b"the client speaks none of the protocols")
+            return websocket
+        client = Client(websocket, self._max_queue_bytes)
         session = Session(self._offer, client)
         self._greet(client)
         self._sessions[session] = None
         writer = asyncio.get_running_loop().create_task(client.write())
         try:
-            async for message in socket_:
+            async for message in websocket:
                 if message.type in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
                     session.receive(message.data)
         finally:
@@ -208,7 +208,7 @@ class FoxgloveBridge(SingleNode):
             session.close()
             writer.cancel()
             await asyncio.gather(writer, return_exceptions=True)
-        return socket_
+        return websocket
 
     def _greet(self, client: Client) -> None:
         client.send(

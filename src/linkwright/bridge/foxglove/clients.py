@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from aiohttp.web import WebSocketResponse
 
-_MOST_CONTROL = 4096
-"""Messages other than data that may wait; a client that leaves more unread is cut off."""
+_MAX_CONTROL_MESSAGES = 4096
+"""The maximum number of queued messages that are not data. A client that leaves more unread is disconnected."""
 
 
 class Client:
@@ -22,46 +22,46 @@ class Client:
 
     Args:
         socket: the WebSocket of the client.
-        most_bytes: the maximum number of bytes of topic messages in the queue.
+        max_bytes: the maximum number of bytes of topic messages in the queue.
     """
 
-    def __init__(self, socket: WebSocketResponse, most_bytes: int) -> None:
+    def __init__(self, socket: WebSocketResponse, max_bytes: int) -> None:
         self._socket = socket
-        self._most = most_bytes
+        self._max_bytes = max_bytes
         self._control: deque[str | bytes] = deque()
         self._data: deque[bytes] = deque()
-        self._bytes = 0
-        self._filled = asyncio.Event()
+        self._queued_bytes = 0
+        self._has_messages = asyncio.Event()
 
     def send(self, message: dict[str, Any] | bytes) -> None:
         """Queue a message that is never dropped."""
-        made = message if isinstance(message, bytes) else json.dumps(message, ensure_ascii=False)
-        self._control.append(made)
-        self._filled.set()
+        encoded = message if isinstance(message, bytes) else json.dumps(message, ensure_ascii=False)
+        self._control.append(encoded)
+        self._has_messages.set()
 
     def send_data(self, frame: bytes) -> None:
         """Queue a message of a topic, which is dropped if the client is too slow."""
         self._data.append(frame)
-        self._bytes += len(frame)
-        while self._bytes > self._most and len(self._data) > 1:
-            self._bytes -= len(self._data.popleft())
-        self._filled.set()
+        self._queued_bytes += len(frame)
+        while self._queued_bytes > self._max_bytes and len(self._data) > 1:
+            self._queued_bytes -= len(self._data.popleft())
+        self._has_messages.set()
 
     async def write(self) -> None:
         """Send the queued messages until the connection ends."""
         with suppress(ConnectionError):
             while True:
-                if len(self._control) > _MOST_CONTROL:
+                if len(self._control) > _MAX_CONTROL_MESSAGES:
                     await self._socket.close(code=1008, message=b"too much was left unread")
                     return
                 if self._control:
                     message = self._control.popleft()
                 elif self._data:
                     message = self._data.popleft()
-                    self._bytes -= len(message)
+                    self._queued_bytes -= len(message)
                 else:
-                    self._filled.clear()
-                    await self._filled.wait()
+                    self._has_messages.clear()
+                    await self._has_messages.wait()
                     continue
                 if isinstance(message, bytes):
                     await self._socket.send_bytes(message)

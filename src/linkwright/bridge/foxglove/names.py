@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph.names.expressions import Expression, ExpressionError, TooCostlyError
 
-_MOST_KNOWN = 10_000
+_MAX_CACHED = 10_000
 """The number of cached decisions; clients may ask for as many names as they like."""
 
 
@@ -26,16 +26,18 @@ class NameFilter:
 
     def __init__(self, parameter: str, expressions: Sequence[str]) -> None:
         self._expressions = [_read(parameter, expression) for expression in expressions]
-        self._known: dict[str, bool] = {}
+        self._decisions: dict[str, bool] = {}
 
     def accepts(self, name: str) -> bool:
         """Return whether one of the expressions matches a name."""
-        known = self._known.get(name)
-        if known is None:
-            if len(self._known) == _MOST_KNOWN:
-                self._known.clear()
-            known = self._known[name] = any(self._matches(expression, name) for expression in tuple(self._expressions))
-        return known
+        decision = self._decisions.get(name)
+        if decision is None:
+            if len(self._decisions) == _MAX_CACHED:
+                self._decisions.clear()
+            decision = self._decisions[name] = any(
+                self._matches(expression, name) for expression in tuple(self._expressions)
+            )
+        return decision
 
     def _matches(self, expression: Expression, name: str) -> bool:
         try:

@@ -10,11 +10,11 @@ from collections.abc import Collection
 from urllib.parse import urlsplit
 
 _APPLICATIONS = ("foxglove.dev", "lichtblick-suite.github.io")
-_SCHEMES_OF_PROGRAMS = ("file", "app", "foxglove", "lichtblick")
+_APPLICATION_SCHEMES = ("file", "app", "foxglove", "lichtblick")
 """Desktop programs built from web pages."""
 
 
-def is_allowed_origin(origin: str | None, more: Collection[str] = ()) -> bool:
+def is_allowed_origin(origin: str | None, extra_origins: Collection[str] = ()) -> bool:
     """Return whether a client with an ``Origin`` header may connect.
 
     A client without such a header is a program, and may connect. So may pages of Foxglove and Lichtblick, and pages
@@ -22,22 +22,22 @@ def is_allowed_origin(origin: str | None, more: Collection[str] = ()) -> bool:
 
     Args:
         origin: the header; None if there is none.
-        more: further origins that may connect; ``*`` means all.
+        extra_origins: further origins that may connect; ``*`` means all.
     """
-    if origin is None or "*" in more or origin in more:
+    if origin is None or "*" in extra_origins or origin in extra_origins:
         return True
     try:
-        parts = urlsplit(origin)
-        host = (parts.hostname or "").lower()
+        url = urlsplit(origin)
+        host = (url.hostname or "").lower()
     except ValueError:
         return False
-    if parts.scheme in _SCHEMES_OF_PROGRAMS:
+    if url.scheme in _APPLICATION_SCHEMES:
         return True
-    if parts.scheme not in ("http", "https"):
+    if url.scheme not in ("http", "https"):
         return False
     if host == "localhost" or _is_loopback(host):
         return True
-    return parts.scheme == "https" and any(host == name or host.endswith(f".{name}") for name in _APPLICATIONS)
+    return url.scheme == "https" and any(host == name or host.endswith(f".{name}") for name in _APPLICATIONS)
 
 
 def _is_loopback(host: str) -> bool:

@@ -21,16 +21,16 @@ class Parameters:
 
     Args:
         node: the node that sends the requests.
-        wanted: the filter of parameter names.
+        name_filter: the filter of parameter names.
     """
 
-    def __init__(self, node: Node, wanted: NameFilter) -> None:
+    def __init__(self, node: Node, name_filter: NameFilter) -> None:
         self._node = node
-        self._filter = wanted
+        self._filter = name_filter
         self._clients: dict[str, AsyncParameterClient] = {}
 
     async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
-        """Return the parameters with these names, or all parameters if none is named, for clients."""
+        """Return the entries of the parameters with these names, or of all parameters if no name is given."""
         by_node: dict[str, list[str] | None] = {}
         if names:
             for name in names:
@@ -39,19 +39,21 @@ class Parameters:
         else:
             by_node = dict.fromkeys(self._nodes())
         self._remove_closed()
-        found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
+        results = await asyncio.gather(
+            *(self._read_node(node, parameter_names) for node, parameter_names in by_node.items())
+        )
         return [
-            parameter for parameters in found for parameter in parameters if self._filter.accepts(parameter["name"])
+            parameter for parameters in results for parameter in parameters if self._filter.accepts(parameter["name"])
         ]
 
     async def set(self, parameters: Sequence[Mapping[str, Any]]) -> None:
         """Set parameters; a parameter that its node refuses keeps its value."""
-        for mapping in parameters:
-            name = str(mapping.get("name", ""))
+        for entry in parameters:
+            name = str(entry.get("name", ""))
             node, _, parameter = name.partition(".")
             if parameter and node in self._nodes() and self._filter.accepts(name):
-                value = _value(mapping)
-                await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
+                value = _value(entry)
+                await self._wait_for(self._client(node).set_parameters([Parameter(parameter, value=value)]))
 
     def close(self) -> None:
         """Close the clients of the parameter services."""
@@ -60,31 +62,31 @@ class Parameters:
         self._clients.clear()
 
     def _nodes(self) -> list[str]:
-        own = self._node.get_fully_qualified_name()
+        own_name = self._node.get_fully_qualified_name()
         services = {
             endpoint.name.removesuffix(_SERVICE)
             for endpoint in self._node.graph.endpoints()
             if endpoint.kind is EndpointKind.SERVICE and endpoint.name.endswith(_SERVICE)
         }
-        return sorted(services - {own})
+        return sorted(services - {own_name})
 
     def _remove_closed(self) -> None:
         for node in self._clients.keys() - set(self._nodes()):
             self._clients.pop(node).destroy()
 
-    async def _of(self, node: str, wanted: Sequence[str] | None) -> list[dict[str, Any]]:
+    async def _read_node(self, node: str, names: Sequence[str] | None) -> list[dict[str, Any]]:
         if node not in self._nodes():
             return []
         client = self._client(node)
-        if wanted is None:
-            listed = await self._answer(client.list_parameters())
-            wanted = list(listed.result.names) if listed is not None else []
-        if not wanted:
+        if names is None:
+            listing = await self._wait_for(client.list_parameters())
+            names = list(listing.result.names) if listing is not None else []
+        if not names:
             return []
-        answer = await self._answer(client.get_parameters(list(wanted)))
-        if answer is None:
+        response = await self._wait_for(client.get_parameters(list(names)))
+        if response is None:
             return []
-        pairs = zip(wanted, map(plain_value, answer.values), strict=False)
+        pairs = zip(names, map(plain_value, response.values), strict=False)
         return [parameter_entry(f"{node}.{name}", value) for name, value in pairs if value is not None]
 
     def _client(self, node: str) -> AsyncParameterClient:
@@ -92,13 +94,13 @@ class Parameters:
             self._clients[node] = AsyncParameterClient(self._node, node)
         return self._clients[node]
 
-    async def _answer(self, future: Any) -> Any:
+    async def _wait_for(self, future: Any) -> Any:
         """Return the result of a future of the graph; None if it takes too long."""
         loop = asyncio.get_running_loop()
-        done = asyncio.Event()
-        future.add_done_callback(lambda _: loop.call_soon_threadsafe(done.set))
+        done_event = asyncio.Event()
+        future.add_done_callback(lambda _: loop.call_soon_threadsafe(done_event.set))
         try:
-            await asyncio.wait_for(done.wait(), _PATIENCE)
+            await asyncio.wait_for(done_event.wait(), _PATIENCE)
             return future.result()
         except asyncio.TimeoutError:
             return None
@@ -117,11 +119,11 @@ def parameter_entry(name: str, value: Any) -> dict[str, Any]:
 
 
 def _value(parameter: Mapping[str, Any]) -> Any:
-    value, kind = parameter.get("value"), parameter.get("type")
-    if kind == "byte_array":
+    value, type_name = parameter.get("value"), parameter.get("type")
+    if type_name == "byte_array":
         return [bytes([byte]) for byte in base64.b64decode(str(value))]
-    if kind == "float64" and isinstance(value, (int, float)):
+    if type_name == "float64" and isinstance(value, (int, float)):
         return float(value)
-    if kind == "float64_array" and isinstance(value, list):
+    if type_name == "float64_array" and isinstance(value, list):
         return [float(number) for number in value]
     return value

@@ -11,7 +11,7 @@ from enum import IntEnum
 from typing import Any
 
 SUBPROTOCOLS = ("foxglove.websocket.v1", "foxglove.sdk.v1")
-"""The second is the name of the same messages in Foxglove's SDK."""
+"""The second subprotocol has the same messages; Foxglove's SDK uses this name."""
 
 ENCODING = "cdr"
 SCHEMA_ENCODING = "ros2msg"
@@ -71,9 +71,9 @@ def asset(request: int, data: bytes) -> bytes:
     return struct.pack("<BIBI", _ASSET, request, 0, 0) + data
 
 
-def asset_error(request: int, why: str) -> bytes:
+def asset_error(request: int, reason: str) -> bytes:
     """Encode a binary frame with the reason why an asset is refused."""
-    text = why.encode()
+    text = reason.encode()
     return struct.pack("<BIBI", _ASSET, request, 1, len(text)) + text
 
 
@@ -84,11 +84,11 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
         BadFrameError: the frame is not a message of the protocol.
     """
     try:
-        kind = frame[0]
-        if kind == _CLIENT_MESSAGE:
+        opcode = frame[0]
+        if opcode == _CLIENT_MESSAGE:
             (channel,) = struct.unpack_from("<I", frame, 1)
             return ClientMessage(channel, frame[5:])
-        if kind == _SERVICE_REQUEST:
+        if opcode == _SERVICE_REQUEST:
             service, call, length = struct.unpack_from("<III", frame, 1)
             start = 13 + length
             if start > len(frame):
@@ -96,7 +96,7 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
             return ServiceRequest(service, call, frame[13:start].decode(), frame[start:])
     except (IndexError, struct.error, UnicodeDecodeError):
         raise BadFrameError("the message is too short") from None
-    raise BadFrameError(f"no message has the code {kind}")
+    raise BadFrameError(f"no message has the code {opcode}")
 
 
 def status(level: StatusLevel, message: str) -> dict[str, Any]:

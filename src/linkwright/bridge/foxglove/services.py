@@ -15,7 +15,7 @@ from linkwright.messages import deserialize, get_service, serialize
 from linkwright.messages.schema_text import schema_of
 
 _PATIENCE = 10.0
-"""Seconds for an answer."""
+"""The timeout of a service call, in seconds."""
 
 
 class CallFailedError(Exception):
@@ -35,7 +35,9 @@ class OfferedService:
 
         The entry also has the keys of older protocol versions.
         """
-        schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
+        schemas = {
+            message_kind: schema_of(f"{self.type_name}_{message_kind}") for message_kind in ("Request", "Response")
+        }
         advertisement: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
         for part, schema in schemas.items():
             advertisement[part.lower()] = {
@@ -53,41 +55,41 @@ class Services:
 
     Args:
         node: the node that calls the services.
-        wanted: the filter that service names must pass.
+        name_filter: the filter that service names must pass.
     """
 
-    def __init__(self, node: Node, wanted: NameFilter) -> None:
+    def __init__(self, node: Node, name_filter: NameFilter) -> None:
         self._node = node
-        self._filter = wanted
-        self._offered: dict[tuple[str, str], OfferedService] = {}
+        self._filter = name_filter
+        self._services: dict[tuple[str, str], OfferedService] = {}
         self._clients: dict[int, ServiceClient[Any, Any]] = {}
-        self._last = 0
+        self._last_number = 0
 
     def all(self) -> list[OfferedService]:
         """Return the currently available services."""
-        return list(self._offered.values())
+        return list(self._services.values())
 
     def poll_changes(self) -> tuple[list[OfferedService], list[int]]:
         """Return the services added since the last call, and the IDs of those removed since."""
-        there = {
+        current = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
             if endpoint.kind is EndpointKind.SERVICE and self._filter.accepts(endpoint.name)
         }
-        gone = [self._offered.pop(key).number for key in list(self._offered) if key not in there]
-        for number in gone:
+        removed = [self._services.pop(key).number for key in list(self._services) if key not in current]
+        for number in removed:
             if number in self._clients:
                 self._node.destroy_client(self._clients.pop(number))
-        come = []
-        for name, type_name in sorted(there - self._offered.keys()):
+        added = []
+        for name, type_name in sorted(current - self._services.keys()):
             try:
                 get_service(type_name)
             except LinkwrightError:
                 continue  # the definition of the service's type is not available
-            self._last += 1
-            self._offered[name, type_name] = OfferedService(self._last, name, type_name)
-            come.append(self._offered[name, type_name])
-        return come, gone
+            self._last_number += 1
+            self._services[name, type_name] = OfferedService(self._last_number, name, type_name)
+            added.append(self._services[name, type_name])
+        return added, removed
 
     async def call(self, request: ServiceRequest) -> bytes:
         """Call a service, and return its response as CDR.
@@ -98,7 +100,7 @@ class Services:
         service = next(
             (
                 offered_service
-                for offered_service in self._offered.values()
+                for offered_service in self._services.values()
                 if offered_service.number == request.service
             ),
             None,
@@ -107,25 +109,25 @@ class Services:
             raise CallFailedError("there is no such service any more")
         if request.encoding != ENCODING:
             raise CallFailedError(f"the encoding '{request.encoding[:40]}' is not understood; send {ENCODING}")
-        kind: Any = get_service(service.type_name)
+        service_class: Any = get_service(service.type_name)
         client = self._clients.get(service.number)
         if client is None:
-            client = self._clients[service.number] = self._node.create_client(kind, service.name)
+            client = self._clients[service.number] = self._node.create_client(service_class, service.name)
         try:
-            wanted = deserialize(request.data, kind.Request)
+            service_request = deserialize(request.data, service_class.Request)
         except LinkwrightError as error:
             raise CallFailedError(error.diagnostics[0].message) from None
-        future = client.call_async(wanted)
+        future = client.call_async(service_request)
         loop = asyncio.get_running_loop()
-        answered = asyncio.Event()
-        future.add_done_callback(lambda _: loop.call_soon_threadsafe(answered.set))
+        response_event = asyncio.Event()
+        future.add_done_callback(lambda _: loop.call_soon_threadsafe(response_event.set))
         try:
-            await asyncio.wait_for(answered.wait(), _PATIENCE)
+            await asyncio.wait_for(response_event.wait(), _PATIENCE)
         except asyncio.TimeoutError:
             client.remove_pending_request(future)
             raise CallFailedError(f"'{service.name}' did not answer within {_PATIENCE:g} s") from None
         try:
-            answer: Any = future.result()
-            return bytes(serialize(answer))
+            response: Any = future.result()
+            return bytes(serialize(response))
         except Exception as error:  # noqa: BLE001 - an exception of the service's code
             raise CallFailedError(str(error)) from None

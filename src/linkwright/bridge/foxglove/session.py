@@ -29,10 +29,10 @@ from linkwright.bridge.foxglove.topics import Channels, Forwarding, Publication
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node
 
-_MOST_TASKS = 64
-"""Questions of one client that may be open at once."""
+_MAX_TASKS = 64
+"""The maximum number of pending requests of one client."""
 
-_MOST_CHANNELS = 1000
+_MAX_CHANNELS = 1000
 
 
 @dataclass(slots=True)
@@ -61,7 +61,7 @@ class Session:
     client: Client
     watches_connections: bool = False
     parameters: set[str] | None = None
-    _known: Connections | None = None
+    _sent_connections: Connections | None = None
     _forwardings: dict[int, Forwarding] = field(default_factory=dict)
     _publications: dict[int, Publication] = field(default_factory=dict)
     _tasks: set[asyncio.Task[None]] = field(default_factory=set)
@@ -74,26 +74,26 @@ class Session:
             else:
                 self._operation(json.loads(message))
         except LinkwrightError as error:
-            self._complain(error.diagnostics[0].message)
+            self._send_status(error.diagnostics[0].message)
         except BadFrameError as error:
-            self._complain(str(error))
+            self._send_status(str(error))
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            self._complain(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
+            self._send_status(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
 
-    def graph_changed(self, gone: list[int]) -> None:
+    def graph_changed(self, removed_channels: list[int]) -> None:
         """Remove the subscriptions to channels that no longer exist, and update the connection graph."""
         for number, forwarding in list(self._forwardings.items()):
-            if forwarding.channel.number in gone:
+            if forwarding.channel.number in removed_channels:
                 self._forwardings.pop(number).close()
         self.send_connections()
 
     def send_connections(self) -> None:
         """Send the changes of the connection graph, if the client subscribed to it."""
         if self.watches_connections:
-            now = connections(self.offer.node)
-            if now != self._known:
-                self.client.send(update(self._known, now))
-                self._known = now
+            current = connections(self.offer.node)
+            if current != self._sent_connections:
+                self.client.send(update(self._sent_connections, current))
+                self._sent_connections = current
 
     def close(self) -> None:
         """Remove all subscriptions, publications and requests of the client."""
@@ -114,7 +114,7 @@ class Session:
         elif frame.channel in self._publications:
             self._publications[frame.channel].publish(frame.data)
         else:
-            self._complain(f"channel {frame.channel} was not advertised")
+            self._send_status(f"channel {frame.channel} was not advertised")
 
     def _operation(self, request: dict[str, Any]) -> None:
         match request["op"]:
@@ -140,57 +140,57 @@ class Session:
                 names = {str(name) for name in request["parameterNames"]}
                 self.parameters = (self.parameters or set()) | names if names else set()
             case "unsubscribeParameterUpdates":
-                left = (self.parameters or set()) - {str(name) for name in request["parameterNames"]}
-                self.parameters = left if request["parameterNames"] and left else None
+                remaining_names = (self.parameters or set()) - {str(name) for name in request["parameterNames"]}
+                self.parameters = remaining_names if request["parameterNames"] and remaining_names else None
             case "subscribeConnectionGraph":
-                self.watches_connections, self._known = True, None
+                self.watches_connections, self._sent_connections = True, None
                 self.send_connections()
             case "unsubscribeConnectionGraph":
                 self.watches_connections = False
             case "fetchAsset":
                 self._run(self._fetch(str(request["uri"]), int(request["requestId"])))
             case operation:
-                self._complain(f"no message has the op '{str(operation)[:40]}'")
+                self._send_status(f"no message has the op '{str(operation)[:40]}'")
 
     def _subscribe(self, number: int, channel_number: int) -> None:
         channel = self.offer.channels.get(channel_number)
         if channel is None:
-            self._complain(f"there is no channel {channel_number}")
+            self._send_status(f"there is no channel {channel_number}")
         elif number in self._forwardings:
-            self._complain(f"subscription {number} is there already")
+            self._send_status(f"subscription {number} is there already")
         elif any(forwarding.channel is channel for forwarding in self._forwardings.values()):
-            self._complain(f"'{channel.topic}' is subscribed to already", StatusLevel.WARNING)
+            self._send_status(f"'{channel.topic}' is subscribed to already", StatusLevel.WARNING)
         else:
             self._forwardings[number] = Forwarding(self.offer.node, channel, self.client, number)
 
     def _advertise(self, number: int, channel: dict[str, Any]) -> None:
         topic = str(channel["topic"])
-        if number in self._publications or len(self._publications) >= _MOST_CHANNELS:
-            self._complain(f"channel {number} cannot be advertised: it is, or there are too many")
+        if number in self._publications or len(self._publications) >= _MAX_CHANNELS:
+            self._send_status(f"channel {number} cannot be advertised: it is, or there are too many")
         elif not self.offer.publishable.accepts(self.offer.node.resolve_topic_name(topic)):
-            self._complain(f"clients may not publish on '{topic}'")
+            self._send_status(f"clients may not publish on '{topic}'")
         else:
             self._publications[number] = Publication(self.offer.node, channel)
 
     # --- requests ----------------------------------------------------------------------------------------------
 
-    def _run(self, work: Coroutine[Any, Any, None]) -> None:
-        if len(self._tasks) >= _MOST_TASKS:
-            work.close()
-            self._complain("too many questions at once")
+    def _run(self, request: Coroutine[Any, Any, None]) -> None:
+        if len(self._tasks) >= _MAX_TASKS:
+            request.close()
+            self._send_status("too many questions at once")
             return
-        task = asyncio.get_running_loop().create_task(work)
+        task = asyncio.get_running_loop().create_task(request)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
     async def _call(self, request: ServiceRequest) -> None:
         try:
-            answer = await self.offer.services.call(request)
+            response = await self.offer.services.call(request)
         except CallFailedError as error:
             failure = {"serviceId": request.service, "callId": request.call, "message": str(error)}
             self.client.send({"op": "serviceCallFailure", **failure})
             return
-        self.client.send(service_response(request.service, request.call, answer))
+        self.client.send(service_response(request.service, request.call, response))
 
     async def _send_parameters(self, names: list[str], identity: str | None) -> None:
         values = await self.offer.parameters.get(names)
@@ -203,7 +203,7 @@ class Session:
         try:
             await self.offer.parameters.set(parameters)
         except (ValueError, TypeError, AttributeError, LinkwrightError) as error:
-            self._complain(f"a parameter was not set: {str(error)[:200]}")
+            self._send_status(f"a parameter was not set: {str(error)[:200]}")
         if identity is not None:
             await self._send_parameters([str(parameter.get("name", "")) for parameter in parameters], identity)
 
@@ -215,5 +215,5 @@ class Session:
             return
         self.client.send(asset(request, data))
 
-    def _complain(self, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
+    def _send_status(self, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
         self.client.send(status(level, text))

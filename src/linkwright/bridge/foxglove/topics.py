@@ -45,15 +45,15 @@ class Channels:
 
     Args:
         node: the node whose graph has the topics.
-        wanted: the filter that topic names must pass.
+        name_filter: the filter that topic names must pass.
     """
 
-    def __init__(self, node: Node, wanted: NameFilter) -> None:
+    def __init__(self, node: Node, name_filter: NameFilter) -> None:
         self._node = node
-        self._filter = wanted
+        self._filter = name_filter
         self._channels: dict[tuple[str, str], Channel] = {}
-        self._unknown: set[str] = set()
-        self._last = 0
+        self._unknown_types: set[str] = set()
+        self._last_number = 0
 
     def all(self) -> list[Channel]:
         """Return the currently available channels."""
@@ -65,25 +65,27 @@ class Channels:
 
     def poll_changes(self) -> tuple[list[Channel], list[int]]:
         """Return the channels added since the last call, and the IDs of those removed since."""
-        there = {
+        current = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
             if endpoint.kind is EndpointKind.PUBLISHER and self._filter.accepts(endpoint.name)
         }
-        gone = [self._channels.pop(key).number for key in list(self._channels) if key not in there]
-        come = [made for key in sorted(there - self._channels.keys()) if (made := self._make(*key)) is not None]
-        return come, gone
+        removed = [self._channels.pop(key).number for key in list(self._channels) if key not in current]
+        added = [
+            channel for key in sorted(current - self._channels.keys()) if (channel := self._make(*key)) is not None
+        ]
+        return added, removed
 
     def _make(self, topic: str, type_name: str) -> Channel | None:
         try:
             schema = schema_of(type_name)
         except LinkwrightError as error:
-            if type_name not in self._unknown:
-                self._unknown.add(type_name)
+            if type_name not in self._unknown_types:
+                self._unknown_types.add(type_name)
                 self._node.get_logger().warning(f"'{topic}' is not offered: {error.diagnostics[0].message}")
             return None
-        self._last += 1
-        channel = self._channels[topic, type_name] = Channel(self._last, topic, type_name, schema)
+        self._last_number += 1
+        channel = self._channels[topic, type_name] = Channel(self._last_number, topic, type_name, schema)
         return channel
 
 

@@ -13,8 +13,8 @@ SPACE, UP, DOWN, RIGHT = " ", "\x1b[A", "\x1b[B", "\x1b[C"
 
 
 @contextmanager
-def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
-    """Run a function on each key press while the context is entered.
+def reading_keys(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
+    """Call a function for each key press while the context is active.
 
     Args:
         actions: the function to call, by key.
@@ -22,14 +22,14 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
     Yields:
         Whether keys are read. They are read only if standard input is a terminal and this process is in its foreground.
     """
-    if not _can_listen():
+    if not _can_read_keys():
         yield False
         return
     import termios
     import tty
 
     descriptor = sys.stdin.fileno()
-    before = termios.tcgetattr(descriptor)
+    old_settings = termios.tcgetattr(descriptor)
 
     def read() -> None:
         text = os.read(descriptor, 64).decode(errors="replace")
@@ -45,10 +45,10 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
         yield True
     finally:
         asyncio.get_running_loop().remove_reader(descriptor)
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, old_settings)
 
 
-def _can_listen() -> bool:
+def _can_read_keys() -> bool:
     if sys.platform == "win32" or sys.stdin is None or not sys.stdin.isatty():
         return False
     return os.getpgrp() == os.tcgetpgrp(sys.stdin.fileno())

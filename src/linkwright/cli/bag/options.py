@@ -42,7 +42,7 @@ def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
         return {}
     import yaml
 
-    from linkwright.bag.qos import overrides_of
+    from linkwright.bag.qos import parse_overrides
     from linkwright.files.input_files import read_text
 
     try:
@@ -55,4 +55,4 @@ def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
                 phrase("'{path}' cannot be read as QoS overrides: {reason}", path=path, reason=foreign(reason)),
             )
         ) from error
-    return overrides_of(document, path)
+    return parse_overrides(document, path)

@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, print_di
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-_STEP = 0.1
+_RATE_STEP = 0.1
 _DEFAULT_CLOCK_HZ = 40.0
 
 
@@ -22,7 +22,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
     add_storage_argument(parser)
     parser.add_argument(
-        "-r", "--rate", metavar="FACTOR", type=_positive, default=1.0, help="the playback rate, default 1.0"
+        "-r", "--rate", metavar="FACTOR", type=_parse_positive, default=1.0, help="the playback rate, default 1.0"
     )
     parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="play only these topics")
     parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="do not play these topics")
@@ -48,7 +48,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--clock",
         metavar="HZ",
-        type=_positive,
+        type=_parse_positive,
         nargs="?",
         const=_DEFAULT_CLOCK_HZ,
         default=0.0,
@@ -66,26 +66,28 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
         "-d",
         "--delay",
         metavar="SECONDS",
-        type=_not_negative,
+        type=_parse_non_negative,
         default=0.0,
         help="wait this long before each playback of the recording",
     )
     parser.add_argument(
         "--start-offset",
         metavar="SECONDS",
-        type=_not_negative,
+        type=_parse_non_negative,
         default=0.0,
         help="start at this offset into the recording",
     )
     parser.add_argument(
         "--playback-duration",
         metavar="SECONDS",
-        type=_not_negative,
+        type=_parse_non_negative,
         help="play only this many seconds of the recording",
     )
-    until = parser.add_mutually_exclusive_group()
-    until.add_argument("--playback-until-sec", metavar="SECONDS", type=float, help="stop at this time since the epoch")
-    until.add_argument(
+    end_group = parser.add_mutually_exclusive_group()
+    end_group.add_argument(
+        "--playback-until-sec", metavar="SECONDS", type=float, help="stop at this time since the epoch"
+    )
+    end_group.add_argument(
         "--playback-until-nsec",
         metavar="NANOSECONDS",
         type=int,
@@ -95,7 +97,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--wait-for-all-acked",
         metavar="MILLISECONDS",
-        type=_not_negative,
+        type=_parse_non_negative,
         default=1000.0,
         help="how long to wait at the end for reliable subscriptions to acknowledge all messages, default 1000",
     )
@@ -117,13 +119,13 @@ def run_play(arguments: argparse.Namespace) -> int:
 
     options = PlayOptions(
         rate=arguments.rate,
-        topics=[_absolute(name) for name in arguments.topics],
+        topics=[_absolute_name(name) for name in arguments.topics],
         pattern=arguments.regex,
         without_pattern=arguments.exclude,
-        clock_topics=[_absolute(name) for name in arguments.clock_topics],
+        clock_topics=[_absolute_name(name) for name in arguments.clock_topics],
         clock_before_all=arguments.clock_topics_all,
         until_ns=_until_ns(arguments),
-        without=[_absolute(name) for name in arguments.exclude_topics],
+        without=[_absolute_name(name) for name in arguments.exclude_topics],
         loop=arguments.loop,
         clock_hz=arguments.clock,
         delay=arguments.delay,
@@ -132,14 +134,14 @@ def run_play(arguments: argparse.Namespace) -> int:
         paused=arguments.start_paused,
         qos_overrides=read_overrides(arguments),
     )
-    remappings = [_remapping(rule) for rule in arguments.remap]
+    remappings = [_parse_remapping(rule) for rule in arguments.remap]
 
     with BagReader(arguments.bag) as bag:
         print_diagnostics(bag.findings, sys.stderr)
 
         async def job(session: Session) -> int:
             from linkwright.bag import Player, PlayerServices
-            from linkwright.cli.bag.keys import DOWN, RIGHT, SPACE, UP, listening
+            from linkwright.cli.bag.keys import DOWN, RIGHT, SPACE, UP, reading_keys
             from linkwright.graph import Duration
 
             player = Player(session.node, bag, options)
@@ -147,11 +149,11 @@ def run_play(arguments: argparse.Namespace) -> int:
             keys = {
                 SPACE: player.toggle_paused,
                 RIGHT: player.play_next,
-                UP: lambda: player.set_rate(player.rate + _STEP),
-                DOWN: lambda: player.set_rate(max(_STEP, player.rate - _STEP)),
+                UP: lambda: player.set_rate(player.rate + _RATE_STEP),
+                DOWN: lambda: player.set_rate(max(_RATE_STEP, player.rate - _RATE_STEP)),
             }
-            with listening({} if arguments.disable_keyboard_controls else keys) as heard:
-                if heard and not arguments.disable_keyboard_controls:
+            with reading_keys({} if arguments.disable_keyboard_controls else keys) as keyboard_active:
+                if keyboard_active and not arguments.disable_keyboard_controls:
                     logger = session.node.get_logger()
                     logger.info("Press SPACE for Pause/Resume, CURSOR_RIGHT for the next message while paused")
                     logger.info("Press CURSOR_UP and CURSOR_DOWN to play 10 % faster and slower")
@@ -178,11 +180,11 @@ def _until_ns(arguments: argparse.Namespace) -> int | None:
     return None if until_ns is None or until_ns < 0 else until_ns
 
 
-def _absolute(name: str) -> str:
+def _absolute_name(name: str) -> str:
     return f"/{name.lstrip('/')}"
 
 
-def _remapping(rule: str) -> tuple[str, str]:
+def _parse_remapping(rule: str) -> tuple[str, str]:
     source, separator, target = rule.partition(":=")
     if not separator or not source or not target:
         raise LinkwrightError(
@@ -191,14 +193,14 @@ def _remapping(rule: str) -> tuple[str, str]:
     return source, target
 
 
-def _positive(text: str) -> float:
-    value = _not_negative(text)
+def _parse_positive(text: str) -> float:
+    value = _parse_non_negative(text)
     if value == 0:
         raise argparse.ArgumentTypeError(f"{text} is not positive")
     return value
 
 
-def _not_negative(text: str) -> float:
+def _parse_non_negative(text: str) -> float:
     try:
         value = float(text)
     except ValueError:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from linkwright.bag import BagWriter, TopicSelection
     from linkwright.cli.session import Session
 
-_USAGE = 2
+_USAGE_ERROR = 2
 _CACHE_SIZE = 100 * 1024 * 1024
 """The default cache size of ros2, in bytes."""
 
@@ -117,7 +117,12 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         help="keep the latest messages in memory, and write them when the service ~/snapshot is called",
     )
     parser.add_argument(
-        "--custom-data", metavar="KEY=VALUE", type=_pair, nargs="*", default=[], help="custom entries for the metadata"
+        "--custom-data",
+        metavar="KEY=VALUE",
+        type=_key_value_pair,
+        nargs="*",
+        default=[],
+        help="custom entries for the metadata",
     )
     parser.add_argument("--start-paused", action="store_true", help="start paused; the space key resumes")
     parser.add_argument("--use-sim-time", action="store_true", help="record messages with the time of /clock")
@@ -146,21 +151,21 @@ def run_record(arguments: argparse.Namespace) -> int:
     selection = _selection(arguments)
     if selection.is_empty:
         print("linkwright bag record: name topics, or -a for all, or --regex", file=sys.stderr)
-        return _USAGE
+        return _USAGE_ERROR
     if arguments.storage != "mcap" and arguments.compression_mode == "storage":
         print("linkwright bag record: only MCAP files have chunks to be compressed", file=sys.stderr)
-        return _USAGE
+        return _USAGE_ERROR
     if arguments.snapshot_mode and not arguments.max_cache_size:
         print("linkwright bag record: --snapshot-mode needs a --max-cache-size above 0", file=sys.stderr)
-        return _USAGE
+        return _USAGE_ERROR
     if arguments.polling_interval <= 0:
         print("linkwright bag record: the polling interval must be positive", file=sys.stderr)
-        return _USAGE
+        return _USAGE_ERROR
     overrides = read_overrides(arguments)
 
     async def job(session: Session) -> int:
         from linkwright.bag import Recorder, RecorderServices
-        from linkwright.cli.bag.keys import SPACE, listening
+        from linkwright.cli.bag.keys import SPACE, reading_keys
 
         with _writer(arguments) as writer:
             recorder = Recorder(
@@ -173,13 +178,13 @@ def run_record(arguments: argparse.Namespace) -> int:
                 without_publishers=arguments.include_unpublished_topics,
                 without_subscriptions=not arguments.ignore_leaf_topics,
                 paused=arguments.start_paused,
-                guarded=session.guarded,
+                wrap_callback=session.guarded,
             )
             RecorderServices(session.node, recorder, writer, snapshots=arguments.snapshot_mode)
             keys = {} if arguments.disable_keyboard_controls else {SPACE: recorder.toggle_paused}
             try:
-                with listening(keys) as heard:
-                    if heard and keys:
+                with reading_keys(keys) as keyboard_active:
+                    if keyboard_active and keys:
                         session.node.get_logger().info("Press SPACE for pausing/resuming")
                     return await session.finished() or 0
             finally:
@@ -199,16 +204,16 @@ def _selection(arguments: argparse.Namespace) -> TopicSelection:
 
     return TopicSelection(
         everything=arguments.all or arguments.all_topics,
-        names=_absolute(*arguments.names, *arguments.topics),
+        names=_absolute_names(*arguments.names, *arguments.topics),
         types=arguments.topic_types,
         pattern=arguments.regex,
-        without_names=_absolute(*arguments.exclude_topics),
+        without_names=_absolute_names(*arguments.exclude_topics),
         without_types=arguments.exclude_topic_types,
         without_pattern=arguments.exclude,
         hidden=arguments.include_hidden_topics,
         every_service=arguments.all or arguments.all_services,
-        services=_absolute(*arguments.services),
-        without_services=_absolute(*arguments.exclude_services),
+        services=_absolute_names(*arguments.services),
+        without_services=_absolute_names(*arguments.exclude_services),
     )
 
 
@@ -232,12 +237,12 @@ def _count(text: str) -> int:
     return int(text)
 
 
-def _pair(text: str) -> tuple[str, str]:
+def _key_value_pair(text: str) -> tuple[str, str]:
     key, separator, value = text.partition("=")
     if not separator or not key:
         raise argparse.ArgumentTypeError(f"'{text}' is not KEY=VALUE")
     return key, value
 
 
-def _absolute(*names: str) -> list[str]:
+def _absolute_names(*names: str) -> list[str]:
     return [f"/{name.lstrip('/')}" for name in names]

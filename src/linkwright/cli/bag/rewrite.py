@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from linkwright.cli.bag.options import add_storage_argument
 
-_USAGE = 2
+_USAGE_ERROR = 2
 
 
 class _Plugin(NamedTuple):
@@ -52,7 +52,7 @@ _PLUGINS = {
         ),
     ),
 }
-"""Our equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``; CDR needs no converter."""
+"""Linkwright's equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``; CDR needs no converter."""
 
 
 def configure_convert(parser: argparse.ArgumentParser) -> None:
@@ -79,10 +79,13 @@ def run_convert(arguments: argparse.Namespace) -> int:
     """Convert recordings as the file with the output options requests."""
     from linkwright.bag.rewriting import rewrite
 
-    for given in arguments.input:
-        if len(given) > 2:
-            print(f"linkwright bag convert: --input expects 1 or 2 arguments, {len(given)} provided", file=sys.stderr)
-            return _USAGE
+    for input_arguments in arguments.input:
+        if len(input_arguments) > 2:
+            print(
+                f"linkwright bag convert: --input expects 1 or 2 arguments, {len(input_arguments)} provided",
+                file=sys.stderr,
+            )
+            return _USAGE_ERROR
     rewrite([given[0] for given in arguments.input], arguments.output_options)
     return 0
 
@@ -99,7 +102,7 @@ def run_reindex(arguments: argparse.Namespace) -> int:
 
     if not arguments.bag.is_dir():
         print("linkwright bag reindex: must specify a bag directory", file=sys.stderr)
-        return _USAGE
+        return _USAGE_ERROR
     reindex(arguments.bag)
     return 0
 
@@ -111,7 +114,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print our equivalents of rosbag2's plugins of the requested kind."""
+    """Print Linkwright's equivalents of rosbag2's plugins of the requested kind."""
     if arguments.verbose:
         print(f"available {arguments.kind} plugins are:")
     for plugin in _PLUGINS[arguments.kind]:

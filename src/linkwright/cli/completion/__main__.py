@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import sys
 
-from linkwright.cli.completion.candidates import complete, divided
+from linkwright.cli.completion.candidates import complete, split_line
 
 if __name__ == "__main__":
     given = sys.argv[1:]
-    for candidate in complete(divided(given[1]) if given[:1] == ["--line"] else given):
+    for candidate in complete(split_line(given[1]) if given[:1] == ["--line"] else given):
         print(candidate)

@@ -13,14 +13,14 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.cli.completion.values import candidates_of
+from linkwright.cli.completion.values import argument_candidates
 
 TABLE = Path(__file__).with_name("commands.json")
 
-_LAUNCH = "PACKAGE FILE | PATH [NAME:=VALUE ...]"
+_LAUNCH_METAVAR = "PACKAGE FILE | PATH [NAME:=VALUE ...]"
 
 
-def divided(line: str) -> list[str]:
+def split_line(line: str) -> list[str]:
     """Split a command line up to the cursor into words; the last word is incomplete and may be empty."""
     try:
         words = shlex.split(line)
@@ -31,35 +31,35 @@ def divided(line: str) -> list[str]:
 
 def complete(words: Sequence[str]) -> list[str]:
     """Return the completions of the last word; `scripts.FILES` represents file names."""
-    program, *given = words
-    *before, current = given or [""]
+    program, *arguments = words
+    *preceding, current = arguments or [""]
     current = current.lstrip("'\"")  # the opening quotation mark of an unfinished string
-    found = _candidates(Path(program).name, before, current, json.loads(TABLE.read_text(encoding="utf-8")))
-    return [fromkey for fromkey in dict.fromkeys(found) if fromkey.startswith((current, ":"))]
+    candidates = _candidates(Path(program).name, preceding, current, json.loads(TABLE.read_text(encoding="utf-8")))
+    return [candidate for candidate in dict.fromkeys(candidates) if candidate.startswith((current, ":"))]
 
 
-def _candidates(program: str, before: list[str], current: str, table: dict[str, Any]) -> Iterable[str]:
+def _candidates(program: str, preceding: list[str], current: str, table: dict[str, Any]) -> Iterable[str]:
     verbs: dict[str, Any] = table["verbs"]
-    if not before:
+    if not preceding:
         return table["ros2"] if program == "ros2" else [*verbs, "--help", "--version"]
-    command, path = verbs.get(before[0], {}), before[:1]
-    rest = before[1:]
+    command, path = verbs.get(preceding[0], {}), preceding[:1]
+    remaining = preceding[1:]
     if "below" in command:
-        named = next((index for index, word in enumerate(rest) if not word.startswith("-")), None)
-        if named is None:
+        subcommand_index = next((index for index, word in enumerate(remaining) if not word.startswith("-")), None)
+        if subcommand_index is None:
             return [*command["below"], *command["options"]]
-        command, path = command["below"].get(rest[named], {}), [*path, rest[named]]
-        rest = rest[named + 1 :]
+        command, path = command["below"].get(remaining[subcommand_index], {}), [*path, remaining[subcommand_index]]
+        remaining = remaining[subcommand_index + 1 :]
     options: dict[str, Any] = command.get("options", {})
-    if rest and options.get(rest[-1]):
-        return _of(options[rest[-1]], path, [], table)
+    if remaining and options.get(remaining[-1]):
+        return _argument_candidates(options[remaining[-1]], path, [], table)
     if current.startswith("-"):
         return options
-    placed = [word for index, word in enumerate(rest) if not _is_option(rest, index, options)]
-    places: list[dict[str, Any]] = command.get("places", [])
-    if not places or (len(placed) >= len(places) and not places[-1]["many"]):
+    positionals = [word for index, word in enumerate(remaining) if not _is_option(remaining, index, options)]
+    parameters: list[dict[str, Any]] = command.get("places", [])
+    if not parameters or (len(positionals) >= len(parameters) and not parameters[-1]["many"]):
         return options
-    return _of(places[min(len(placed), len(places) - 1)], path, placed, table)
+    return _argument_candidates(parameters[min(len(positionals), len(parameters) - 1)], path, positionals, table)
 
 
 def _is_option(words: list[str], index: int, options: dict[str, Any]) -> bool:
@@ -67,10 +67,12 @@ def _is_option(words: list[str], index: int, options: dict[str, Any]) -> bool:
     return words[index].startswith("-") or (index > 0 and bool(options.get(words[index - 1])))
 
 
-def _of(argument: dict[str, Any], path: list[str], placed: list[str], table: dict[str, Any]) -> Iterable[str]:
-    kind: str = argument["name"]
+def _argument_candidates(
+    argument: dict[str, Any], path: list[str], positionals: list[str], table: dict[str, Any]
+) -> Iterable[str]:
+    metavar: str = argument["name"]
     if argument.get("choices"):
         return [str(choice) for choice in argument["choices"]]
-    if kind == _LAUNCH:
-        kind = ("LAUNCH_PACKAGE", "LAUNCH_FILE", "LAUNCH_ARGUMENT")[min(len(placed), 2)]
-    return candidates_of(kind, path, placed, table)
+    if metavar == _LAUNCH_METAVAR:
+        metavar = ("LAUNCH_PACKAGE", "LAUNCH_FILE", "LAUNCH_ARGUMENT")[min(len(positionals), 2)]
+    return argument_candidates(metavar, path, positionals, table)

@@ -37,26 +37,26 @@ def names_of(kind: str) -> list[str]:
     path = _path()
     try:
         age = time.time() - path.stat().st_mtime
-        found: list[str] = json.loads(path.read_text(encoding="utf-8"))[kind]
+        names: list[str] = json.loads(path.read_text(encoding="utf-8"))[kind]
     except (OSError, ValueError, KeyError):
-        age, found = _STALE_SECONDS, []
+        age, names = _STALE_SECONDS, []
     if age > _FRESH_SECONDS:
-        _look_soon(path)
-    return found if age < _STALE_SECONDS else []
+        _start_discovery(path)
+    return names if age < _STALE_SECONDS else []
 
 
 def _path() -> Path:
     return cache_folder() / "completion" / f"graph-{os.environ.get('ROS_DOMAIN_ID') or 0}.json"
 
 
-def _look_soon(path: Path) -> None:
+def _start_discovery(path: Path) -> None:
     """Start a discovery in another process, unless one started less than `_FRESH_SECONDS` ago."""
-    begun = path.with_suffix(".begun")
+    marker = path.with_suffix(".begun")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        if begun.exists() and time.time() - begun.stat().st_mtime < _FRESH_SECONDS:
+        if marker.exists() and time.time() - marker.stat().st_mtime < _FRESH_SECONDS:
             return
-        begun.touch()
+        marker.touch()
         import subprocess
 
         subprocess.Popen(
@@ -69,7 +69,7 @@ def _look_soon(path: Path) -> None:
 
 
 def discover() -> int:
-    """Discover the names of the graph, cache them for `names_of`, and return the exit status."""
+    """Discover the names of the graph, cache them for `cached_names`, and return the exit status."""
     from argparse import Namespace
 
     from linkwright.cli.calls import node_names
@@ -78,22 +78,22 @@ def discover() -> int:
 
     async def job(session: Session) -> int:
         node = session.node
-        found = {
+        names_by_kind = {
             "topics": [name for name, _ in visible(node.get_topic_names_and_types(), hidden=False)],
             "services": [name for name, _ in visible(node.get_service_names_and_types(), hidden=False)],
             "nodes": node_names(session, hidden=False),
         }
-        ending = "/_action/feedback"
+        suffix = "/_action/feedback"
         topics = [name for name, _ in node.get_topic_names_and_types()]
-        found["actions"] = sorted(name.removesuffix(ending) for name in topics if name.endswith(ending))
+        names_by_kind["actions"] = sorted(name.removesuffix(suffix) for name in topics if name.endswith(suffix))
         path = _path()
         path.parent.mkdir(parents=True, exist_ok=True)
-        written = path.with_suffix(f".{os.getpid()}")
-        written.write_text(json.dumps(found), encoding="utf-8")
-        written.replace(path)
+        temporary_path = path.with_suffix(f".{os.getpid()}")
+        temporary_path.write_text(json.dumps(names_by_kind), encoding="utf-8")
+        temporary_path.replace(path)
         return 0
 
-    return run_in_graph(Namespace(), job, only_looks=True)
+    return run_in_graph(Namespace(), job, read_only=True)
 
 
 if __name__ == "__main__":

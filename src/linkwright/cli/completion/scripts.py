@@ -58,7 +58,7 @@ end
 
 SHELLS = {"bash": _BASH, "zsh": _ZSH, "fish": _FISH}
 
-_ROS2_IF_OURS = {
+_ROS2_COMPLETION = {
     "bash": 'case "$(command -v ros2)" in "$MARK"/*) complete -F _linkwright_complete ros2 ;; esac\n',
     "zsh": 'case "$(command -v ros2)" in "$MARK"/*) compdef _linkwright_complete ros2 ;; esac\n',
     "fish": "string match -q -- $MARK'/*' (command -s ros2); and complete -c ros2 -f -a '(__linkwright_complete)'\n",
@@ -99,7 +99,7 @@ function fish_command_not_found
 end
 """,
 }
-"""The shell's handler for unknown commands, which suggests the replacements for commands of ROS."""
+"""The handler for unknown commands in each shell; it suggests the replacements for commands of ROS."""
 
 
 def script(shell: str, python: str, commands: Sequence[str]) -> str:
@@ -110,8 +110,8 @@ def script(shell: str, python: str, commands: Sequence[str]) -> str:
         python: the interpreter that has Linkwright.
         commands: the commands to complete.
     """
-    made = SHELLS[shell].replace("PYTHON", shlex.quote(python)).replace("COMMANDS", " ".join(commands))
-    return made.replace("FILES", FILES)
+    text = SHELLS[shell].replace("PYTHON", shlex.quote(python)).replace("COMMANDS", " ".join(commands))
+    return text.replace("FILES", FILES)
 
 
 def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> str:
@@ -122,9 +122,9 @@ def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> 
     Args:
         shell: a key of `SHELLS`.
         python: the interpreter that has Linkwright.
-        mark: the environment variable that names the folder of our programs.
+        mark: the environment variable that names the folder of Linkwright's programs.
         missing: the unavailable programs that Linkwright can replace.
     """
     names = (" " if shell == "fish" else "|").join(missing)
     not_found = _NOT_FOUND[shell].replace("PYTHON", shlex.quote(python)).replace("NAMES", names)
-    return script(shell, python, ["linkwright"]) + _ROS2_IF_OURS[shell].replace("MARK", mark) + not_found
+    return script(shell, python, ["linkwright"]) + _ROS2_COMPLETION[shell].replace("MARK", mark) + not_found

@@ -11,7 +11,7 @@ from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
 from linkwright.process.interruption import raise_interrupts
 
-_FAILED = 255
+_FAILURE_STATUS = 255
 """The exit status of urdfdom's programs for errors (``return -1``)."""
 
 
@@ -20,7 +20,7 @@ def main(name: str, words: Sequence[str]) -> int:
 
     Args:
         name: a key of `TOOLS`.
-        words: the arguments.
+        words: the arguments after the program's name.
 
     Returns:
         The exit status.
@@ -35,11 +35,11 @@ def _xacro(words: Sequence[str]) -> int:
 def _check_urdf(words: Sequence[str]) -> int:
     """Check a URDF file, and print the result as urdfdom's ``check_urdf`` does.
 
-    Findings of other rules are left to ``linkwright check``.
+    The findings of Linkwright's own rules are not printed; use ``linkwright check`` for them.
     """
     if not words:
         print("Expect URDF xml file to parse", file=sys.stderr)
-        return _FAILED
+        return _FAILURE_STATUS
     from linkwright.descriptions import examine
     from linkwright.urdf import tree_text
 
@@ -47,11 +47,11 @@ def _check_urdf(words: Sequence[str]) -> int:
         reading = examine(words[0])
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
-        return _FAILED
+        return _FAILURE_STATUS
     print_diagnostics(reading.diagnostics, sys.stderr)
     if reading.robot is None:
         print("ERROR: Model Parsing the xml failed", file=sys.stderr)
-        return _FAILED
+        return _FAILURE_STATUS
     print(tree_text(reading.robot), end="")
     return FINE
 
@@ -64,7 +64,7 @@ def _urdf_to_graphviz(words: Sequence[str]) -> int:
             "  or OUTPUT.gv & OUTPUT.pdf.",
             file=sys.stderr,
         )
-        return _FAILED
+        return _FAILURE_STATUS
     return linkwright(["diagram", *words])
 
 
@@ -98,4 +98,4 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "launch_test": _launch_test,
     "colcon": _colcon,
 }
-"""Name -> function from arguments to exit status."""
+"""For each command, the function that runs it with its arguments and returns the exit status."""

@@ -33,7 +33,7 @@ COMMANDS = (
 )
 """The supported commands of ``ros2``, in its order."""
 
-_ONLY_IN_ROS = {
+_UNSUPPORTED = {
     "extension_points": "it lists plugins of ros2cli",
     "extensions": "it lists plugins of ros2cli",
     "security": "it makes the keys of SROS 2",
@@ -42,15 +42,15 @@ _ONLY_IN_ROS = {
 
 def ros2(words: Sequence[str]) -> int:
     """Run a subcommand of ``ros2``, and return its exit status."""
-    rest = [word for word in words if word != "--use-python-default-buffering"]
-    if not rest or rest[0] in ("-h", "--help"):
+    arguments = [word for word in words if word != "--use-python-default-buffering"]
+    if not arguments or arguments[0] in ("-h", "--help"):
         print(_overview())
         return FINE
-    name = rest[0]
+    name = arguments[0]
     if name in COMMANDS:
-        return linkwright([name, *rest[1:]], program="ros2")
-    if name in _ONLY_IN_ROS:
-        problem = f"'{name}' needs a real ROS 2: {_ONLY_IN_ROS[name]}"
+        return linkwright([name, *arguments[1:]], program="ros2")
+    if name in _UNSUPPORTED:
+        problem = f"'{name}' needs a real ROS 2: {_UNSUPPORTED[name]}"
     else:
         hint = did_you_mean(name, COMMANDS) or "`ros2 --help` lists the commands"
         problem = f"there is no command '{name}'; {hint}"
@@ -68,7 +68,7 @@ def _overview() -> str:
         "Commands:",
     ]
     for name in COMMANDS:
-        ours = OTHER_NAMES.get(name)
-        lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else help_texts()[name]}")
+        alias_target = OTHER_NAMES.get(name)
+        lines.append(f"  {name:{width}}  {f'the same as {alias_target}' if alias_target else help_texts()[name]}")
     lines += ["", "`ros2 COMMAND -h` says more."]
     return "\n".join(lines)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.graph.endpoints.base import MessageInfo
 
-_CLEAR = "\x1b[H\x1b[2J\x1b[3J"
+_CLEAR_SEQUENCE = "\x1b[H\x1b[2J\x1b[3J"
 
 
 def configure_echo(parser: argparse.ArgumentParser) -> None:
@@ -59,31 +59,31 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
 def run_echo(arguments: argparse.Namespace) -> int:
     """Print messages until the user interrupts the command."""
     name = absolute(arguments.topic_name)
-    fits = None if arguments.filter is None else compile_filter(arguments.filter)
+    matches_filter = None if arguments.filter is None else compile_filter(arguments.filter)
     field = () if arguments.raw else field_path(arguments.field)
-    form = EchoFormat.of(arguments, field, message_info=arguments.include_message_info)
+    echo_format = EchoFormat.of(arguments, field, message_info=arguments.include_message_info)
 
     async def job(session: Session) -> int:
         from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
 
-        kind = await topic_type(session, name, arguments.message_type, raw=arguments.raw)
+        message_type = await topic_type(session, name, arguments.message_type, raw=arguments.raw)
         if not arguments.raw:
-            select(kind(), form.field)
+            select(message_type(), echo_format.field)
         write = sys.stdout.write
 
         def show(message: Any, info: MessageInfo) -> None:
-            if fits is not None and not fits(select(message, form.field)):
+            if matches_filter is not None and not matches_filter(select(message, echo_format.field)):
                 return
-            text = form.text(message, info)
-            write(_CLEAR + text if arguments.clear else text)
+            text = echo_format.text(message, info)
+            write(_CLEAR_SEQUENCE + text if arguments.clear else text)
             if arguments.once:
                 session.finish()
 
         events = SubscriptionEventCallbacks(
-            message_lost=None if arguments.no_lost_messages else session.guarded(lambda lost: write(lost_text(lost)))
+            message_lost=None if arguments.no_lost_messages else session.guarded(lambda event: write(lost_text(event)))
         )
         session.node.create_subscription(
-            kind,
+            message_type,
             name,
             session.receiver(show),
             fitting_profile(session.node, name, arguments),

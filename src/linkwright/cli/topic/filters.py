@@ -9,7 +9,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, phrase
 
-_NAME = "<filter>"
+_SOURCE_NAME = "<filter>"
 _FORBIDDEN = (ast.Lambda, ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 _FUNCTIONS: dict[str, Any] = {
     function.__name__: function
@@ -28,14 +28,14 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
         LinkwrightError: CLI407, the expression is not valid. The predicate raises the same error if the expression
             cannot be evaluated for a message.
     """
-    source = SourceText(_NAME, text)
+    source = SourceText(_SOURCE_NAME, text)
 
     def fault(message: Phrase, column: int | None = None, hint: Phrase | None = None) -> LinkwrightError:
         span = source.span(0, len(text)) if column is None else source.span(column)
         return LinkwrightError(Diagnostic("CLI407", message, span, hint=hint, source=source))
 
     try:
-        tree = ast.parse(text.strip(), _NAME, "eval")
+        tree = ast.parse(text.strip(), _SOURCE_NAME, "eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         column = getattr(error, "offset", None)
         raise fault(
@@ -48,16 +48,16 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
         if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
             raise fault(phrase("a filter cannot use '{attr}'", attr=node.attr), node.col_offset)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in (*_NAMES, "m"):
-            bound = {
+            bound_names = {
                 node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
             }
-            if node.id not in bound:
+            if node.id not in bound_names:
                 raise fault(
-                    phrase("a filter has no name '{id}'", id=node.id),
+                    phrase("a filter cannot use the name '{id}'", id=node.id),
                     node.col_offset,
                     phrase("the message is 'm', as in 'm.data > 3'"),
                 )
-    code = compile(tree, _NAME, "eval")
+    code = compile(tree, _SOURCE_NAME, "eval")
 
     def fits(message: Any) -> bool:
         try:
@@ -65,6 +65,8 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             # listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
         except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
-            raise fault(phrase("the filter failed: {error}", error=foreign(error))) from None
+            raise fault(
+                phrase(("the filter cannot be evaluated for a message: {error}"), error=foreign(error))
+            ) from None
 
     return fits

@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 _RATE_WINDOW = 10_000
 _DELAY_WINDOW = 10_000
-_STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
-"""Seconds and nanoseconds, by the second byte of the CDR header, which is the byte order."""
+_STAMP_FORMATS = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
+"""The formats of a stamp's seconds and nanoseconds, by the byte order in the second byte of the CDR header."""
 _CDR_HEADER = 4
 _SIZE_WINDOW = 100
-_PERIOD = 1.0
+_REPORT_PERIOD = 1.0
 
 
 def configure_hz(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +51,7 @@ def run_hz(arguments: argparse.Namespace) -> int:
     Messages are deserialized only if there is a filter.
     """
     names = list(dict.fromkeys(map(absolute, arguments.topic_name)))
-    fits = None if arguments.filter is None else compile_filter(arguments.filter)
+    matches_filter = None if arguments.filter is None else compile_filter(arguments.filter)
 
     async def job(session: Session) -> int:
         from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
@@ -63,23 +63,23 @@ def run_hz(arguments: argparse.Namespace) -> int:
         now_ns = clock.now_ns if arguments.use_sim_time and not arguments.wall_time else time.monotonic_ns
 
         def count(window: RateWindow, message: Any) -> None:
-            if fits is not None and not fits(message):
+            if matches_filter is not None and not matches_filter(message):
                 return
             if window.add(now_ns()):
                 print("time has reset, resetting counters", file=sys.stderr)
 
         for name, window in windows.items():
-            kind = await topic_type(session, name, wait=True, raw=fits is None)
-            _subscribe(session, arguments, kind, name, partial(count, window), raw=fits is None)
+            message_type = await topic_type(session, name, wait=True, raw=matches_filter is None)
+            _subscribe(session, arguments, message_type, name, partial(count, window), raw=matches_filter is None)
             if len(names) > 1:
                 print(f"Subscribed to [{name}]")
 
         def text() -> str | None:
             spreads = {name: window.spread() for name, window in windows.items()}
-            known = {name: spread for name, spread in spreads.items() if spread is not None}
+            measured_spreads = {name: spread for name, spread in spreads.items() if spread is not None}
             if len(names) > 1:
-                return rate_table(known) if known else "no new messages"
-            return rate_text(known[names[0]]) if known else None
+                return rate_table(measured_spreads) if measured_spreads else "no new messages"
+            return rate_text(measured_spreads[names[0]]) if measured_spreads else None
 
         return await _report_until_finished(session, text)
 
@@ -101,11 +101,13 @@ def run_delay(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         from linkwright.cli.topic.rates import DelayWindow
 
-        kind = await topic_type(session, name, wait=True)
-        fields = kind.get_fields_and_field_types()
+        message_type = await topic_type(session, name, wait=True)
+        fields = message_type.get_fields_and_field_types()
         if fields.get("header") != "std_msgs/Header":
             message = phrase(
-                "msg does not have header: topic '{name}' carries {type_name}", name=name, type_name=kind.TYPE_NAME
+                "msg does not have header: topic '{name}' carries {type_name}",
+                name=name,
+                type_name=message_type.TYPE_NAME,
             )
             hint = phrase("only messages with a std_msgs/Header have a time stamp")
             raise LinkwrightError(Diagnostic("CLI413", message, hint=hint))
@@ -116,12 +118,12 @@ def run_delay(arguments: argparse.Namespace) -> int:
 
         def count(message: Any) -> None:
             if raw:
-                seconds, nanoseconds = _STAMP[message[1] & 1].unpack_from(message, _CDR_HEADER)
+                seconds, nanoseconds = _STAMP_FORMATS[message[1] & 1].unpack_from(message, _CDR_HEADER)
             else:
                 seconds, nanoseconds = message.header.stamp.sec, message.header.stamp.nanosec
             window.add(clock.now_ns(), seconds * NANOSECONDS_PER_SECOND + nanoseconds)
 
-        _subscribe(session, arguments, kind, name, count, raw=raw)
+        _subscribe(session, arguments, message_type, name, count, raw=raw)
         return await _report_until_finished(session, window.text)
 
     return run_in_graph(arguments, job)
@@ -145,13 +147,13 @@ def run_bw(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         from linkwright.cli.topic.rates import BandwidthWindow
 
-        kind = await topic_type(session, name, wait=True, raw=True)
+        message_type = await topic_type(session, name, wait=True, raw=True)
         window = BandwidthWindow(arguments.window)
 
         def count(data: bytes) -> None:
             window.add(time.monotonic_ns(), len(data))
 
-        _subscribe(session, arguments, kind, name, count, raw=True)
+        _subscribe(session, arguments, message_type, name, count, raw=True)
         print(f"Subscribed to [{name}]")
         return await _report_until_finished(session, lambda: window.text(time.monotonic_ns()))
 
@@ -206,5 +208,5 @@ async def _report_until_finished(session: Session, text: Callable[[], str | None
         if line is not None:
             print(line)
 
-    session.every(_PERIOD, report)
+    session.every(_REPORT_PERIOD, report)
     return await session.finished() or 0

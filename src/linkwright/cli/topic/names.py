@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 _TOPICS = Kind(
     lambda session: session.node.get_topic_names_and_types(),
     "CLI411",
-    lambda given: phrase("Unknown topic '{topic_name}'", topic_name=given),
-    phrase("`linkwright topic list` lists them"),
+    lambda topic_name: phrase("Unknown topic '{topic_name}'", topic_name=topic_name),
+    phrase("`linkwright topic list` lists the topics"),
 )
 
-_INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
+_INFINITE_DURATION_NS = 0x7FFFFFFF_FFFFFFFF
 """The smallest infinite duration in nanoseconds (rmw: 9223372036.854775807 s)."""
 
 
@@ -52,16 +52,16 @@ def run_list(arguments: argparse.Namespace) -> int:
         if arguments.verbose and topics and not arguments.count:
             publishers = [(name, types, node.count_publishers(name)) for name, types in topics]
             subscribers = [(name, types, node.count_subscribers(name)) for name, types in topics]
-            print(_counted("Published", "publisher", publishers))
-            print(_counted("Subscribed", "subscriber", subscribers))
+            print(_endpoint_counts("Published", "publisher", publishers))
+            print(_endpoint_counts("Subscribed", "subscriber", subscribers))
         else:
             print_names_and_types(topics, arguments)
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
-def _counted(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], int]]) -> str:
+def _endpoint_counts(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], int]]) -> str:
     lines = [f"{title} topics:"]
     for name, types, count in topics:
         if count:
@@ -97,7 +97,7 @@ def run_info(arguments: argparse.Namespace) -> int:
                 print(endpoint_text(endpoint), end=end)
         return 0
 
-    return run_in_graph(arguments, job, only_looks=True)
+    return run_in_graph(arguments, job, read_only=True)
 
 
 def configure_find(parser: argparse.ArgumentParser) -> None:
@@ -154,15 +154,15 @@ def qos_lines(qos: QoSProfile) -> list[str]:
         f"  Reliability: {qos.reliability.name}",
         f"  History (Depth): {history}",
         f"  Durability: {qos.durability.name}",
-        f"  Lifespan: {_duration(qos.lifespan)}",
-        f"  Deadline: {_duration(qos.deadline)}",
+        f"  Lifespan: {_duration_text(qos.lifespan)}",
+        f"  Deadline: {_duration_text(qos.deadline)}",
         f"  Liveliness: {qos.liveliness.name}",
-        f"  Liveliness lease duration: {_duration(qos.liveliness_lease_duration)}",
+        f"  Liveliness lease duration: {_duration_text(qos.liveliness_lease_duration)}",
     ]
 
 
-def _duration(duration: Any) -> str:
+def _duration_text(duration: Any) -> str:
     nanoseconds = duration.nanoseconds
-    if nanoseconds == 0 or nanoseconds >= _INFINITE_NS:
+    if nanoseconds == 0 or nanoseconds >= _INFINITE_DURATION_NS:
         return "Infinite"
     return f"{nanoseconds} nanoseconds"

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 _KEEP_ALIVE = 0.1
 _WAITING_NOTICE_PERIOD = 1.0
-_MATCHED_BOTH_WAYS = 0.15
-"""Seconds after which a discovered subscription has discovered the publisher too; earlier messages may be lost."""
-_Filled = tuple[Any, list[Callable[[Any], None]]]
+_MUTUAL_DISCOVERY_DELAY = 0.15
+"""Seconds until a discovered subscription has also discovered the publisher; earlier messages may be lost."""
+_MessageWithStamps = tuple[Any, list[Callable[[Any], None]]]
 
 
 def configure_pub(parser: argparse.ArgumentParser) -> None:
@@ -75,65 +75,71 @@ def run_pub(arguments: argparse.Namespace) -> int:
     from linkwright.messages import get_message
 
     name = absolute(arguments.topic_name)
-    kind = get_message(arguments.message_type)
+    message_class = get_message(arguments.message_type)
     text = read_values(arguments)
-    filled: list[_Filled] = []
+    messages: list[_MessageWithStamps] = []
     for values in parse_values(text):
-        message = kind()
-        filled.append((message, fill(message, values, text)))
+        message = message_class()
+        messages.append((message, fill(message, values, text)))
     times = 1 if arguments.once else arguments.times
     if arguments.yaml_file is not None and not times:
-        times = len(filled)
+        times = len(messages)
 
     async def job(session: Session) -> int:
-        publisher = session.node.create_publisher(kind, name, profile(arguments))
-        wanted = arguments.wait_matching_subscriptions
-        if wanted is None:
-            wanted = 1 if arguments.once or arguments.times else 0
-        if not await _wait_for(session, publisher, wanted, arguments.max_wait_time_secs):
-            print(f"Timed out waiting for {wanted} matching subscription(s)", file=sys.stderr)
+        publisher = session.node.create_publisher(message_class, name, profile(arguments))
+        required_count = arguments.wait_matching_subscriptions
+        if required_count is None:
+            required_count = 1 if arguments.once or arguments.times else 0
+        if not await _wait_for_subscriptions(session, publisher, required_count, arguments.max_wait_time_secs):
+            print(f"Timed out waiting for {required_count} matching subscription(s)", file=sys.stderr)
             return 1
-        if wanted:
-            await asyncio.sleep(_MATCHED_BOTH_WAYS)
+        if required_count:
+            await asyncio.sleep(_MUTUAL_DISCOVERY_DELAY)
         print("publisher: beginning loop")
-        await _publish(session, publisher, filled, times, arguments)
+        await _publish(session, publisher, messages, times, arguments)
         await asyncio.sleep(arguments.keep_alive)
         return 0
 
     return run_in_graph(arguments, job, node_name=arguments.node_name)
 
 
-async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, longest: float | None) -> bool:
-    """Wait for `wanted` subscriptions, and print a line each second.
+async def _wait_for_subscriptions(
+    session: Session, publisher: Publisher[Any], required_count: int, timeout: float | None
+) -> bool:
+    """Wait for `required_count` subscriptions, and print a line each second.
 
     Returns:
-        Whether the subscriptions matched within `longest` seconds; None means no limit.
+        Whether the subscriptions matched within `timeout` seconds; a `timeout` of None means no limit.
     """
-    waited = 0.0
-    while publisher.get_subscription_count() < wanted:
-        if longest is not None and waited >= longest:
+    waited_seconds = 0.0
+    while publisher.get_subscription_count() < required_count:
+        if timeout is not None and waited_seconds >= timeout:
             return False
-        print(f"Waiting for at least {wanted} matching subscription(s)...")
-        step = _WAITING_NOTICE_PERIOD if longest is None else min(_WAITING_NOTICE_PERIOD, longest - waited)
-        await session.wait_until(lambda: publisher.get_subscription_count() >= wanted, step)
-        waited += step
+        print(f"Waiting for at least {required_count} matching subscription(s)...")
+        step = _WAITING_NOTICE_PERIOD if timeout is None else min(_WAITING_NOTICE_PERIOD, timeout - waited_seconds)
+        await session.wait_until(lambda: publisher.get_subscription_count() >= required_count, step)
+        waited_seconds += step
     return True
 
 
 async def _publish(
-    session: Session, publisher: Publisher[Any], filled: list[_Filled], times: int, arguments: argparse.Namespace
+    session: Session,
+    publisher: Publisher[Any],
+    messages_with_stamps: list[_MessageWithStamps],
+    times: int,
+    arguments: argparse.Namespace,
 ) -> None:
     clock = session.node.get_clock()
-    messages = cycle(filled)
+    messages = cycle(messages_with_stamps)
     count = 0
 
     def publish() -> None:
         nonlocal count
-        message, stamps = next(messages)
-        if stamps:
+        message, stamp_setters = next(messages)
+        if stamp_setters:
             now = clock.now().to_msg()
-            for stamp in stamps:
-                stamp(now)
+            for set_stamp in stamp_setters:
+                set_stamp(now)
         count += 1
         if arguments.print and count % arguments.print == 0:
             print(f"publishing #{count}: {message!r}\n")

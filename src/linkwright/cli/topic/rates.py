@@ -17,15 +17,15 @@ class Spread:
 
     Attributes:
         mean: the average duration.
-        least: the shortest duration.
-        most: the longest duration.
+        minimum: the shortest duration.
+        maximum: the longest duration.
         deviation: the standard deviation.
         count: the number of durations.
     """
 
     mean: float
-    least: float
-    most: float
+    minimum: float
+    maximum: float
     deviation: float
     count: int
 
@@ -43,9 +43,9 @@ class Spread:
         return NANOSECONDS_PER_SECOND / self.mean if self.mean > 0 else 0.0
 
     def bounds(self) -> str:
-        """Return the second line of the output of ``topic hz`` and ``topic delay``."""
+        """Return the output line of ``topic hz`` and ``topic delay`` with the minimum, maximum and deviation."""
         return (
-            f"\tmin: {self.least / NANOSECONDS_PER_SECOND:.3f}s max: {self.most / NANOSECONDS_PER_SECOND:.3f}s "
+            f"\tmin: {self.minimum / NANOSECONDS_PER_SECOND:.3f}s max: {self.maximum / NANOSECONDS_PER_SECOND:.3f}s "
             f"std dev: {self.deviation / NANOSECONDS_PER_SECOND:.5f}s window: {self.count}"
         )
 
@@ -59,7 +59,7 @@ class RateWindow:
 
     def __init__(self, size: int) -> None:
         self._times: deque[int] = deque(maxlen=size)
-        self._last: int | None = None
+        self._last_time_ns: int | None = None
         self._new = False
 
     def add(self, now_ns: int) -> bool:
@@ -68,13 +68,13 @@ class RateWindow:
         Returns:
             Whether the time jumped back, which resets the window.
         """
-        last, self._last, self._new = self._last, now_ns, True
-        if last is None:
+        previous_ns, self._last_time_ns, self._new = self._last_time_ns, now_ns, True
+        if previous_ns is None:
             return False
-        if now_ns < last:
+        if now_ns < previous_ns:
             self._times.clear()
             return True
-        self._times.append(now_ns - last)
+        self._times.append(now_ns - previous_ns)
         return False
 
     def spread(self) -> Spread | None:
@@ -94,14 +94,14 @@ class DelayWindow:
 
     def __init__(self, size: int) -> None:
         self._delays: deque[int] = deque(maxlen=size)
-        self._last: int | None = None
+        self._last_time_ns: int | None = None
         self._new = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
         """Add the delay of a message, from its stamp to its arrival."""
-        if self._last is not None and now_ns < self._last:
+        if self._last_time_ns is not None and now_ns < self._last_time_ns:
             self._delays.clear()
-        self._last, self._new = now_ns, True
+        self._last_time_ns, self._new = now_ns, True
         self._delays.append(now_ns - stamp_ns)
 
     def text(self) -> str | None:
@@ -123,15 +123,15 @@ class BandwidthWindow(TrafficWindow):
         traffic = self.traffic(now_ns)
         if traffic is None:
             return None
-        write = _unit_for(traffic.bytes_per_second)
-        shown = {"mean": traffic.mean_size, "min": traffic.least_size, "max": traffic.most_size}
-        figures = " ".join(f"{name}: {write(value)}" for name, value in shown.items())
-        return f"{write(traffic.bytes_per_second)}/s from {traffic.count} messages\n\tMessage size {figures}"
+        size_text = _size_formatter(traffic.bytes_per_second)
+        sizes = {"mean": traffic.mean_size, "min": traffic.min_size, "max": traffic.max_size}
+        figures = " ".join(f"{name}: {size_text(value)}" for name, value in sizes.items())
+        return f"{size_text(traffic.bytes_per_second)}/s from {traffic.count} messages\n\tMessage size {figures}"
 
 
-def _unit_for(bytes_each_second: float) -> Callable[[float], str]:
+def _size_formatter(bytes_per_second: float) -> Callable[[float], str]:
     """Return a function that formats byte counts as ros2 does, in a unit chosen for a bandwidth."""
-    scale, digits, name = next(unit for limit, unit in _UNITS if bytes_each_second < limit)
+    scale, digits, name = next(unit for limit, unit in _UNITS if bytes_per_second < limit)
     return lambda size: f"{size / scale:.{digits}f} {name}"
 
 
@@ -152,15 +152,15 @@ def rate_table(spreads: Mapping[str, Spread]) -> str:
         (
             topic,
             f"{spread.rate:.3f}",
-            f"{spread.least / NANOSECONDS_PER_SECOND:.3f}",
-            f"{spread.most / NANOSECONDS_PER_SECOND:.3f}",
+            f"{spread.minimum / NANOSECONDS_PER_SECOND:.3f}",
+            f"{spread.maximum / NANOSECONDS_PER_SECOND:.3f}",
             f"{spread.deviation / NANOSECONDS_PER_SECOND:.5f}",
             str(spread.count),
         )
         for topic, spread in spreads.items()
     ]
-    widths = [max(len(name), *(len(row[at]) for row in rows)) for at, name in enumerate(_HEADER)]
-    head = "   ".join(name.center(width + 2) for name, width in zip(_HEADER, widths, strict=True))
-    line = "=" * (sum(widths) + 3 * (len(_HEADER) - 1))
-    body = ["   ".join(cell.ljust(width + 2) for cell, width in zip(row, widths, strict=True)) for row in rows]
-    return "\n".join([head, line, *body, ""])
+    widths = [max(len(name), *(len(row[column]) for row in rows)) for column, name in enumerate(_HEADER)]
+    header_line = "   ".join(name.center(width + 2) for name, width in zip(_HEADER, widths, strict=True))
+    separator_line = "=" * (sum(widths) + 3 * (len(_HEADER) - 1))
+    body_lines = ["   ".join(cell.ljust(width + 2) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    return "\n".join([header_line, separator_line, *body_lines, ""])

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.vision.detections import Detections
     from linkwright.vision.detector import Detector
 
-_LARGEST_FILE = 200_000_000
+_MAX_FILE_SIZE = 200_000_000
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -68,48 +68,55 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.vision.detectors.markers import MarkerDetector
     from linkwright.vision.detectors.options import DetectorOptions
     from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
-    from linkwright.vision.detectors.settings import bad_setting
+    from linkwright.vision.detectors.settings import setting_error
 
     settings = {} if arguments.dictionary is None else {"dictionary": arguments.dictionary}
     options = DetectorOptions(labels=arguments.labels, device=arguments.device, settings=settings)
     detector = make_detector(arguments.model or DEFAULT_DETECTOR, options)
     if settings and not isinstance(detector, MarkerDetector):
         hint = phrase("only 'aruco' and 'apriltag' have this option: leave it out")
-        raise bad_setting("dictionary", arguments.dictionary, hint)
+        raise setting_error("dictionary", arguments.dictionary, hint)
     for note in detector.notes:
         print(note, file=sys.stderr)
-    classes = _known_classes(detector, arguments.classes) if arguments.classes else None
+    classes = _checked_classes(detector, arguments.classes) if arguments.classes else None
     limits = Limits(arguments.threshold, arguments.iou, classes=classes)
     problems: list[Diagnostic] = []
     rows: list[dict[str, object]] = []
-    written: set[str] = set()
+    used_names: set[str] = set()
     for name in arguments.images:
         try:
             image = _read(name)
         except LinkwrightError as error:
             problems += error.diagnostics
             continue
-        found = detector.detect(image, limits)
-        rows.append({"image": name, "width": image.shape[1], "height": image.shape[0], "detections": _data(found)})
+        detections = detector.detect(image, limits)
+        rows.append(
+            {
+                "image": name,
+                "width": image.shape[1],
+                "height": image.shape[0],
+                "detections": _detection_rows(detections),
+            }
+        )
         if arguments.format == "text":
-            _print(name, found)
+            _print_detections(name, detections)
         if arguments.output is not None:
-            _draw(image, found, arguments.output, _unused(Path(name).stem, written))
+            _write_drawing(image, detections, arguments.output, _unique_name(Path(name).stem, used_names))
     if arguments.format == "json":
         print(json.dumps(rows, indent=2, ensure_ascii=False))
     print_diagnostics(problems, sys.stderr)
     return 1 if problems else 0
 
 
-def _known_classes(detector: Detector, wanted: list[str]) -> frozenset[str]:
-    for name in wanted:
+def _checked_classes(detector: Detector, class_names: list[str]) -> frozenset[str]:
+    for name in class_names:
         if detector.names and name not in detector.names:
             message = phrase("the detector does not know the class '{name}'", name=name)
             hint = did_you_mean(name, detector.names) or phrase(
                 "its classes are {names}", names=", ".join(detector.names)
             )
             raise LinkwrightError(Diagnostic("VISION111", message, hint=hint))
-    return frozenset(wanted)
+    return frozenset(class_names)
 
 
 def _read(name: str) -> NDArray[np.uint8]:
@@ -118,10 +125,10 @@ def _read(name: str) -> NDArray[np.uint8]:
 
     from linkwright.files.input_files import read_file
     from linkwright.images import BadImageError, DecodedImage
-    from linkwright.images.image_files import file_pixels
+    from linkwright.images.image_files import decode_file
 
     try:
-        pixels = file_pixels(np.frombuffer(read_file(name, _LARGEST_FILE), np.uint8))
+        pixels = decode_file(np.frombuffer(read_file(name, _MAX_FILE_SIZE), np.uint8))
     except (OSError, BadImageError) as error:
         reason = foreign(error.strerror if isinstance(error, OSError) else error)
         message = phrase("cannot read the image '{path}': {reason}", path=name, reason=reason)
@@ -129,27 +136,31 @@ def _read(name: str) -> NDArray[np.uint8]:
     return DecodedImage((pixels >> 8).astype(np.uint8) if pixels.dtype == np.uint16 else pixels).rgb()
 
 
-def _data(found: Detections) -> list[dict[str, object]]:
+def _detection_rows(detections: Detections) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
-    for index in range(len(found)):
-        box = [round(float(value), 2) for value in found.boxes[index]]
-        row: dict[str, object] = {"class": found.name(index), "score": round(float(found.scores[index]), 4), "box": box}
-        if found.corners is not None:
-            row["corners"] = [[round(float(value), 2) for value in point] for point in found.corners[index]]
+    for index in range(len(detections)):
+        box = [round(float(value), 2) for value in detections.boxes[index]]
+        row: dict[str, object] = {
+            "class": detections.name(index),
+            "score": round(float(detections.scores[index]), 4),
+            "box": box,
+        }
+        if detections.corners is not None:
+            row["corners"] = [[round(float(value), 2) for value in point] for point in detections.corners[index]]
         rows.append(row)
     return rows
 
 
-def _print(name: str, found: Detections) -> None:
-    if not len(found):
+def _print_detections(name: str, detections: Detections) -> None:
+    if not len(detections):
         print(f"{name}: nothing found")
-    for index in range(len(found)):
-        left, top, right, bottom = found.boxes[index]
+    for index in range(len(detections)):
+        left, top, right, bottom = detections.boxes[index]
         box = f"{left:.1f} {top:.1f} {right:.1f} {bottom:.1f}"
-        print(f"{name}: {found.name(index)} {found.scores[index]:.2f} [{box}]")
+        print(f"{name}: {detections.name(index)} {detections.scores[index]:.2f} [{box}]")
 
 
-def _draw(image: NDArray[np.uint8], found: Detections, folder: Path, stem: str) -> None:
+def _write_drawing(image: NDArray[np.uint8], detections: Detections, folder: Path, stem: str) -> None:
     from io import BytesIO
 
     from PIL import Image
@@ -157,17 +168,17 @@ def _draw(image: NDArray[np.uint8], found: Detections, folder: Path, stem: str) 
     from linkwright.vision.detectors.drawing import drawn
 
     file = BytesIO()
-    Image.fromarray(drawn(image, found)).save(file, "PNG")
+    Image.fromarray(drawn(image, detections)).save(file, "PNG")
     write_output(folder / f"{stem}_detections.png", file.getvalue())
 
 
-def _unused(stem: str, written: set[str]) -> str:
-    """Return a unique name for a result file, and add it to `written`.
+def _unique_name(stem: str, used_names: set[str]) -> str:
+    """Return a unique name for a result file, and add it to `used_names`.
 
     If the name `stem` is already in use, a number is appended.
     """
     name, number = stem, 2
-    while name in written:
+    while name in used_names:
         name, number = f"{stem}-{number}", number + 1
-    written.add(name)
+    used_names.add(name)
     return name

@@ -33,8 +33,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     figures = judge(arguments.model, arguments.dataset, arguments.split)
     if arguments.format == "json":
-        content = {**asdict(figures), "confusion": figures.confusion.tolist()}
-        print(json.dumps(content, indent=2, ensure_ascii=False))
+        data = {**asdict(figures), "confusion": figures.confusion.tolist()}
+        print(json.dumps(data, indent=2, ensure_ascii=False))
         return FINE
     print(f"{figures.images} images: mAP50 {figures.map50:.3f}, mAP50-95 {figures.map:.3f}")
     print("\n".join(table(figures)))

@@ -17,7 +17,7 @@ from linkwright.process.interruption import INTERRUPTED
 if TYPE_CHECKING:
     from linkwright.vision.training.learning.course import Epoch
 
-_CELL = 32
+_CELL_SIZE = 32
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--size",
         metavar="WIDTHxHEIGHT",
-        type=_size,
+        type=_parse_size,
         default=(480, 384),
         help="the input size of the network, default 480x384",
     )
@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Train a network, evaluate it, and print the results."""
     from linkwright.vision.training.card import table
     from linkwright.vision.training.options import Options
-    from linkwright.vision.training.teaching import teach
+    from linkwright.vision.training.teaching import train_network
 
     width, height = arguments.size
     options = Options(
@@ -114,12 +114,12 @@ def run(arguments: argparse.Namespace) -> int:
         threads=arguments.threads,
         precision=arguments.precision,
         device=arguments.device,
-        weights=_weights(arguments.weights),
+        weights=_weights_path(arguments.weights),
         resume=arguments.resume,
         held_out=tuple(arguments.held_out),
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
     )
-    result = teach(options, lambda epoch: _report(epoch, options.epochs))
+    result = train_network(options, lambda epoch: _print_epoch(epoch, options.epochs))
     for examination in result.examinations:
         print(f"{examination.title}: mAP50 {examination.figures.map50:.3f}, mAP50-95 {examination.figures.map:.3f}")
         print("\n".join(table(examination.figures)))
@@ -128,31 +128,31 @@ def run(arguments: argparse.Namespace) -> int:
     return INTERRUPTED if result.interrupted else FINE
 
 
-def _report(epoch: Epoch, last: int) -> None:
+def _print_epoch(epoch: Epoch, epoch_count: int) -> None:
     boxes, scores = (f"{loss:.3f}" for loss in epoch.losses)
     line = localized(
         phrase(
             "epoch {number} of {last}: box loss {boxes}, score loss {scores}",
             number=epoch.number,
-            last=last,
+            last=epoch_count,
             boxes=boxes,
             scores=scores,
         )
     )
-    if epoch.judged is not None:
-        line += f"; mAP50 {epoch.judged.map50:.3f}, mAP50-95 {epoch.judged.map:.3f}"
+    if epoch.evaluation is not None:
+        line += f"; mAP50 {epoch.evaluation.map50:.3f}, mAP50-95 {epoch.evaluation.map:.3f}"
     print(line, file=sys.stderr, flush=True)
 
 
-def _weights(text: str | None) -> Path | None:
+def _weights_path(text: str | None) -> Path | None:
     from linkwright.vision.models.things import FILE
 
     return FILE if text == FILE.stem else Path(text) if text else None
 
 
-def _size(text: str) -> tuple[int, int]:
+def _parse_size(text: str) -> tuple[int, int]:
     width, _, height = text.partition("x")
     sides = [int(side) if side.isascii() and side.isdigit() else 0 for side in (width, height)]
-    if any(side == 0 or side % _CELL or side > 4096 for side in sides):
+    if any(side == 0 or side % _CELL_SIZE or side > 4096 for side in sides):
         raise argparse.ArgumentTypeError("value must be WIDTHxHEIGHT, both multiples of 32")
     return sides[0], sides[1]

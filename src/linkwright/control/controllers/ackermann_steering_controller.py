@@ -30,15 +30,17 @@ class AckermannSteeringController(SteeringController[Parameters]):
     JOINTS = (2, 2)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions in the parameters, under current or older names."""
+        """Return the drive with the dimensions from the parameters, which have different names in Humble and Jazzy."""
         parameters = self.parameters
-        traction = parameters.traction_track_width or parameters.select_traction(
+        traction_track_width = parameters.traction_track_width or parameters.select_traction(
             parameters.front_wheel_track, parameters.rear_wheel_track
         )
-        steering = parameters.steering_track_width or parameters.select_traction(
+        steering_track_width = parameters.steering_track_width or parameters.select_traction(
             parameters.rear_wheel_track, parameters.front_wheel_track
         )
         radius = parameters.traction_wheels_radius or parameters.select_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius
         )
-        return CarDrive(parameters.wheelbase, traction, steering or traction, radius)
+        return CarDrive(
+            parameters.wheelbase, traction_track_width, steering_track_width or traction_track_width, radius
+        )

@@ -1,7 +1,4 @@
-"""Action servers of controllers.
-
-Goals arrive on the event loop, and are executed in the update thread.
-"""
+"""Action servers of controllers: goals arrive on the event loop, and are executed in the update thread."""
 
 from __future__ import annotations
 
@@ -15,7 +12,7 @@ from linkwright.graph.actions.server import ActionServer
 
 
 class _Server(ActionServer):
-    """An action server that reports cancel requests after the base class has handled them.
+    """An action server that reports a cancel request after the base class has handled it.
 
     The order matters because a goal may end as soon as the request is reported.
     """
@@ -35,17 +32,17 @@ class Goal:
 
     Attributes:
         request: the goal message.
-        ended: whether the goal has ended.
+        has_ended: whether the goal has ended.
     """
 
     def __init__(self, handle: ServerGoalHandle, node: ControllerNode) -> None:
         self.request = handle.request
-        self.ended = False
+        self.has_ended = False
         self._handle = handle
         self._node = node
 
     def belongs_to(self, handle: ServerGoalHandle) -> bool:
-        """Return whether the goal is that of a handle."""
+        """Return whether the goal has this handle."""
         return self._handle is handle
 
     def feedback(self, message: Any) -> None:
@@ -62,16 +59,16 @@ class Goal:
 
     def cancel(self, result: Any) -> None:
         """End the goal with the status canceled, even if its client did not request that."""
-        self._end(self._canceled, result)
+        self._end(self._cancel_goal, result)
 
-    def _canceled(self, result: Any) -> None:
+    def _cancel_goal(self, result: Any) -> None:
         if not self._handle.is_cancel_requested:
             self._handle.update(GoalEvent.CANCEL_GOAL)
         self._handle.canceled(result)
 
     def _end(self, end: Callable[[Any], object], result: Any) -> None:
-        if not self.ended:
-            self.ended = True
+        if not self.has_ended:
+            self.has_ended = True
             self._node.call_on_loop(partial(self._end_on_loop, end, result))
 
     def _end_on_loop(self, end: Callable[[Any], object], result: Any) -> None:
@@ -88,8 +85,8 @@ class ControllerAction:
         name: the action's name.
         is_allowed: returns whether a goal message is accepted; called on the event loop.
         begin: called with each accepted goal, in the update thread.
-        cancel: called with the goal to be cancelled, in the update thread, if this is the goal that `begin` received
-            last.
+        cancel: called with the goal to be cancelled, in the update thread, if it is the latest goal that `begin`
+            received.
     """
 
     def __init__(
@@ -112,30 +109,30 @@ class ControllerAction:
             action_type,
             name,
             lambda _: None,
-            goal_callback=self._asked,
-            handle_accepted_callback=self._accepted,
+            goal_callback=self._on_goal,
+            handle_accepted_callback=self._on_accepted,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
-        self._server.on_cancel_requested = self._asked_to_cancel
+        self._server.on_cancel_requested = self._on_cancel_requested
 
     def close(self) -> None:
         """Remove the action server from the graph."""
         self._server.destroy()
 
-    def _asked(self, request: Any) -> GoalResponse:
+    def _on_goal(self, request: Any) -> GoalResponse:
         return GoalResponse.ACCEPT if self._is_allowed(request) else GoalResponse.REJECT
 
-    def _accepted(self, handle: ServerGoalHandle) -> None:
+    def _on_accepted(self, handle: ServerGoalHandle) -> None:
         handle.update(GoalEvent.EXECUTE)
-        self._node.post(partial(self._started, handle))
+        self._node.post(partial(self._begin_goal, handle))
 
-    def _started(self, handle: ServerGoalHandle) -> None:
+    def _begin_goal(self, handle: ServerGoalHandle) -> None:
         self._goal = Goal(handle, self._node)
         self._begin(self._goal)
 
-    def _asked_to_cancel(self, handle: ServerGoalHandle) -> None:
-        self._node.post(partial(self._canceled, handle))
+    def _on_cancel_requested(self, handle: ServerGoalHandle) -> None:
+        self._node.post(partial(self._cancel_goal, handle))
 
-    def _canceled(self, handle: ServerGoalHandle) -> None:
-        if self._goal is not None and self._goal.belongs_to(handle) and not self._goal.ended:
+    def _cancel_goal(self, handle: ServerGoalHandle) -> None:
+        if self._goal is not None and self._goal.belongs_to(handle) and not self._goal.has_ended:
             self._cancel(self._goal)

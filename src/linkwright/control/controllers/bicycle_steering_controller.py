@@ -26,7 +26,7 @@ class BicycleSteeringController(SteeringController[Parameters]):
     JOINTS = (1, 1)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions in the parameters, under current or older names."""
+        """Return the drive with the dimensions from the parameters, which have different names in Humble and Jazzy."""
         parameters = self.parameters
         radius = parameters.traction_wheel_radius or parameters.select_traction(
             parameters.front_wheel_radius, parameters.rear_wheel_radius

@@ -19,7 +19,7 @@ A controller is a class that is declared as an entry point of the group ``linkwr
             for command in self.commands:
                 command.value = self._wanted
 
-All methods are called in one thread, the update thread. Names, order and meaning of the callbacks are those of
+All methods are called in one thread, the update thread. The callbacks have the same names, order and meaning as in
 ``controller_interface`` of ros2_control.
 """
 
@@ -43,11 +43,11 @@ if TYPE_CHECKING:
 P = TypeVar("P")
 
 InterfaceNames = Sequence[str] | Interfaces
-"""Names of interfaces, ``joint1/position``; or all that there are."""
+"""The names of interfaces, such as ``joint1/position``, or all interfaces."""
 
 
 class ControllerError(LinkwrightError):
-    """Raised by a controller that refuses to be configured or activated; the message is logged.
+    """Raised by a controller that cannot be configured, activated or updated; the message is logged.
 
     Args:
         message: what is wrong, and how to fix it.
@@ -78,7 +78,7 @@ class Controller(ABC, Generic[P]):
     """The base class of controllers, which compute commands from states in each update.
 
     Args:
-        place: the node and settings that the manager provides.
+        context: the node and settings that the manager provides.
 
     Raises:
         LinkwrightError: a parameter has a value that is not allowed.
@@ -91,9 +91,9 @@ class Controller(ABC, Generic[P]):
         robot_description: the URDF of the robot; empty if none is known.
         commands: the command interfaces available while the controller is active, in the order of `command_interfaces`.
         states: the state interfaces, in the order of `state_interfaces`.
-        references: the inputs that another controller may command, see `reference_interfaces`.
-        exported: the states for other controllers, see `exported_states`.
-        chained: whether another controller commands the references.
+        references: the inputs that another controller may command; see `reference_interfaces`.
+        exported: the states for other controllers; see `exported_states`.
+        is_chained: whether another controller commands the references.
         time_ns: the time of the latest update, in nanoseconds.
         state: the lifecycle state.
     """
@@ -109,7 +109,7 @@ class Controller(ABC, Generic[P]):
         self.states: list[StateInterface] = []
         self.references: list[CommandInterface] = []
         self.exported: list[StateInterface] = []
-        self.chained = False
+        self.is_chained = False
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
         self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
@@ -118,16 +118,16 @@ class Controller(ABC, Generic[P]):
             self.node.logger.warning(message if hint is None else joined((message, hint), "; "))
 
     @classmethod
-    def variant(cls, given: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name
-        """Return the controller class for which the given parameters are intended.
+    def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name
+        """Return the controller class for which the parameters are intended.
 
-        If two packages use the same type name, the class may be another one than this.
+        If two packages use the same type name, this may return another class. `parameter_names` are the set parameters.
         """
         return cls
 
     @property
     def parameters(self) -> P:
-        """The current parameters; read again for each use, because they may change at run time."""
+        """The current parameters; do not store them, because they may change at run time."""
         return self._parameters.values
 
     @cached_property
@@ -190,7 +190,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def on_error(self) -> None:
-        """Handle an exception, other than `ControllerError`, of another callback or an update."""
+        """Handle an exception other than `ControllerError` that another callback or an update raised."""
 
     def on_set_chained_mode(self, chained: bool) -> None:
         """Handle a change of chained mode, in which another controller commands the references.
@@ -204,7 +204,7 @@ class Controller(ABC, Generic[P]):
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy commands from topics into `references`.
 
-        This is called before `update` unless another controller commands the references.
+        Called before `update`, unless another controller commands the references.
         """
 
     def update(self, time_ns: int, period_s: float) -> None:
@@ -221,6 +221,6 @@ class Controller(ABC, Generic[P]):
     def step(self, time_ns: int, period_s: float) -> None:
         """Run an update: first `update_references` if no controller commands them, then `update`."""
         self.time_ns = time_ns
-        if not self.chained and self.references:
+        if not self.is_chained and self.references:
             self.update_references(time_ns, period_s)
         self.update(time_ns, period_s)

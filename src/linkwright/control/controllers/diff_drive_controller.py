@@ -1,8 +1,8 @@
 """``diff_drive_controller/DiffDriveController``: a differential drive with wheels on two sides.
 
-Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, messages). Three things differ: open-loop
-odometry integrates the limited velocity, wheels may start at any angle, and a command that is not a number stops the
-robot.
+Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, messages). Deliberate differences:
+open-loop odometry integrates the limited velocity, wheels may start at any angle, and a command that is not finite
+stops the robot.
 """
 
 from __future__ import annotations
@@ -64,11 +64,11 @@ class DiffDriveController(LimitedDrive[Parameters]):
         return [f"{wheel}/{kind}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references: the forward velocity in m/s, and the angular velocity around z in rad/s."""
+        """Return the references: the forward velocity in m/s, and the angular velocity about z in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
     def limits(self) -> Mapping[str, SpeedLimits]:
-        """Return the limits of the forward velocity and the angular velocity around z."""
+        """Return the limits of the forward velocity and of the angular velocity about z."""
         return {"linear.x": self.parameters.linear.x, "angular.z": self.parameters.angular.z}
 
     def on_configure(self) -> None:
@@ -89,21 +89,21 @@ class DiffDriveController(LimitedDrive[Parameters]):
 
     def _check_wheels(self) -> None:
         parameters = self.parameters
-        left, right = len(parameters.left_wheel_names), len(parameters.right_wheel_names)
-        if left != right:
+        left_count, right_count = len(parameters.left_wheel_names), len(parameters.right_wheel_names)
+        if left_count != right_count:
             raise ControllerError(
                 phrase(
                     "The number of left wheels [{left}] and the number of right wheels [{right}] are different",
-                    left=left,
-                    right=right,
+                    left=left_count,
+                    right=right_count,
                 )
             )
-        if not left:
-            raise ControllerError(phrase("Wheel names parameters are empty!"))
+        if not left_count:
+            raise ControllerError(phrase("the parameters left_wheel_names and right_wheel_names must not be empty"))
         for name in ("wheel_separation", "wheel_radius"):
-            wrong = above(0.0)(name, getattr(parameters, name))
-            if wrong is not None:
-                raise ControllerError(wrong)
+            problem = above(0.0)(name, getattr(parameters, name))
+            if problem is not None:
+                raise ControllerError(problem)
 
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy the velocity command into the references, or zero if it is missing or too old."""
@@ -117,15 +117,15 @@ class DiffDriveController(LimitedDrive[Parameters]):
         Raises:
             ControllerError: the robot is moving, and a wheel has no valid state.
         """
-        wanted = [reference.value for reference in self.references]
-        if not all(map(isfinite, wanted)):
-            wanted = [0.0, 0.0]
-        pairs = zip(self._limiters, wanted, strict=True)
-        forward, angular = (limiter.follow(each, period_s) for limiter, each in pairs)
-        left, right = self._drive.wheel_speeds(forward, angular)
+        requested = [reference.value for reference in self.references]
+        if not all(map(isfinite, requested)):
+            requested = [0.0, 0.0]
+        pairs = zip(self._limiters, requested, strict=True)
+        forward, angular = (limiter.follow(speed, period_s) for limiter, speed in pairs)
+        left_speed, right_speed = self._drive.wheel_speeds(forward, angular)
         count = len(self.commands) // 2
         for number, command in enumerate(self.commands):
-            command.value = left if number < count else right
+            command.value = left_speed if number < count else right_speed
         if self._settings.open_loop:
             self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
         else:
@@ -139,19 +139,19 @@ class DiffDriveController(LimitedDrive[Parameters]):
         """
         values = [state.value for state in self.states]
         count = len(values) // 2
-        left, right = sum(values[:count]) / count, sum(values[count:]) / count
-        if isnan(left) or isnan(right):
+        left_mean, right_mean = sum(values[:count]) / count, sum(values[count:]) / count
+        if isnan(left_mean) or isnan(right_mean):
             if not moves:
                 return
-            wrong = next(number for number, value in enumerate(values) if isnan(value))
+            invalid_index = next(number for number, value in enumerate(values) if isnan(value))
             raise ControllerError(
                 phrase(
                     "Either the left or right wheel {kind} is invalid for index [{index}]",
                     kind=self.states[0].kind,
-                    index=wrong % count,
+                    index=invalid_index % count,
                 )
             )
-        speeds = self._speeds([left, right], period_s)
+        speeds = self._speeds([left_mean, right_mean], period_s)
         if speeds is not None:
             forward, angular = self._drive.motion(*speeds)
             self._odometry.odometer.measure((forward, 0.0, angular), period_s)

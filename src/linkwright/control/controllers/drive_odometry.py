@@ -16,24 +16,22 @@ _AXES = 6
 
 
 def variances(name: str, values: tuple[float, ...]) -> Variances:
-    """Check that a parameter has six values, and return them as variances.
-
-    The order is x, y, z, roll, pitch, yaw.
+    """Check that a parameter has six values, and return them as the variances of x, y, z, roll, pitch and yaw.
 
     Raises:
         ControllerError: the parameter does not have six values.
     """
     if len(values) != _AXES:
         raise ControllerError(
-            phrase("'{name}' needs {needed} numbers, but has {count}", name=name, needed=_AXES, count=len(values))
+            phrase(
+                ("'{name}' must have {needed} numbers, but it has {count}"), name=name, needed=_AXES, count=len(values)
+            )
         )
     return values
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
-    """Return the prefix of frame names, which is empty or ends with a slash.
-
-    The prefix never begins with a slash.
+    """Return the prefix of frame names; it is empty or ends with a slash, and never begins with one.
 
     Args:
         node: the controller's node.
@@ -45,8 +43,8 @@ def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> 
     if not enabled:
         return ""
     namespace = node.name.rpartition("/")[0]
-    found = (prefix or "~").replace("~", namespace).strip("/")
-    return f"{found}/" if found else ""
+    resolved_prefix = (prefix or "~").replace("~", namespace).strip("/")
+    return f"{resolved_prefix}/" if resolved_prefix else ""
 
 
 class DriveOdometry:
@@ -58,7 +56,7 @@ class DriveOdometry:
         transforms: the name of the transform topic.
         frame: the frame in which the robot moves.
         child: the robot's frame.
-        of_pose, of_velocity: the variances of pose and velocity.
+        pose_variances, velocity_variances: the variances of pose and velocity.
         publishes_transforms: whether transforms are published; their topic exists in any case.
         publishes_pose: whether odometry messages contain the pose; otherwise they contain only velocities.
         window: the number of updates over which the odometer averages velocities.
@@ -76,8 +74,8 @@ class DriveOdometry:
         *,
         frame: str,
         child: str,
-        of_pose: Variances,
-        of_velocity: Variances,
+        pose_variances: Variances,
+        velocity_variances: Variances,
         publishes_transforms: bool,
         publishes_pose: bool = True,
         window: int = 1,
@@ -86,11 +84,11 @@ class DriveOdometry:
         self.odometer = Odometer(max(window, 1))
         output = node.publisher("nav_msgs/msg/Odometry", odometry)
         tf_output = transforms_topic(node, transforms)
-        self._topics = OdometryTopics(frame, child, output, None, of_pose, of_velocity)
+        self._topics = OdometryTopics(frame, child, output, None, pose_variances, velocity_variances)
         self._transforms = OdometryTopics(frame, child, None, tf_output if publishes_transforms else None)
-        self._nowhere = None if publishes_pose else Odometer().place.transform
-        self._period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0.0 else 0
-        self._published_ns: int | None = None
+        self._fixed_pose = None if publishes_pose else Odometer().pose.transform
+        self._period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate > 0.0 else 0
+        self._last_published_ns: int | None = None
 
     def publish(self, time_ns: int) -> None:
         """Publish the odometry if the period has passed and a subscription exists.
@@ -99,22 +97,22 @@ class DriveOdometry:
         """
         if not self._is_due(time_ns):
             return
-        wanted = self._topics.is_wanted
-        if not wanted and not self._transforms.is_wanted:
+        is_wanted = self._topics.is_wanted
+        if not is_wanted and not self._transforms.is_wanted:
             return
-        stamp, pose = Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self.odometer.place.transform
-        if wanted:
-            self._topics.publish(stamp, self._nowhere or pose, *self.odometer.velocity)
+        stamp, pose = Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self.odometer.pose.transform
+        if is_wanted:
+            self._topics.publish(stamp, self._fixed_pose or pose, *self.odometer.velocity)
         self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)
 
     def _is_due(self, time_ns: int) -> bool:
-        last, period = self._published_ns, self._period
-        if last is None or not 0 <= time_ns - last < 2 * period:
-            self._published_ns = time_ns
+        last_ns, period_ns = self._last_published_ns, self._period_ns
+        if last_ns is None or not 0 <= time_ns - last_ns < 2 * period_ns:
+            self._last_published_ns = time_ns
             return True
-        if time_ns - last < period:
+        if time_ns - last_ns < period_ns:
             return False
-        self._published_ns = last + period
+        self._last_published_ns = last_ns + period_ns
         return True
 
     def serve(self, node: ControllerNode) -> None:

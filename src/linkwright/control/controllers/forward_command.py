@@ -1,4 +1,4 @@
-"""Controllers that forward commands to interfaces, alone or in groups.
+"""Controllers that forward commands to the interfaces of joints.
 
 Source: forward_command_controller, position_controllers, velocity_controllers and effort_controllers of
 ros2_controllers (parameters, topics, messages; velocities and efforts are 0 after deactivation).
@@ -45,7 +45,7 @@ class _ForwardingController(Controller[P], Generic[P]):
     """The base class of controllers that forward ``~/commands`` to interfaces."""
 
     @abstractmethod
-    def _names(self) -> Sequence[str]:
+    def _interface_names(self) -> Sequence[str]:
         """Return the names of the commanded interfaces.
 
         Raises:
@@ -54,11 +54,11 @@ class _ForwardingController(Controller[P], Generic[P]):
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the names of the commanded interfaces."""
-        return self._names()
+        return self._interface_names()
 
     def on_configure(self) -> None:
         """Subscribe to the commands."""
-        self._names()
+        self._interface_names()
         self._wanted: Sequence[float] | None = None
         commander = self.node.commander(self._stop_velocities)
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
@@ -73,38 +73,41 @@ class _ForwardingController(Controller[P], Generic[P]):
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Forward the last command."""
-        wanted = self._wanted
-        if wanted is None:
+        values = self._wanted
+        if values is None:
             return
-        for command, value in zip(self.commands, wanted, strict=True):
+        for command, value in zip(self.commands, values, strict=True):
             command.value = value
 
     def _stop_velocities(self) -> bool:
-        """Set commanded velocities to zero, and leave commanded positions and efforts as they are.
+        """Set commanded velocities to zero, but keep commanded positions and efforts.
 
         Returns whether any commanded velocity was not zero.
         """
         if self._wanted is None:
             return False
-        is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._names()]
-        before = self._wanted
-        self._wanted = [0.0 if moves else value for moves, value in zip(is_velocity, before, strict=True)]
-        return self._wanted != before
+        is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._interface_names()]
+        old_values = self._wanted
+        self._wanted = [
+            0.0 if is_velocity_value else value
+            for is_velocity_value, value in zip(is_velocity, old_values, strict=True)
+        ]
+        return self._wanted != old_values
 
     def _on_command(self, message: Any) -> None:
-        wanted, count = list(message.data), len(self.commands)
+        values, count = list(message.data), len(self.commands)
         if not count:
             return  # Commands are ignored while the controller is not active.
-        if len(wanted) != count:
+        if len(values) != count:
             self.node.logger.error(
-                f"command size ({len(wanted)}) does not match number of interfaces ({count})",
+                f"command size ({len(values)}) does not match number of interfaces ({count})",
                 throttle_duration_sec=1.0,
             )
             return
-        if any(value != value for value in wanted):
+        if any(value != value for value in values):
             self.node.logger.error("a command with NaN is not forwarded", throttle_duration_sec=1.0)
             return
-        self._wanted = wanted
+        self._wanted = values
 
 
 class ForwardCommandController(_ForwardingController[ForwardParameters]):
@@ -112,7 +115,7 @@ class ForwardCommandController(_ForwardingController[ForwardParameters]):
 
     PARAMETERS = ForwardParameters
 
-    def _names(self) -> Sequence[str]:
+    def _interface_names(self) -> Sequence[str]:
         if not self.parameters.joints:
             raise ControllerError("'joints' parameter was empty")
         if not self.parameters.interface_name:
@@ -125,7 +128,7 @@ class MultiInterfaceForwardCommandController(_ForwardingController[MultiInterfac
 
     PARAMETERS = MultiInterfaceParameters
 
-    def _names(self) -> Sequence[str]:
+    def _interface_names(self) -> Sequence[str]:
         if not self.parameters.joint:
             raise ControllerError("'joint' parameter is empty")
         if not self.parameters.interface_names:
@@ -136,11 +139,11 @@ class MultiInterfaceForwardCommandController(_ForwardingController[MultiInterfac
 class _Group(_ForwardingController[GroupParameters]):
     PARAMETERS = GroupParameters
     INTERFACE: str
-    """The interface of its joints."""
+    """The interface of the joints that is commanded."""
     STOPS = True
-    """Return whether a command of 0 means standing still."""
+    """Whether the joints are commanded to 0 on deactivation."""
 
-    def _names(self) -> Sequence[str]:
+    def _interface_names(self) -> Sequence[str]:
         if not self.parameters.joints:
             raise ControllerError("'joints' parameter was empty")
         return [f"{joint}/{self.INTERFACE}" for joint in self.parameters.joints]

@@ -1,10 +1,10 @@
-"""Gripper controllers, which open and close a gripper by an action.
+"""Gripper controllers, which open and close a gripper on request of an action.
 
 ``position_controllers/GripperActionController`` forwards the position, ``effort_controllers/GripperActionController``
 computes an effort by PID from the position error, and ``parallel_gripper_action_controller/GripperActionController``
 also forwards the maximum effort and velocity.
 
-Source: ros2_controllers (parameters, actions, when a goal is reached and when the gripper is stalled).
+Source: ros2_controllers (parameters, actions, and the conditions for a reached goal and a stalled gripper).
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ P = TypeVar("P", bound=GripperParameters)
 
 
 class Gripper(Controller[P]):
-    """The base class of gripper controllers, which handles goals and decides when they end."""
+    """The base class of gripper controllers, which accepts goals and decides when they end."""
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
 
@@ -89,13 +89,13 @@ class Gripper(Controller[P]):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
         self._stay()
         self._goal = None
-        self._moved_ns = self._next_feedback_ns = 0
+        self._last_motion_ns = self._next_feedback_ns = 0
         self._active = True
 
     def on_deactivate(self) -> None:
         """Cancel the active goal."""
         self._active = False
-        self._give_up()
+        self._cancel_goal()
 
     def on_cleanup(self) -> None:
         """Remove the action server."""
@@ -112,47 +112,49 @@ class Gripper(Controller[P]):
             self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
             goal.feedback(self._report(self._feedback(), position, velocity, effort))
         if abs(velocity) > self.parameters.stall_velocity_threshold:
-            self._moved_ns = time_ns
-        reached = abs(self._wanted - position) < self.parameters.goal_tolerance
-        stalled = not reached and time_ns - self._moved_ns > self.parameters.stall_timeout * NANOSECONDS_PER_SECOND
-        if not reached and not stalled:
+            self._last_motion_ns = time_ns
+        is_reached = abs(self._wanted - position) < self.parameters.goal_tolerance
+        is_stalled = (
+            not is_reached and time_ns - self._last_motion_ns > self.parameters.stall_timeout * NANOSECONDS_PER_SECOND
+        )
+        if not is_reached and not is_stalled:
             return
         result = self._report(self._result(), position, velocity, effort)
-        result.reached_goal, result.stalled = reached, stalled
-        end = goal.succeed if reached or self.parameters.allow_stalling else goal.abort
+        result.reached_goal, result.stalled = is_reached, is_stalled
+        end = goal.succeed if is_reached or self.parameters.allow_stalling else goal.abort
         end(result)
         self._goal = None
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _is_allowed(self, request: Any) -> bool:
-        wrong = self._objection(request)
+        problem = self._objection(request)
         if not self._active:
-            wrong = "Can't accept new action goals. Controller is not running."
-        if wrong is not None:
-            self.node.logger.error(wrong)
+            problem = "Can't accept new action goals. Controller is not running."
+        if problem is not None:
+            self.node.logger.error(problem)
             return False
         self.node.logger.info("Received & accepted new action goal")
         return True
 
     def _begin(self, goal: Goal) -> None:
-        self._give_up()
+        self._cancel_goal()
         if not self._active:
             goal.abort(self._result())
             return
         self._accept(goal.request)
         self._goal = goal
-        self._moved_ns = self.time_ns
+        self._last_motion_ns = self.time_ns
         self._next_feedback_ns = 0
 
     def _cancel(self, goal: Goal) -> None:
         self.node.logger.info("Got request to cancel goal")
         if self._goal is goal:
             self.node.logger.info("Canceling active action goal because cancel callback received.")
-            self._give_up()
+            self._cancel_goal()
             self._stay()
 
-    def _give_up(self) -> None:
+    def _cancel_goal(self) -> None:
         if self._goal is not None:
             self._goal.cancel(self._result())
             self._goal = None
@@ -175,10 +177,7 @@ class Gripper(Controller[P]):
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
-        """Write the commands, and return the effort to be reported.
-
-        Here, this is the maximum effort.
-        """
+        """Write the commands, and return the effort to report, which is the maximum effort by default."""
         self.commands[0].value = self._wanted
         return self._max_effort
 
@@ -230,10 +229,12 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
     ACTION = "control_msgs/action/ParallelGripperCommand"
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return the interfaces of position, and of maximum effort and velocity if named."""
+        """Return the position interface, and the interfaces for the maximum effort and velocity if they are named."""
         parameters = self.parameters
-        more = [name for name in (parameters.max_effort_interface, parameters.max_velocity_interface) if name]
-        return [f"{parameters.joint}/{POSITION}", *more]
+        limit_interfaces = [
+            name for name in (parameters.max_effort_interface, parameters.max_velocity_interface) if name
+        ]
+        return [f"{parameters.joint}/{POSITION}", *limit_interfaces]
 
     def _stay(self) -> None:
         super()._stay()
@@ -251,8 +252,8 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
         self._max_effort = (
             command.effort[0] if parameters.max_effort_interface and len(command.effort) else parameters.max_effort
         )
-        fast = parameters.max_velocity_interface and len(command.velocity)
-        self._max_velocity = command.velocity[0] if fast else parameters.max_velocity
+        uses_goal_velocity = parameters.max_velocity_interface and len(command.velocity)
+        self._max_velocity = command.velocity[0] if uses_goal_velocity else parameters.max_velocity
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
         effort = super()._command(error, velocity, period_s)

@@ -1,10 +1,10 @@
 """Husarion's ``mecanum_drive_controller/MecanumDriveController``, for the robots ROSbot XL and Panther.
 
-A different controller of ros2_controllers has the same type name. Husarion's has the parameters and topics of
-diff_drive_controller, with four named wheels.
+A different controller of ros2_controllers has the same type name. Husarion's controller has the parameters and topics
+of diff_drive_controller, with four named wheels.
 
-Source: husarion_controllers (parameters, defaults, topics). Two things differ: odometry multiplies the wheelbase by its
-own multiplier, as the wheel commands do, and a wheel state that is not a number leaves the odometry unchanged.
+Source: husarion_controllers (parameters, defaults, topics). Deliberate differences: odometry multiplies the wheelbase
+by its own multiplier, as the wheel commands do, and a wheel state that is not finite leaves the odometry unchanged.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class LinearLimits:
     y: SpeedLimits = NO_LIMITS
 
 
-_LINEAR = LinearLimits()
+_NO_LINEAR_LIMITS = LinearLimits()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,7 @@ class Parameters(LimitedDriveParameters):
     wheel_separation_y_multiplier: float = parameter(1.0, description="corrects wheel_separation_y")
     wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius")
     use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is left out")
-    linear: LinearLimits = _LINEAR
+    linear: LinearLimits = _NO_LINEAR_LIMITS
 
 
 class HusarionMecanumController(LimitedDrive[Parameters]):
@@ -59,23 +59,23 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
 
     PARAMETERS = Parameters
 
-    def _wheels(self, kind: str) -> list[str]:
+    def _wheel_interfaces(self, kind: str) -> list[str]:
         parameters = self.parameters
         names = parameters.front_left_wheel_name, parameters.front_right_wheel_name, parameters.rear_left_wheel_name
         return [f"{name}/{kind}" for name in (*names, parameters.rear_right_wheel_name)]
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the velocity interfaces of the wheels: front left, front right, rear left, rear right."""
-        return self._wheels(VELOCITY)
+        return self._wheel_interfaces(VELOCITY)
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the position or velocity interfaces of the wheels, or none for open-loop odometry."""
         if self.parameters.open_loop:
             return ()
-        return self._wheels(POSITION if self.parameters.position_feedback else VELOCITY)
+        return self._wheel_interfaces(POSITION if self.parameters.position_feedback else VELOCITY)
 
     def limits(self) -> Mapping[str, SpeedLimits]:
-        """Return the limits of the velocities forward, to the left, and around z."""
+        """Return the limits of the velocities forward, to the left, and about z."""
         parameters = self.parameters
         return {"linear.x": parameters.linear.x, "linear.y": parameters.linear.y, "angular.z": parameters.angular.z}
 
@@ -99,17 +99,17 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         corners = ("front_left", "front_right", "rear_left", "rear_right")
         names = [f"{corner}_wheel_name" for corner in corners]
         sizes = ("wheel_separation_x", "wheel_separation_y", "wheel_radius")
-        wrong = [not_empty(name, getattr(parameters, name)) for name in names]
-        wrong += [above(0.0)(name, getattr(parameters, name)) for name in sizes]
-        for phrase in wrong:
-            if phrase is not None:
-                raise ControllerError(phrase)
+        problems = [not_empty(name, getattr(parameters, name)) for name in names]
+        problems += [above(0.0)(name, getattr(parameters, name)) for name in sizes]
+        for problem in problems:
+            if problem is not None:
+                raise ControllerError(problem)
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the wheels, and publish the odometry."""
-        wanted = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
-        pairs = zip(self._limiters, wanted, strict=True)
-        forward, sideways, angular = (limiter.follow(each, period_s) for limiter, each in pairs)
+        requested = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
+        pairs = zip(self._limiters, requested, strict=True)
+        forward, sideways, angular = (limiter.follow(speed, period_s) for limiter, speed in pairs)
         speeds = self._drive.wheel_speeds(forward, sideways, angular)
         for command, value in zip(self.commands, speeds, strict=True):
             command.value = value

@@ -45,7 +45,7 @@ class JointStateBroadcaster(Controller[Parameters]):
     PARAMETERS = Parameters
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the state interfaces named by the parameters, or all if none is named."""
+        """Return the state interfaces named by the parameters, or all interfaces if none is named."""
         joints, interfaces = self.parameters.joints, self.parameters.interfaces
         if not joints or not interfaces:
             return Interfaces.ALL
@@ -53,42 +53,47 @@ class JointStateBroadcaster(Controller[Parameters]):
 
     def on_configure(self) -> None:
         """Create the publishers."""
-        begin = "~/" if self.parameters.use_local_topics else ""
-        self._output = self.node.publisher("sensor_msgs/msg/JointState", f"{begin}joint_states")
-        self._dynamic = self.node.publisher("control_msgs/msg/DynamicJointState", f"{begin}dynamic_joint_states")
+        prefix = "~/" if self.parameters.use_local_topics else ""
+        self._output = self.node.publisher("sensor_msgs/msg/JointState", f"{prefix}joint_states")
+        self._dynamic_output = self.node.publisher(
+            "control_msgs/msg/DynamicJointState", f"{prefix}dynamic_joint_states"
+        )
 
     def on_activate(self) -> None:
         """Assign the state interfaces to joints and message fields."""
-        named = self.parameters.map_interface_to_joint_state
-        fields = {named.position: 0, named.velocity: 1, named.effort: 2}
-        self._of: dict[str, dict[str, StateInterface]] = {}
+        interface_map = self.parameters.map_interface_to_joint_state
+        fields = {interface_map.position: 0, interface_map.velocity: 1, interface_map.effort: 2}
+        self._states_by_joint: dict[str, dict[str, StateInterface]] = {}
         joints: dict[str, list[StateInterface | None]] = {}
-        known = self._joints_of_robot()
+        robot_joints = self._robot_joints()
         for state in self.states:
-            self._of.setdefault(state.component, {})[state.kind] = state
-            if state.kind in fields and (known is None or state.component in known):
+            self._states_by_joint.setdefault(state.component, {})[state.kind] = state
+            if state.kind in fields and (robot_joints is None or state.component in robot_joints):
                 joints.setdefault(state.component, [None, None, None])[fields[state.kind]] = state
         self._extra = [extra_joint for extra_joint in self.parameters.extra_joints if extra_joint not in joints]
         self._names = [*joints, *self._extra]
-        unknown, none = StateInterface("", ""), StateInterface("", "", 0.0)
+        unknown_state, zero_state = StateInterface("", ""), StateInterface("", "", 0.0)
         columns = [
-            [*(of_joint[place] or unknown for of_joint in joints.values()), *(none for _ in self._extra)]
-            for place in range(3)
+            [
+                *(joint_states[field_index] or unknown_state for joint_states in joints.values()),
+                *(zero_state for _ in self._extra),
+            ]
+            for field_index in range(3)
         ]
         # A field that no joint provides, often the efforts, is the same in each message, so its values are computed
-        # once.
+        # only once.
         self._columns = [
-            (column, _values(column) if {unknown, none}.issuperset(column) else None) for column in columns
+            (column, _values(column) if {unknown_state, zero_state}.issuperset(column) else None) for column in columns
         ]
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Publish to the topics that have subscriptions."""
         if self._output.is_wanted:
             self._output.publish(self._joint_states(self._header(time_ns)))
-        if self._dynamic.is_wanted:
-            self._dynamic.publish(self._dynamic_states(self._header(time_ns)))
+        if self._dynamic_output.is_wanted:
+            self._dynamic_output.publish(self._dynamic_states(self._header(time_ns)))
 
-    def _joints_of_robot(self) -> set[str] | None:
+    def _robot_joints(self) -> set[str] | None:
         if not self.parameters.use_urdf_to_filter or self.parameters.joints:
             return None
         return set(self.robot.joints) if self.robot is not None else None
@@ -97,21 +102,24 @@ class JointStateBroadcaster(Controller[Parameters]):
         return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=self.parameters.frame_id)
 
     def _joint_states(self, header: Header) -> JointState:
-        position, velocity, effort = (_values(column) if fixed is None else fixed[:] for column, fixed in self._columns)
+        position, velocity, effort = (
+            _values(column) if fixed_values is None else fixed_values[:] for column, fixed_values in self._columns
+        )
         return JointState(header=header, name=[*self._names], position=position, velocity=velocity, effort=effort)
 
     def _dynamic_states(self, header: Header) -> object:
-        values = get_message("control_msgs/msg/InterfaceValue")
-        rows = [values(list(states), [state.value for state in states.values()]) for states in self._of.values()] + [
-            values([POSITION, VELOCITY, EFFORT], [0.0, 0.0, 0.0]) for _ in self._extra
-        ]
-        names: Sequence[str] = [*self._of, *self._extra]
+        value_type = get_message("control_msgs/msg/InterfaceValue")
+        rows = [
+            value_type(list(states), [state.value for state in states.values()])
+            for states in self._states_by_joint.values()
+        ] + [value_type([POSITION, VELOCITY, EFFORT], [0.0, 0.0, 0.0]) for _ in self._extra]
+        names: Sequence[str] = [*self._states_by_joint, *self._extra]
         return get_message("control_msgs/msg/DynamicJointState")(header, list(names), rows)
 
 
 def _values(states: Sequence[StateInterface]) -> array[float]:
     """Return the values of states as an array for a message field.
 
-    An array is faster than a list, whose elements the message would check one by one.
+    An array is faster than a list, because the message checks each element of a list.
     """
     return array("d", [state.value for state in states])

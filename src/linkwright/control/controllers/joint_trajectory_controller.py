@@ -1,8 +1,8 @@
 """``joint_trajectory_controller/JointTrajectoryController``, which moves joints along trajectories.
 
 Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, messages). The controller
-commands the state that the trajectory has at the next update, and checks the tolerances against the state at the
-current time.
+commands the state of the trajectory at the next update, and checks the tolerances against its state at the current
+time.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from linkwright.control.controllers.action import ControllerAction, Goal
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.joint_trajectory_goals import (
     nanoseconds,
-    objection,
     tolerances_of,
+    trajectory_error,
     trajectory_of,
 )
 from linkwright.control.controllers.joint_trajectory_parameters import Parameters
@@ -69,18 +69,18 @@ class JointTrajectoryController(Controller[Parameters]):
         self._check(parameters)
         self._active = False
         self._goal: Goal | None = None
-        self._wrapped = [self._turns(joint) for joint in parameters.joints]
+        self._is_wrapped = [self._wraps_around(joint) for joint in parameters.joints]
         self._has_pid = parameters.has_pid
-        self._tune(parameters)
+        self._create_pids(parameters)
         self._period_ns = round(NANOSECONDS_PER_SECOND / self.update_rate)
         state_type = "control_msgs/msg/JointTrajectoryControllerState"
-        self._point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
-        self._state_message = get_message(state_type)
+        self._point_type = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
+        self._state_type = get_message(state_type)
         self._result = get_action(_ACTION).Result
-        self._feedback = get_action(_ACTION).Feedback
+        self._feedback_type = get_action(_ACTION).Feedback
         self._outputs = [self.node.publisher(state_type, topic) for topic in ("~/controller_state", "~/state")]
-        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", "~/joint_trajectory", self._commanded)
-        self.node.service("control_msgs/srv/QueryTrajectoryState", "~/query_state", self._query)
+        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", "~/joint_trajectory", self._on_trajectory)
+        self.node.service("control_msgs/srv/QueryTrajectoryState", "~/query_state", self._on_query)
         self._action = ControllerAction(
             self.node,
             _ACTION,
@@ -101,11 +101,11 @@ class JointTrajectoryController(Controller[Parameters]):
         self._state: dict[str, list[StateInterface]] = {
             kind: self.states[number::count] for number, kind in enumerate(parameters.state_interfaces)
         }
-        self._measured = tuple(self._state.get(kind, []) for kind in (POSITION, VELOCITY, ACCELERATION))
+        self._measured_states = tuple(self._state.get(kind, []) for kind in (POSITION, VELOCITY, ACCELERATION))
         self._has_velocity_error = VELOCITY in self._state and (VELOCITY in self._command or EFFORT in self._command)
         self._has_acceleration_error = ACCELERATION in self._state and ACCELERATION in self._command
         self._timeout_s = self._allowed_timeout(parameters)
-        self._tune(parameters)
+        self._create_pids(parameters)
         self._current = self._read()
         if parameters.set_last_command_interface_value_as_state_on_activation:
             self._current = self._replace_by_commands(self._current)
@@ -115,14 +115,14 @@ class JointTrajectoryController(Controller[Parameters]):
         self._computed_error: MotionState | None = MotionState([0.0] * len(parameters.joints))
         self._goal = None
         self._next_state_ns = self._next_feedback_ns = 0
-        self._following: Sample | None = None
+        self._next_sample: Sample | None = None
         self._hold(MotionState(list(self._current.positions)))
         self._active = True
 
     def on_deactivate(self) -> None:
         """Cancel the active goal, and command zero velocity, acceleration and effort."""
         self._active = False
-        self._give_up("Current goal cancelled during deactivate transition.")
+        self._cancel_goal("Current goal cancelled during deactivate transition.")
         for kind in (VELOCITY, ACCELERATION, EFFORT):
             for command in self._command.get(kind, ()):
                 command.value = 0.0
@@ -142,15 +142,19 @@ class JointTrajectoryController(Controller[Parameters]):
                     "interfaces are present"
                 )
 
-    def _tune(self, parameters: Parameters) -> None:
-        self._tuned_by = parameters
+    def _create_pids(self, parameters: Parameters) -> None:
+        self._pid_parameters = parameters
         self._pids = [Pid(parameters.gains[joint].pid) for joint in parameters.joints]
-        self._scales = [parameters.gains[joint].ff_velocity_scale for joint in parameters.joints]
+        self._velocity_scales = [parameters.gains[joint].ff_velocity_scale for joint in parameters.joints]
 
-    def _turns(self, joint: str) -> bool:
+    def _wraps_around(self, joint: str) -> bool:
         gains = self.parameters.gains[joint]
-        known = self.robot.joints.get(joint) if self.robot is not None else None
-        return gains.angle_wraparound or gains.normalize_error or (known is not None and known.type == "continuous")
+        robot_joint = self.robot.joints.get(joint) if self.robot is not None else None
+        return (
+            gains.angle_wraparound
+            or gains.normalize_error
+            or (robot_joint is not None and robot_joint.type == "continuous")
+        )
 
     def _allowed_timeout(self, parameters: Parameters) -> float:
         goal_time = parameters.constraints.goal_time
@@ -164,22 +168,22 @@ class JointTrajectoryController(Controller[Parameters]):
 
     # --- trajectories -------------------------------------------------------------------------------------------------
 
-    def _commanded(self, message: Any) -> None:
-        wrong = objection(message, self.parameters, self.time_ns)
-        if wrong is not None:
-            self.node.logger.error(wrong)
+    def _on_trajectory(self, message: Any) -> None:
+        problem = trajectory_error(message, self.parameters, self.time_ns)
+        if problem is not None:
+            self.node.logger.error(problem)
         elif self._active:
-            self._give_up("Current goal cancelled due to new incoming trajectory.")
+            self._cancel_goal("Current goal cancelled due to new incoming trajectory.")
             self._tolerances = self.parameters.tolerances
             self._follow(trajectory_of(message, self.parameters, self._held_positions()))
 
     def _is_allowed(self, request: Any) -> bool:
         self.node.logger.info("Received new action goal")
-        wrong = objection(request.trajectory, self.parameters, self.time_ns)
+        problem = trajectory_error(request.trajectory, self.parameters, self.time_ns)
         if not self._active:
-            wrong = "Can't accept new action goals. Controller is not running."
-        if wrong is not None:
-            self.node.logger.error(wrong)
+            problem = "Can't accept new action goals. Controller is not running."
+        if problem is not None:
+            self.node.logger.error(problem)
             return False
         self.node.logger.info("Accepted new action goal")
         return True
@@ -188,7 +192,7 @@ class JointTrajectoryController(Controller[Parameters]):
         if not self._active:
             goal.abort(self._result(error_code=self._result.INVALID_GOAL, error_string="Controller is not running."))
             return
-        self._give_up("Current goal cancelled due to new incoming action.")
+        self._cancel_goal("Current goal cancelled due to new incoming action.")
         parameters = self.parameters
         self._goal = goal
         self._tolerances = tolerances_of(goal.request, parameters.joints, parameters.tolerances, self.node.logger.error)
@@ -202,7 +206,7 @@ class JointTrajectoryController(Controller[Parameters]):
             goal.cancel(self._result())
             self._hold()
 
-    def _give_up(self, reason: str) -> None:
+    def _cancel_goal(self, reason: str) -> None:
         if self._goal is not None:
             self._goal.cancel(self._result(error_code=self._result.INVALID_GOAL, error_string=reason))
             self._goal = None
@@ -210,25 +214,25 @@ class JointTrajectoryController(Controller[Parameters]):
     def _held_positions(self) -> list[float]:
         """Return the positions for joints that a trajectory leaves out, in the order of the joints.
 
-        These are the last commanded positions, or the current ones if they are not commanded.
+        These are the last commanded positions, or the current positions if no positions are commanded.
         """
         return self._finite_or(self._command.get(POSITION), self._current.positions)
 
     def _follow(self, trajectory: Trajectory) -> None:
         self._trajectory, self._is_held = trajectory, False
-        self._following_ns = -1
+        self._next_sample_ns = -1
 
     def _hold(self, state: MotionState | None = None) -> None:
-        """Hold the joints in the given state, or at their current positions."""
-        held = MotionState(self._read().positions) if state is None else state
-        self._follow(Trajectory([TrajectoryPoint(0, held)]))
+        """Hold the joints in a state, or at their current positions if the state is None."""
+        held_state = MotionState(self._read().positions) if state is None else state
+        self._follow(Trajectory([TrajectoryPoint(0, held_state)]))
         self._is_held = True
         self._tolerances = self.parameters.tolerances
 
     # --- states -------------------------------------------------------------------------------------------------------
 
     def _read(self) -> MotionState:
-        positions, velocities, accelerations = self._measured
+        positions, velocities, accelerations = self._measured_states
         return MotionState(
             [position.value for position in positions],
             [velocity.value for velocity in velocities],
@@ -238,7 +242,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def _replace_by_commands(self, state: MotionState) -> MotionState:
         """Return a state with the last commands in place of measurements.
 
-        This keeps hardware that sags under load from being commanded to the sagged position.
+        Otherwise hardware that sags under load would be commanded to the sagged position.
         """
         return MotionState(
             self._finite_or(self._command.get(POSITION), state.positions),
@@ -248,8 +252,8 @@ class JointTrajectoryController(Controller[Parameters]):
 
     @staticmethod
     def _finite_or(interfaces: Sequence[Interface] | None, values: Sequence[float]) -> list[float]:
-        given = [interface.value for interface in interfaces or ()]
-        return given if given and all(map(isfinite, given)) else list(values)
+        finite_values = [interface.value for interface in interfaces or ()]
+        return finite_values if finite_values and all(map(isfinite, finite_values)) else list(values)
 
     @property
     def _error(self) -> MotionState:
@@ -262,86 +266,91 @@ class JointTrajectoryController(Controller[Parameters]):
         return self._computed_error
 
     def _compare(self, desired: MotionState) -> MotionState:
-        """Return the error of the current state: the desired values minus the current ones.
+        """Return the error of the current state: the desired values minus the current values.
 
         Errors of velocities and accelerations are zero if the controller does not control them.
         """
         current = self._current
         positions = [
-            shortest_turn(is_at, wanted) if turns else wanted - is_at
-            for wanted, is_at, turns in zip(desired.positions, current.positions, self._wrapped, strict=True)
+            shortest_turn(actual, target) if is_wrapped else target - actual
+            for target, actual, is_wrapped in zip(desired.positions, current.positions, self._is_wrapped, strict=True)
         ]
-        none = [0.0] * len(positions)
+        zeros = [0.0] * len(positions)
         return MotionState(
             positions,
-            [a - b for a, b in zip(desired.velocities, current.velocities, strict=True)]
+            [
+                target_rate - actual_rate
+                for target_rate, actual_rate in zip(desired.velocities, current.velocities, strict=True)
+            ]
             if self._has_velocity_error
-            else none,
+            else zeros,
             [a - b for a, b in zip(desired.accelerations, current.accelerations, strict=True)]
             if self._has_acceleration_error
-            else none,
+            else zeros,
         )
 
     # --- updates ------------------------------------------------------------------------------------------------------
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the state that is desired at the next update, and check the tolerances."""
-        if time_ns < self._following_ns - self._period_ns:
-            self._give_up("Time jumped backwards.")
+        """Command the desired state at the next update, and check the tolerances."""
+        if time_ns < self._next_sample_ns - self._period_ns:
+            self._cancel_goal("Time jumped backwards.")
             self._hold()
         self._current = self._read()
         trajectory = self._trajectory
-        first = not trajectory.begun
-        if first:
-            before = self._last_command if self.parameters.open_loop else self._current
-            trajectory.begin(time_ns, _drop_unmeasured(before), self._wrapped)
-        desired = self._following if time_ns == self._following_ns else trajectory.sample(time_ns)
-        following = trajectory.sample(time_ns + self._period_ns)
+        is_first = not trajectory.begun
+        if is_first:
+            start_state = self._last_command if self.parameters.open_loop else self._current
+            trajectory.begin(time_ns, _drop_unmeasured(start_state), self._is_wrapped)
+        desired = self._next_sample if time_ns == self._next_sample_ns else trajectory.sample(time_ns)
+        next_sample = trajectory.sample(time_ns + self._period_ns)
         assert desired is not None
-        assert following is not None, "it has begun now or earlier"
-        self._following_ns, self._following = time_ns + self._period_ns, following
+        assert next_sample is not None, "it has begun now or earlier"
+        self._next_sample_ns, self._next_sample = time_ns + self._period_ns, next_sample
         self._desired, self._computed_error = desired.state, None
-        self._judge(time_ns, period_s, desired.state, following, first=first)
+        self._check_and_command(time_ns, period_s, desired.state, next_sample, first=is_first)
         self._publish(time_ns, desired.state)
 
-    def _judge(self, time_ns: int, period_s: float, desired: MotionState, following: Sample, *, first: bool) -> None:
-        tolerances, late_s = self._tolerances, (time_ns - following.point_ns) / NANOSECONDS_PER_SECOND
-        strayed = missed = False
+    def _check_and_command(
+        self, time_ns: int, period_s: float, desired: MotionState, next_sample: Sample, *, first: bool
+    ) -> None:
+        tolerances, late_s = self._tolerances, (time_ns - next_sample.point_ns) / NANOSECONDS_PER_SECOND
+        violates_path = misses_goal = False
         if not self._is_held:
-            strayed = (first or not following.ended) and not self._holds(tolerances.path)
-            missed = following.ended and not self._holds(tolerances.goal)
-        overdue = missed and 0.0 < tolerances.goal_time_s < late_s
-        if not strayed and not overdue:
-            self._write(following.state, period_s)
+            violates_path = (first or not next_sample.has_ended) and not self._is_within(tolerances.path)
+            misses_goal = next_sample.has_ended and not self._is_within(tolerances.goal)
+        is_overdue = misses_goal and 0.0 < tolerances.goal_time_s < late_s
+        if not violates_path and not is_overdue:
+            self._write(next_sample.state, period_s)
         if self._goal is not None:
             self._publish_feedback(self._goal, time_ns, desired)
-        if strayed:
+        if violates_path:
             self._report(tolerances.path)
             self._fail(
                 self._result.PATH_TOLERANCE_VIOLATED,
                 "Aborted due to path tolerance violation",
                 "Holding position due to state tolerance violation",
             )
-        elif overdue:
+        elif is_overdue:
             self._report(tolerances.goal)
             self._fail(
                 self._result.GOAL_TOLERANCE_VIOLATED,
                 f"Aborted due to goal_time_tolerance exceeding by {late_s:f} seconds",
                 "Exceeded goal_time_tolerance: holding position...",
             )
-        elif following.ended and not missed and self._goal is not None:
+        elif next_sample.has_ended and not misses_goal and self._goal is not None:
             self._goal.succeed(self._result(error_string="Goal successfully reached!"))
             self._goal = None
             self.node.logger.info("Goal reached, success!")
-            self._hold(following.state)
-        elif following.ended and not self._is_held and 0.0 < self._timeout_s < late_s:
+            self._hold(next_sample.state)
+        elif next_sample.has_ended and not self._is_held and 0.0 < self._timeout_s < late_s:
             self.node.logger.warning("Aborted due to command timeout")
             self._hold()
 
-    def _holds(self, tolerances: Sequence[StateTolerance]) -> bool:
+    def _is_within(self, tolerances: Sequence[StateTolerance]) -> bool:
         error = self._error
         errors = zip(tolerances, error.positions, error.velocities, error.accelerations, strict=True)
-        return all(tolerance.holds(*each) for tolerance, *each in errors)
+        return all(tolerance.holds(*joint_errors) for tolerance, *joint_errors in errors)
 
     def _report(self, tolerances: Sequence[StateTolerance]) -> None:
         error = self._error
@@ -354,61 +363,63 @@ class JointTrajectoryController(Controller[Parameters]):
                     f"State tolerances failed for joint '{joint}': {name} Error: {value:f}, {name} Tolerance: {limit:f}"
                 )
 
-    def _fail(self, code: int, message: str, without_goal: str) -> None:
+    def _fail(self, code: int, message: str, message_without_goal: str) -> None:
         if self._goal is None:
-            self.node.logger.error(without_goal)
+            self.node.logger.error(message_without_goal)
         else:
             self.node.logger.warning(message)
             self._goal.abort(self._result(error_code=code, error_string=message))
             self._goal = None
         self._hold()
 
-    def _write(self, wanted: MotionState, period_s: float) -> None:
+    def _write(self, target: MotionState, period_s: float) -> None:
         if self._has_pid:
-            self._retune()
+            self._update_gains()
             (commands,) = self._command.values()
             errors = self._error
             for number, pid in enumerate(self._pids):
                 command = pid.command(errors.positions[number], period_s, errors.velocities[number])
-                commands[number].value = wanted.velocities[number] * self._scales[number] + command
+                commands[number].value = target.velocities[number] * self._velocity_scales[number] + command
         else:
             for kind, commands in self._command.items():
                 values = (
-                    wanted.positions
+                    target.positions
                     if kind == POSITION
-                    else wanted.velocities
+                    else target.velocities
                     if kind == VELOCITY
-                    else wanted.accelerations
+                    else target.accelerations
                 )
                 for interface, value in zip(commands, values, strict=True):
                     interface.value = value
-        self._last_command = wanted
+        self._last_command = target
 
-    def _retune(self) -> None:
+    def _update_gains(self) -> None:
         """Apply changed PID gains, without resetting the integrals."""
         parameters = self.parameters
-        if parameters is not self._tuned_by:
+        if parameters is not self._pid_parameters:
             integrals = [pid.integral for pid in self._pids]
-            self._tune(parameters)
+            self._create_pids(parameters)
             for pid, integral in zip(self._pids, integrals, strict=True):
                 pid.integral = integral
 
     # --- messages -----------------------------------------------------------------------------------------------------
 
-    def _message(self, state: MotionState) -> Any:
-        return self._point(positions=state.positions, velocities=state.velocities, accelerations=state.accelerations)
+    def _point_message(self, state: MotionState) -> Any:
+        return self._point_type(
+            positions=state.positions, velocities=state.velocities, accelerations=state.accelerations
+        )
 
     def _publish_feedback(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
         if time_ns < self._next_feedback_ns:
             return
         self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
         goal.feedback(
-            self._feedback(
+            self._feedback_type(
                 header=Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))),
                 joint_names=list(self.parameters.joints),
-                desired=self._message(desired),
-                actual=self._message(self._current),
-                error=self._message(self._error),
+                desired=self._point_message(desired),
+                actual=self._point_message(self._current),
+                error=self._point_message(self._error),
             )
         )
 
@@ -420,15 +431,15 @@ class JointTrajectoryController(Controller[Parameters]):
         outputs = [output for output in self._outputs if output.is_wanted]
         if not outputs:
             return
-        reference, feedback = self._message(desired), self._message(self._current)
-        commands = {kind: [interface.value for interface in given] for kind, given in self._command.items()}
-        message = self._state_message(
+        reference, feedback = self._point_message(desired), self._point_message(self._current)
+        commands = {kind: [interface.value for interface in interfaces] for kind, interfaces in self._command.items()}
+        message = self._state_type(
             header=Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))),
             joint_names=list(self.parameters.joints),
             reference=reference,
             feedback=feedback,
-            error=self._message(self._error),
-            output=self._point(
+            error=self._point_message(self._error),
+            output=self._point_type(
                 positions=commands.get(POSITION, []),
                 velocities=commands.get(VELOCITY, []),
                 accelerations=commands.get(ACCELERATION, []),
@@ -440,7 +451,7 @@ class JointTrajectoryController(Controller[Parameters]):
         for output in outputs:
             output.publish(message)
 
-    def _query(self, request: Any, response: Any) -> Any:
+    def _on_query(self, request: Any, response: Any) -> Any:
         sample = None
         if not self._active:
             response.message = "Can't sample trajectory. Controller is not active."
@@ -450,11 +461,11 @@ class JointTrajectoryController(Controller[Parameters]):
             sample = self._trajectory.sample(nanoseconds(request.time))
             if sample is None:
                 response.message = "Requested sample time is earlier than the current trajectory start time."
-            elif sample.ended:
+            elif sample.has_ended:
                 response.message = "Requested sample time precedes the current trajectory end time."
         if response.message:
             self.node.logger.error(response.message)
-        response.success = sample is not None and not sample.ended
+        response.success = sample is not None and not sample.has_ended
         if self._active:
             state = self._current if sample is None else sample.state
             response.name = list(self.parameters.joints)
@@ -464,6 +475,6 @@ class JointTrajectoryController(Controller[Parameters]):
 
 
 def _drop_unmeasured(state: MotionState) -> MotionState:
-    """Return a state without velocities or accelerations that the hardware does not measure."""
-    known = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
-    return MotionState(state.positions, *known)
+    """Return a state without velocities and accelerations that are not measured."""
+    measured = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
+    return MotionState(state.positions, *measured)

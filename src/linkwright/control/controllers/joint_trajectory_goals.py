@@ -16,8 +16,8 @@ from linkwright.control.motion.tolerances import Tolerances, resolved
 from linkwright.control.motion.trajectory import Trajectory, TrajectoryPoint
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_STANDING = 1.1920929e-07
-"""The greatest velocity that counts as none, in rad/s or m/s: the distance of 1 to the next number of 32 bits."""
+_VELOCITY_EPSILON = 1.1920929e-07
+"""The maximum final velocity that counts as zero, in rad/s or m/s: the epsilon of a 32-bit float."""
 
 
 def nanoseconds(time: Any) -> int:
@@ -25,8 +25,8 @@ def nanoseconds(time: Any) -> int:
     return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
 
 
-def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
-    """Return ros2_controllers' error message for an invalid trajectory, or None if it is valid.
+def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str | None:
+    """Return the error message of ros2_controllers for an invalid trajectory, or None if it is valid.
 
     Args:
         message: trajectory_msgs/msg/JointTrajectory.
@@ -40,8 +40,8 @@ def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
         return "Empty joint names on incoming trajectory."
     if not points:
         return "Empty trajectory received."
-    start, last = nanoseconds(message.header.stamp), points[-1]
-    end = start + nanoseconds(last.time_from_start)
+    start, last_point = nanoseconds(message.header.stamp), points[-1]
+    end = start + nanoseconds(last_point.time_from_start)
     if start and end < now_ns:
         return (
             f"Received trajectory with non-zero start time ({start / NANOSECONDS_PER_SECOND:f}) that ends in the past "
@@ -53,28 +53,28 @@ def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
         if name in names[:number]:
             return f"Incoming joint {name} appears twice."
     if not parameters.allow_nonzero_velocity_at_trajectory_end:
-        for name, velocity in zip(names, last.velocities, strict=False):
-            if abs(velocity) > _STANDING:
+        for name, velocity in zip(names, last_point.velocities, strict=False):
+            if abs(velocity) > _VELOCITY_EPSILON:
                 return f"Velocity of last trajectory point of joint {name} is not zero: {velocity:.15f}"
-    return _objection_to_points(points, len(names), integrated=parameters.allow_integration_in_goal_trajectories)
+    return _points_error(points, len(names), allow_integration=parameters.allow_integration_in_goal_trajectories)
 
 
-def _objection_to_points(points: Sequence[Any], count: int, *, integrated: bool) -> str | None:
-    before = 0
+def _points_error(points: Sequence[Any], count: int, *, allow_integration: bool) -> str | None:
+    previous_ns = 0
     for number, point in enumerate(points):
-        time = nanoseconds(point.time_from_start)
-        if number and time <= before:
+        time_ns = nanoseconds(point.time_from_start)
+        if number and time_ns <= previous_ns:
             return (
                 f"Time between points {number - 1} and {number} is not strictly increasing, "
-                f"it is {before / NANOSECONDS_PER_SECOND:f} and {time / NANOSECONDS_PER_SECOND:f} respectively"
+                f"it is {previous_ns / NANOSECONDS_PER_SECOND:f} and {time_ns / NANOSECONDS_PER_SECOND:f} respectively"
             )
-        before = time
+        previous_ns = time_ns
         lists = {field: getattr(point, field) for field in ("positions", "velocities", "accelerations")}
-        if not any(len(values) for values in lists.values()) and integrated:
+        if not any(len(values) for values in lists.values()) and allow_integration:
             return f"Point #{number} has neither positions nor velocities nor accelerations."
         for name, values in lists.items():
-            may_lack = integrated or name != "positions"
-            if len(values) != count and not (may_lack and not len(values)):
+            is_optional = allow_integration or name != "positions"
+            if len(values) != count and not (is_optional and not len(values)):
                 return f"Mismatch between joint_names size ({count}) and {name} ({len(values)}) at point #{number}."
             if not all(map(isfinite, values)):
                 return f"The {name} at point #{number} are not all finite."
@@ -83,29 +83,34 @@ def _objection_to_points(points: Sequence[Any], count: int, *, integrated: bool)
     return None
 
 
-def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -> Trajectory:
+def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence[float]) -> Trajectory:
     """Convert a message to a trajectory of all joints of a controller.
 
     Args:
-        message: trajectory_msgs/msg/JointTrajectory, which must be valid (see `objection`).
+        message: trajectory_msgs/msg/JointTrajectory, which must be valid (see `trajectory_error`).
         parameters: the parameters of the controller.
-        held: the positions of all joints, in rad or m, used for joints that the message does not name.
+        held_positions: the positions of all joints, in rad or m, for joints that the message does not name.
     """
-    places = [message.joint_names.index(name) if name in message.joint_names else -1 for name in parameters.joints]
+    message_indices = [
+        message.joint_names.index(name) if name in message.joint_names else -1 for name in parameters.joints
+    ]
 
-    def ordered(values: Sequence[float], missing: Sequence[float]) -> list[float]:
+    def ordered(values: Sequence[float], defaults: Sequence[float]) -> list[float]:
         if not len(values):
             return []
-        return [float(values[each]) if each >= 0 else other for each, other in zip(places, missing, strict=True)]
+        return [
+            float(values[index]) if index >= 0 else default
+            for index, default in zip(message_indices, defaults, strict=True)
+        ]
 
-    still = [0.0] * len(places)
+    zeros = [0.0] * len(message_indices)
     points = [
         TrajectoryPoint(
             nanoseconds(point.time_from_start),
             MotionState(
-                ordered(point.positions, held),
-                ordered(point.velocities, still),
-                ordered(point.accelerations, still),
+                ordered(point.positions, held_positions),
+                ordered(point.velocities, zeros),
+                ordered(point.accelerations, zeros),
             ),
         )
         for point in message.points
@@ -115,7 +120,7 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
 
 
 def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]) -> Tolerances:
-    """Return the controller's tolerances, overridden for the joints that the goal names.
+    """Return the controller's tolerances, with the tolerances of the goal for the joints that it names.
 
     Args:
         goal: control_msgs/action/FollowJointTrajectory_Goal.
@@ -124,24 +129,24 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Ca
         log: called with each error message.
     """
     tolerances = default
-    for field, given in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):
-        for tolerance in given:
+    for field, goal_tolerances in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):
+        for tolerance in goal_tolerances:
             if tolerance.name not in joints:
                 log(f"joint '{tolerance.name}' specified in goal.{field} does not exist. Using default tolerances.")
                 return default
             index = joints.index(tolerance.name)
-            known = (tolerances.path if field == "path_tolerance" else tolerances.goal)[index]
+            old_tolerance = (tolerances.path if field == "path_tolerance" else tolerances.goal)[index]
             try:
-                changed = known.overridden(tolerance.position, tolerance.velocity, tolerance.acceleration)
+                new_tolerance = old_tolerance.overridden(tolerance.position, tolerance.velocity, tolerance.acceleration)
             except ValueError:
                 log(f"joint '{tolerance.name}' specified in goal.{field} has a negative tolerance that is not -1.")
                 log("Using default tolerances.")
                 return default
             change = tolerances.with_path if field == "path_tolerance" else tolerances.with_goal
-            tolerances = change(index, changed)
+            tolerances = change(index, new_tolerance)
     try:
-        time = resolved(tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND)
+        goal_time_s = resolved(tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND)
     except ValueError:
         log("goal.goal_time_tolerance is negative and not -1. Using default tolerances.")
         return default
-    return Tolerances(tolerances.path, tolerances.goal, time)
+    return Tolerances(tolerances.path, tolerances.goal, goal_time_s)

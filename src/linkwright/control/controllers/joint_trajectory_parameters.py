@@ -1,6 +1,6 @@
 """The parameters of ``joint_trajectory_controller/JointTrajectoryController``.
 
-Source: ros2_controllers for Humble and Jazzy; parameters that only one of the two has are marked.
+Source: ros2_controllers for Humble and Jazzy; parameters that exist in only one of them are marked.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from linkwright.control.motion.tolerances import StateTolerance, Tolerances
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, at_least, for_each, not_empty, one_of, parameter
 
-_ONE_COMMAND = one_of(POSITION, VELOCITY, ACCELERATION, EFFORT)
-_ONE_STATE = one_of(POSITION, VELOCITY, ACCELERATION)
+_check_command_names = one_of(POSITION, VELOCITY, ACCELERATION, EFFORT)
+_check_state_names = one_of(POSITION, VELOCITY, ACCELERATION)
 
 
-def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
+def _check_command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
     """Return an error message unless the command interfaces are a valid combination.
 
-    Valid are effort, velocity, position, and position with velocity and optionally acceleration.
+    The valid combinations are effort, velocity, position, and position with velocity and optionally acceleration.
     """
-    wrong = not_empty(name, value) or _ONE_COMMAND(name, value)
-    if wrong is not None:
-        return wrong
+    problem = not_empty(name, value) or _check_command_names(name, value)
+    if problem is not None:
+        return problem
     if VELOCITY in value and len(value) > 1 and POSITION not in value:
         return phrase("'velocity' command interface can be used either alone or 'position' interface has to be present")
     if ACCELERATION in value and (VELOCITY not in value or POSITION not in value):
@@ -37,14 +37,14 @@ def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
     return None
 
 
-def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
+def _check_state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
     """Return an error message unless the state interfaces are a valid combination.
 
-    Valid is position, optionally with velocity, and with acceleration if there is velocity.
+    The valid combinations are position, position with velocity, and all three.
     """
-    wrong = not_empty(name, value) or _ONE_STATE(name, value)
-    if wrong is not None:
-        return wrong
+    problem = not_empty(name, value) or _check_state_names(name, value)
+    if problem is not None:
+        return problem
     if VELOCITY in value and POSITION not in value:
         return phrase("'velocity' state interface cannot be used if 'position' interface is missing.")
     if ACCELERATION in value and not (POSITION in value and VELOCITY in value):
@@ -90,10 +90,10 @@ class Parameters:
         (), read_only=True, description="the joints that are commanded, where these have other names"
     )
     command_interfaces: tuple[str, ...] = parameter(
-        (), read_only=True, description="of each joint: position, velocity, ...", check=_command_combination
+        (), read_only=True, description="of each joint: position, velocity, ...", check=_check_command_combination
     )
     state_interfaces: tuple[str, ...] = parameter(
-        (), read_only=True, description="of each joint: position, velocity, ...", check=_state_combination
+        (), read_only=True, description="of each joint: position, velocity, ...", check=_check_state_combination
     )
     allow_partial_joints_goal: bool = parameter(False, description="trajectories may name some of the joints")
     open_loop_control: bool = parameter(
@@ -121,7 +121,7 @@ class Parameters:
     cmd_timeout: float = parameter(0.0, description="seconds after the end of a trajectory; more than goal_time")
     gains: Mapping[str, Gains] = for_each("joints", Gains)
     constraints: Constraints = Constraints()
-    joint_constraints: Mapping[str, JointConstraints] = for_each("joints", JointConstraints, below="constraints")
+    joint_constraints: Mapping[str, JointConstraints] = for_each("joints", JointConstraints, prefix="constraints")
 
     @property
     def open_loop(self) -> bool:
@@ -130,16 +130,16 @@ class Parameters:
 
     @property
     def has_pid(self) -> bool:
-        """Whether commands are computed from errors by PID."""
+        """Whether a PID controller computes the commands from the errors."""
         return self.command_interfaces == (EFFORT,) or (self.command_interfaces == (VELOCITY,) and not self.open_loop)
 
     @property
     def tolerances(self) -> Tolerances:
-        """The tolerances for trajectories that do not specify their own."""
-        of_joints = [self.joint_constraints[joint] for joint in self.joints]
-        stopped = self.constraints.stopped_velocity_tolerance
+        """The tolerances for trajectories without tolerances of their own."""
+        joint_constraints = [self.joint_constraints[joint] for joint in self.joints]
+        stopped_velocity = self.constraints.stopped_velocity_tolerance
         return Tolerances(
-            tuple(StateTolerance(of_joint.trajectory) for of_joint in of_joints),
-            tuple(StateTolerance(of_joint.goal, stopped) for of_joint in of_joints),
+            tuple(StateTolerance(constraint.trajectory) for constraint in joint_constraints),
+            tuple(StateTolerance(of_joint.goal, stopped_velocity) for of_joint in joint_constraints),
             self.constraints.goal_time,
         )

@@ -1,6 +1,6 @@
 """The base class of drives that follow ``~/cmd_vel`` within limits, with their topics, odometry and parameters.
 
-Source: diff_drive_controller of ros2_controllers, on which Husarion's mecanum controller is modelled.
+Source: diff_drive_controller of ros2_controllers, which is also the model of Husarion's mecanum controller.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from linkwright.messages import Header, Time, Vector3, get_message
 from linkwright.nodes.parameter_tables import HUMBLE, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NONE = (0.0,) * 6
+_NO_VARIANCES = (0.0,) * 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,7 @@ class AngularLimits:
     z: SpeedLimits = NO_LIMITS
 
 
-_ANGULAR = AngularLimits()
+_NO_ANGULAR_LIMITS = AngularLimits()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,8 +40,8 @@ class LimitedDriveParameters:
     tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
     odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the pose")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the velocity")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the velocity")
     open_loop: bool = parameter(False, description="odometry from the commands of the wheels, not from their states")
     position_feedback: bool = parameter(True, description="odometry from positions of the wheels, not from velocities")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
@@ -50,7 +50,7 @@ class LimitedDriveParameters:
     velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
     use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is left out", only=HUMBLE)
     publish_rate: float = parameter(50.0, description="of odometry, in Hz")
-    angular: AngularLimits = _ANGULAR
+    angular: AngularLimits = _NO_ANGULAR_LIMITS
 
 
 P = TypeVar("P", bound=LimitedDriveParameters)
@@ -81,23 +81,25 @@ class LimitedDrive(Controller[P], Generic[P]):
             "/tf",
             frame=prefix + parameters.odom_frame_id,
             child=prefix + parameters.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
             window=parameters.velocity_rolling_window_size,
             rate=parameters.publish_rate,
         )
-        limited = parameters.publish_limited_velocity
-        self._limited = node.publisher("geometry_msgs/msg/TwistStamped", "~/cmd_vel_out") if limited else None
+        publishes_limited = parameters.publish_limited_velocity
+        self._limited_output = (
+            node.publisher("geometry_msgs/msg/TwistStamped", "~/cmd_vel_out") if publishes_limited else None
+        )
 
     def on_activate(self) -> None:
-        """Start at rest, and accept commands."""
+        """Reset the velocities to zero, and accept commands."""
         for limiter in self._limiters:
             limiter.restart()
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.reset_velocity()
-        self._angles: list[float] | None = None
+        self._last_angles: list[float] | None = None
         self._input.open()
 
     def on_deactivate(self) -> None:
@@ -107,16 +109,16 @@ class LimitedDrive(Controller[P], Generic[P]):
             command.value = 0.0
 
     def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
-        """Return the wheels' velocities in rad/s, from the values of their states.
+        """Return the velocities of the wheels in rad/s, computed from the values of their states.
 
         Returns None if the states are positions and no time has passed.
         """
         if not self._settings.position_feedback:
             return values
-        before, self._angles = self._angles or values, values
+        last_angles, self._last_angles = self._last_angles or values, values
         if period_s <= 0.0:
             return None
-        return [(now - then) / period_s for now, then in zip(values, before, strict=True)]
+        return [(angle - last_angle) / period_s for angle, last_angle in zip(values, last_angles, strict=True)]
 
     def _publish(self, time_ns: int, forward: float, sideways: float, angular: float) -> None:
         """Publish the odometry and, if enabled, the limited velocity.
@@ -124,7 +126,7 @@ class LimitedDrive(Controller[P], Generic[P]):
         Velocities are in m/s and rad/s.
         """
         self._odometry.publish(time_ns)
-        if self._limited is not None and self._limited.is_wanted:
+        if self._limited_output is not None and self._limited_output.is_wanted:
             twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
             header = Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), "")
-            self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))
+            self._limited_output.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))

@@ -1,7 +1,7 @@
 """``mecanum_drive_controller/MecanumDriveController``: a drive of four wheels with rollers at 45 degrees.
 
-Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Two things differ: odometry
-follows arcs, and a command that is not a number stops the robot.
+Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Deliberate differences: odometry
+follows arcs, and a command that is not finite stops the robot.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from linkwright.messages import Header, Time, Vector3, get_message
 from linkwright.nodes.parameter_tables import above, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
+_DEFAULT_VARIANCES = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,7 @@ class Kinematics:
     )
 
 
-_NO_SIZES = Kinematics()
+_NO_KINEMATICS = Kinematics()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,14 +63,16 @@ class Parameters:
     front_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
     rear_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
     rear_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
-    kinematics: Kinematics = _NO_SIZES
+    kinematics: Kinematics = _NO_KINEMATICS
     tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
     tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
     odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the velocity")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _DEFAULT_VARIANCES, description="variances of the velocity"
+    )
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="variances of the pose")
 
 
 _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
@@ -86,9 +88,9 @@ class MecanumDriveController(Controller[Parameters]):
     PARAMETERS = Parameters
 
     @classmethod
-    def variant(cls, given: Collection[str]) -> type[Controller[Any]]:
-        """Return Husarion's controller, which has the same type name, if its parameters are given."""
-        return HusarionMecanumController if "front_left_wheel_name" in given else cls
+    def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:
+        """Return Husarion's controller of the same type name if its parameters are set, and this class otherwise."""
+        return HusarionMecanumController if "front_left_wheel_name" in parameter_names else cls
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the velocity interfaces of the wheels: front left, front right, rear right, rear left."""
@@ -103,7 +105,7 @@ class MecanumDriveController(Controller[Parameters]):
         return [getattr(self.parameters, f"{corner}_wheel_{kind}_joint_name") for corner in _CORNERS]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references: the velocities forward and to the left in m/s, and around z in rad/s."""
+        """Return the references: the velocities forward and to the left in m/s, and about z in rad/s."""
         return ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
 
     def on_configure(self) -> None:
@@ -113,19 +115,19 @@ class MecanumDriveController(Controller[Parameters]):
             ControllerError: wheels or their dimensions are missing.
         """
         parameters, node = self.parameters, self.node
-        self._settings, sizes = parameters, parameters.kinematics
-        wrong = [
+        self._settings, kinematics = parameters, parameters.kinematics
+        problems = [
             not_empty(f"{corner}_wheel_command_joint_name", name)
             for corner, name in zip(_CORNERS, self._joints("command"), strict=True)
         ]
-        wrong += [
-            above(0.0)(f"kinematics.{name}", getattr(sizes, name))
+        problems += [
+            above(0.0)(f"kinematics.{name}", getattr(kinematics, name))
             for name in ("wheels_radius", "sum_of_robot_center_projection_on_X_Y_axis")
         ]
-        for phrase in wrong:
-            if phrase is not None:
-                raise ControllerError(phrase)
-        self._drive = MecanumDrive(sizes.sum_of_robot_center_projection_on_X_Y_axis, sizes.wheels_radius)
+        for problem in problems:
+            if problem is not None:
+                raise ControllerError(problem)
+        self._drive = MecanumDrive(kinematics.sum_of_robot_center_projection_on_X_Y_axis, kinematics.wheels_radius)
         timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)
         prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
@@ -136,15 +138,15 @@ class MecanumDriveController(Controller[Parameters]):
             "~/tf_odometry",
             frame=self._frame,
             child=prefix + parameters.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
         )
         self._odometry.serve(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
 
     def on_activate(self) -> None:
-        """Start at rest, and accept commands."""
+        """Reset the velocities to zero, and accept commands."""
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.reset_velocity()
@@ -167,31 +169,35 @@ class MecanumDriveController(Controller[Parameters]):
         front_left, front_right, rear_right, rear_left = measured = [state.value for state in self.states]
         if all(map(isfinite, measured)):
             motion = self._drive.motion(front_left, front_right, rear_left, rear_right)
-            self._odometry.odometer.measure(self._of_base(*motion), period_s)
-        wanted = [reference.value for reference in self.references]
-        self._turn(wanted if all(map(isfinite, wanted)) else [0.0, 0.0, 0.0])
+            self._odometry.odometer.measure(self._base_velocity(*motion), period_s)
+        requested = [reference.value for reference in self.references]
+        self._command_wheels(requested if all(map(isfinite, requested)) else [0.0, 0.0, 0.0])
         self._odometry.publish(time_ns)
         if self._state.is_wanted:
-            self._publish_state(time_ns, measured, wanted)
+            self._publish_state(time_ns, measured, requested)
         for reference in self.references:
             reference.value = nan
 
-    def _turn(self, wanted: list[float]) -> None:
-        forward, sideways, angular = wanted
+    def _command_wheels(self, velocity: list[float]) -> None:
+        forward, sideways, angular = velocity
         offset = self._settings.kinematics.base_frame_offset
-        along, across = _turned(forward, sideways, offset.theta)
-        speeds = self._drive.wheel_speeds(along + offset.y * angular, across - offset.x * angular, angular)
+        forward_at_wheels, sideways_at_wheels = _rotate(forward, sideways, offset.theta)
+        speeds = self._drive.wheel_speeds(
+            forward_at_wheels + offset.y * angular, sideways_at_wheels - offset.x * angular, angular
+        )
         front_left, front_right, rear_left, rear_right = speeds
         for command, value in zip(self.commands, (front_left, front_right, rear_right, rear_left), strict=True):
             command.value = value
 
-    def _of_base(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
-        """Return the velocity of the robot's frame, given the velocity of the centre of the wheels."""
+    def _base_velocity(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
+        """Return the velocity of the robot's frame, computed from the velocity of the centre of the wheels."""
         offset = self._settings.kinematics.base_frame_offset
-        along, across = _turned(forward - offset.y * angular, sideways + offset.x * angular, -offset.theta)
-        return along, across, angular
+        base_forward, base_sideways = _rotate(
+            forward - offset.y * angular, sideways + offset.x * angular, -offset.theta
+        )
+        return base_forward, base_sideways, angular
 
-    def _publish_state(self, time_ns: int, measured: list[float], wanted: list[float]) -> None:
+    def _publish_state(self, time_ns: int, measured: list[float], requested: list[float]) -> None:
         front_left, front_right, rear_right, rear_left = measured
         state = get_message("control_msgs/msg/MecanumDriveControllerState")(
             header=Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self._frame),
@@ -200,11 +206,11 @@ class MecanumDriveController(Controller[Parameters]):
             back_right_wheel_velocity=rear_right,
             back_left_wheel_velocity=rear_left,
         )
-        state.reference_velocity.linear = Vector3(wanted[0], wanted[1], 0.0)
-        state.reference_velocity.angular = Vector3(0.0, 0.0, wanted[2])
+        state.reference_velocity.linear = Vector3(requested[0], requested[1], 0.0)
+        state.reference_velocity.angular = Vector3(0.0, 0.0, requested[2])
         self._state.publish(state)
 
 
-def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
+def _rotate(x: float, y: float, angle: float) -> tuple[float, float]:
     """Return a vector rotated by an angle in rad."""
     return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle)

@@ -1,4 +1,4 @@
-"""The node of a controller, which is used in the update thread."""
+"""The node of a controller, for use in the update thread."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class ControllerNode(SteppedNode):
     def __init__(self, node: Node, exchange: Exchange) -> None:
         super().__init__(node, exchange, owned=True)
 
-    def call_on_loop(self, call: Callable[[], object]) -> None:
+    def call_on_loop(self, function: Callable[[], object]) -> None:
         """Queue a function for the event loop, to be called after the messages published before it."""
-        self._exchange.send(_Call(call), None)
+        self._exchange.send(_Call(function), None)
 
     def clear(self) -> None:
         """Remove the node's topics and services from the graph, but keep the node."""
@@ -34,12 +34,12 @@ class ControllerNode(SteppedNode):
 
 
 class _Call:
-    """A function call in the form of a publisher, so that it is queued among messages."""
+    """A function call with the interface of a publisher, so that it is queued with the messages."""
 
     __slots__ = ("_call",)
 
-    def __init__(self, call: Callable[[], object]) -> None:
-        self._call = call
+    def __init__(self, function: Callable[[], object]) -> None:
+        self._call = function
 
     def publish(self, message: None) -> None:
         """Call the function; the message is ignored."""

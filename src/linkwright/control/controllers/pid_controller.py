@@ -1,4 +1,4 @@
-"""``pid_controller/PidController``, which commands degrees of freedom by PID from their errors.
+"""``pid_controller/PidController``, a PID controller of degrees of freedom.
 
 Source: ros2_controllers (parameters, topics, service, interfaces for chaining, feed-forward).
 """
@@ -25,9 +25,9 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _check_interfaces(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Return an error message unless a list contains one interface, or one and its derivative."""
+    """Return an error message unless a list contains one or two interfaces: a value, and optionally its derivative."""
     if not 1 <= len(value) <= 2:
-        return phrase("Parameter '{name}' must be one interface, or an interface and its derivative", name=name)
+        return phrase("parameter '{name}' must contain one interface, or an interface and its derivative", name=name)
     return None
 
 
@@ -60,12 +60,12 @@ class Parameters:
 
     @property
     def measured(self) -> tuple[str, ...]:
-        """The degrees of freedom whose states and references are used."""
+        """The names of the degrees of freedom that provide states and references."""
         return self.reference_and_state_dof_names or self.dof_names
 
 
 class PidController(Controller[Parameters]):
-    """A PID controller, whose references come from ``~/reference`` or from another controller."""
+    """A PID controller that gets its references from ``~/reference`` or from another controller."""
 
     PARAMETERS = Parameters
 
@@ -75,17 +75,17 @@ class PidController(Controller[Parameters]):
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the state interfaces, ordered by kind; none if states are received on a topic."""
-        return () if self.parameters.use_external_measured_states else self._measured_names()
+        return () if self.parameters.use_external_measured_states else self._interface_names()
 
     def reference_interfaces(self) -> Sequence[str]:
         """Return the names of the references, in the order of the states."""
-        return self._measured_names()
+        return self._interface_names()
 
     def exported_states(self) -> Sequence[str]:
         """Return the names of the exported states, in the order of the states."""
-        return self._measured_names()
+        return self._interface_names()
 
-    def _measured_names(self) -> list[str]:
+    def _interface_names(self) -> list[str]:
         parameters = self.parameters
         return [f"{name}/{kind}" for kind in parameters.reference_and_state_interfaces for name in parameters.measured]
 
@@ -102,20 +102,20 @@ class PidController(Controller[Parameters]):
                 f"({len(parameters.measured)}) parameters has to be the same!"
             )
         self._pids = [Pid(parameters.gains[dof_name].pid) for dof_name in parameters.dof_names]
-        self._feeds_forward = parameters.enable_feedforward
+        self._uses_feedforward = parameters.enable_feedforward
         self._output = self.node.publisher("control_msgs/msg/MultiDOFStateStamped", "~/controller_state")
-        self._state_message = get_message("control_msgs/msg/SingleDOFState")
-        self.node.subscribe("control_msgs/msg/MultiDOFCommand", "~/reference", self._commanded, _LATEST)
+        self._state_type = get_message("control_msgs/msg/SingleDOFState")
+        self.node.subscribe("control_msgs/msg/MultiDOFCommand", "~/reference", self._on_reference, _LATEST)
         if parameters.use_external_measured_states:
             self.node.subscribe(
-                "control_msgs/msg/MultiDOFCommand", "~/measured_state", self._measured_by_topic, _LATEST
+                "control_msgs/msg/MultiDOFCommand", "~/measured_state", self._on_measured_state, _LATEST
             )
-        self.node.service("std_srvs/srv/SetBool", "~/set_feedforward_control", self._set_feedforward)
+        self.node.service("std_srvs/srv/SetBool", "~/set_feedforward_control", self._on_set_feedforward)
 
     def on_activate(self) -> None:
-        """Start without a reference."""
-        self._measured = [state.value for state in self.states] or [nan] * len(self._measured_names())
-        self._export()
+        """Discard earlier references, and reset the integrals that are not kept."""
+        self._measured_values = [state.value for state in self.states] or [nan] * len(self._interface_names())
+        self._export_states()
         for reference in self.references:
             reference.value = nan
         for pid, gains in zip(self._pids, self.parameters.gains.values(), strict=True):
@@ -131,84 +131,90 @@ class PidController(Controller[Parameters]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the degrees of freedom whose references and states are known."""
         if self.states:
-            self._measured = [state.value for state in self.states]
-        self._export()
+            self._measured_values = [state.value for state in self.states]
+        self._export_states()
         for number, (name, pid, command) in enumerate(
             zip(self.parameters.dof_names, self._pids, self.commands, strict=True)
         ):
             gains = self.parameters.gains[name]
-            if isfinite(self.references[number].value) and isfinite(self._measured[number]):
+            if isfinite(self.references[number].value) and isfinite(self._measured_values[number]):
                 command.value = self._command(number, pid, gains, period_s)
         if self._output.is_wanted:
             self._publish(time_ns, period_s)
 
-    def _export(self) -> None:
-        for exported, value in zip(self.exported, self._measured, strict=True):
+    def _export_states(self) -> None:
+        for exported, value in zip(self.exported, self._measured_values, strict=True):
             exported.value = value
 
     def _command(self, number: int, pid: Pid, gains: Gains, period_s: float) -> float:
         pid.gains = gains.pid
         rate = self._error_rate(number)
         reference = self._reference_rate(number) if self._has_rates else self.references[number].value
-        forward = gains.feedforward_gain * reference if self._feeds_forward and isfinite(reference) else 0.0
-        return forward + pid.command(self._error(number), period_s, rate if isfinite(rate) else None)
+        feedforward = gains.feedforward_gain * reference if self._uses_feedforward and isfinite(reference) else 0.0
+        return feedforward + pid.command(self._error(number), period_s, rate if isfinite(rate) else None)
 
     @property
     def _has_rates(self) -> bool:
         return len(self.references) == 2 * len(self._pids)
 
     def _error(self, number: int) -> float:
-        wanted, there = self.references[number].value, self._measured[number]
-        turns = self.parameters.gains[self.parameters.dof_names[number]].angle_wraparound
-        return shortest_turn(there, wanted) if turns else wanted - there
+        reference, measured = self.references[number].value, self._measured_values[number]
+        wraps_around = self.parameters.gains[self.parameters.dof_names[number]].angle_wraparound
+        return shortest_turn(measured, reference) if wraps_around else reference - measured
 
     def _reference_rate(self, number: int) -> float:
         return self.references[len(self._pids) + number].value if self._has_rates else nan
 
     def _error_rate(self, number: int) -> float:
-        return self._reference_rate(number) - self._measured[len(self._pids) + number] if self._has_rates else nan
+        return (
+            self._reference_rate(number) - self._measured_values[len(self._pids) + number] if self._has_rates else nan
+        )
 
     # --- topics -------------------------------------------------------------------------------------------------------
 
-    def _commanded(self, message: Any) -> None:
-        if self.chained or not self.references:
+    def _on_reference(self, message: Any) -> None:
+        if self.is_chained or not self.references:
             return
-        values = self._in_order(message)
+        values = self._ordered_values(message)
         for reference, value in zip(self.references, values, strict=False):
             if isfinite(value):
                 reference.value = value
 
-    def _measured_by_topic(self, message: Any) -> None:
-        values = self._in_order(message)
+    def _on_measured_state(self, message: Any) -> None:
+        values = self._ordered_values(message)
         if values:
-            self._measured = values
+            self._measured_values = values
 
-    def _in_order(self, message: Any) -> list[float]:
+    def _ordered_values(self, message: Any) -> list[float]:
         """Return a message's values, and rates if used, in the order of the controller.
 
         Returns an empty list, and logs an error, if the message is invalid.
         """
-        known = list(self.parameters.measured)
-        names, values, rates = list(message.dof_names) or known, list(message.values), list(message.values_dot)
-        wrong = len(names) != len(known) or len(values) != len(known) or (rates and len(rates) != len(known))
-        if wrong:
+        expected_names = list(self.parameters.measured)
+        names, values, rates = list(message.dof_names) or expected_names, list(message.values), list(message.values_dot)
+        is_wrong_size = (
+            len(names) != len(expected_names)
+            or len(values) != len(expected_names)
+            or (rates and len(rates) != len(expected_names))
+        )
+        if is_wrong_size:
             self.node.logger.error(
                 f"Size of input data names ({len(names)}) and/or values ({len(values)}) is not matching the expected "
-                f"size ({len(known)})."
+                f"size ({len(expected_names)})."
             )
             return []
-        for name in known:
+        for name in expected_names:
             if name not in names:
                 self.node.logger.error(f"DoF name '{name}' is not in the message: it has {', '.join(names)}.")
                 return []
-        places = [names.index(name) for name in known]
-        ordered = [float(values[place]) for place in places]
+        indices = [names.index(name) for name in expected_names]
+        ordered = [float(values[index]) for index in indices]
         if self._has_rates:
-            ordered += [float(rates[place]) if rates else nan for place in places]
+            ordered += [float(rates[place]) if rates else nan for place in indices]
         return ordered
 
-    def _set_feedforward(self, request: Any, response: Any) -> Any:
-        self._feeds_forward = bool(request.data)
+    def _on_set_feedforward(self, request: Any, response: Any) -> Any:
+        self._uses_feedforward = bool(request.data)
         response.success = True
         return response
 
@@ -216,13 +222,13 @@ class PidController(Controller[Parameters]):
         message = get_message("control_msgs/msg/MultiDOFStateStamped")
         states = []
         for number, name in enumerate(self.parameters.measured):
-            rates = len(self._pids) + number
+            rate_index = len(self._pids) + number
             states.append(
-                self._state_message(
+                self._state_type(
                     name=name,
                     reference=self.references[number].value,
-                    feedback=self._measured[number],
-                    feedback_dot=self._measured[rates] if self._has_rates else nan,
+                    feedback=self._measured_values[number],
+                    feedback_dot=self._measured_values[rate_index] if self._has_rates else nan,
                     error=self._error(number),
                     error_dot=self._error_rate(number),
                     time_step=period_s,

@@ -13,7 +13,7 @@ from linkwright.nodes.parameter_tables import one_of, parameter
 class PidParameters:
     """The parameters of a PID controller.
 
-    If `i_clamp` is not set, `i_clamp_min` and `i_clamp_max` bound the integral term.
+    The integral term is bounded by `i_clamp`, or by `i_clamp_min` and `i_clamp_max` if `i_clamp` is not set.
     """
 
     p: float = parameter(0.0, description="the proportional gain")

@@ -15,14 +15,13 @@ if TYPE_CHECKING:
 
 GROUP = "linkwright.controllers"
 
-_LEFT_OUT = {
+_UNSUPPORTED = {
     "admittance_controller/AdmittanceController": phrase(
-        "Linkwright does not have this controller, which needs a kinematics plugin and a "
-        "force-torque sensor; use a joint_trajectory_controller, which moves the same joints without "
-        "compliance"
+        "Linkwright does not support admittance control; use a joint_trajectory_controller, which moves the "
+        "same joints without compliance"
     ),
 }
-"""Controllers of ros2_controllers that are known and not here, and why."""
+"""For each controller of ros2_controllers that is not supported, a hint for the user."""
 
 
 def controller_types() -> list[str]:
@@ -39,13 +38,13 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     """
     entry = extensions(GROUP).get(type_name)
     if entry is None:
-        message = phrase("there is no controller of type '{name}'", name=type_name)
-        hint = _LEFT_OUT.get(type_name) or did_you_mean(type_name, controller_types())
+        message = phrase("no installed package provides a controller of type '{name}'", name=type_name)
+        hint = _UNSUPPORTED.get(type_name) or did_you_mean(type_name, controller_types())
         raise LinkwrightError(Diagnostic("CTL103", message, hint=hint))
     try:
-        found: type[Controller[Any]] = entry.load()
+        loaded_class: type[Controller[Any]] = entry.load()
     except Exception as error:
         message = phrase("the controller '{name}' cannot be imported", name=type_name)
-        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase("it is part of '{place}': {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("CTL104", message, hint=hint)) from error
-    return found
+    return loaded_class

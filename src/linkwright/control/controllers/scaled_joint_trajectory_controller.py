@@ -1,4 +1,4 @@
-"""``ur_controllers/ScaledJointTrajectoryController``, which follows trajectories at the robot's speed scaling.
+"""``ur_controllers/ScaledJointTrajectoryController``, which follows trajectories at a scaled speed.
 
 Source: ur_controllers of the driver for Universal Robots (the parameter; the factor scales the time of a trajectory).
 """
@@ -31,9 +31,9 @@ class ScaledParameters(Parameters):
 
 
 class ScaledJointTrajectoryController(JointTrajectoryController):
-    """A controller that follows trajectories in time scaled by a factor from the hardware.
+    """A controller that scales the time of trajectories by a factor from the hardware.
 
-    On Universal Robots, the factor is set by the robot's speed slider.
+    On robots of Universal Robots, the speed slider sets the factor.
     """
 
     PARAMETERS = ScaledParameters
@@ -55,21 +55,21 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         self._factor: StateInterface | None = None
         if self._factor_name:
             *self.states, self._factor = self.states
-        self._behind_ns = 0
+        self._delay_ns = 0
         super().on_activate()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the trajectory at the scaled time, which is reset by each new trajectory."""
+        """Command the trajectory at the scaled time; each new trajectory resets the scaled time."""
         if self._factor is not None and isfinite(self._factor.value):
-            self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * NANOSECONDS_PER_SECOND)
-        super().update(time_ns - self._behind_ns, period_s)
+            self._delay_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * NANOSECONDS_PER_SECOND)
+        super().update(time_ns - self._delay_ns, period_s)
 
     def _follow(self, trajectory: Trajectory) -> None:
-        self._behind_ns = 0
+        self._delay_ns = 0
         super()._follow(trajectory)
 
     def _publish_feedback(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
-        super()._publish_feedback(goal, time_ns + self._behind_ns, desired)
+        super()._publish_feedback(goal, time_ns + self._delay_ns, desired)
 
     def _publish(self, time_ns: int, desired: MotionState) -> None:
-        super()._publish(time_ns + self._behind_ns, desired)
+        super()._publish(time_ns + self._delay_ns, desired)

@@ -18,13 +18,13 @@ from linkwright.messages import Header, Quaternion, Time, Transform, TransformSt
 from linkwright.nodes.parameter_tables import at_least, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_UNKNOWN = (0.0,) * 9
+_UNKNOWN_COVARIANCE = (0.0,) * 9
 
 
 def _check_covariance(name: str, value: tuple[float, ...]) -> Phrase | None:
     """Return an error message unless a covariance consists of 9 numbers, row by row."""
     if len(value) != 9:
-        return phrase("Parameter '{name}' has {count} numbers and must have 9", name=name, count=len(value))
+        return phrase("parameter '{name}' must have 9 numbers, but it has {count}", name=name, count=len(value))
     return None
 
 
@@ -35,13 +35,13 @@ class ImuParameters:
     sensor_name: str = parameter("", description="the sensor, as ros2_control names it", check=not_empty)
     frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
     static_covariance_orientation: tuple[float, ...] = parameter(
-        _UNKNOWN, description="the covariance of the orientation, 9 values", check=_check_covariance
+        _UNKNOWN_COVARIANCE, description="the covariance of the orientation, 9 values", check=_check_covariance
     )
     static_covariance_angular_velocity: tuple[float, ...] = parameter(
-        _UNKNOWN, description="the covariance of the angular velocity, 9 values", check=_check_covariance
+        _UNKNOWN_COVARIANCE, description="the covariance of the angular velocity, 9 values", check=_check_covariance
     )
     static_covariance_linear_acceleration: tuple[float, ...] = parameter(
-        _UNKNOWN, description="the covariance of the acceleration, 9 values", check=_check_covariance
+        _UNKNOWN_COVARIANCE, description="the covariance of the acceleration, 9 values", check=_check_covariance
     )
 
 
@@ -87,7 +87,7 @@ class AxisOffsets:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ones:
+class AxisFactors:
     """The factors of three axes, 1 by default."""
 
     x: float = 1.0
@@ -107,8 +107,8 @@ class Offset:
 class Multiplier:
     """The factors by which a wrench is multiplied."""
 
-    force: Ones = Ones()
-    torque: Ones = Ones()
+    force: AxisFactors = AxisFactors()
+    torque: AxisFactors = AxisFactors()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -191,7 +191,7 @@ class SensorBroadcaster(Controller[P]):
             self._output.publish(self.message(self._kind, self.header(time_ns), [state.value for state in self.states]))
 
     def header(self, time_ns: int) -> Header:
-        """Return a header with the given time and the frame from the parameters."""
+        """Return a header with a time in nanoseconds and the frame from the parameters."""
         frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # all of them have one
         return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
 
@@ -213,9 +213,9 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the interfaces of orientation, angular velocity and linear acceleration."""
-        turn = [f"orientation.{axis}" for axis in "xyzw"]
-        rest = [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
-        return [f"{self.parameters.sensor_name}/{item}" for item in (*turn, *rest)]
+        orientation = [f"orientation.{axis}" for axis in "xyzw"]
+        vectors = [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
+        return [f"{self.parameters.sensor_name}/{item}" for item in (*orientation, *vectors)]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """Return an IMU message with the covariances from the parameters."""
@@ -244,18 +244,20 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
             ControllerError: neither or both of ``sensor_name`` and ``interface_names`` are set.
         """
         parameters = self.parameters
-        named = _wrench_values(parameters.interface_names)
-        if not parameters.sensor_name and not any(named):
+        interface_names = _wrench_values(parameters.interface_names)
+        if not parameters.sensor_name and not any(interface_names):
             raise ControllerError(
                 "'sensor_name' or at least one 'interface_names.[force|torque].[x|y|z]' parameter has to be specified."
             )
-        if parameters.sensor_name and any(named):
+        if parameters.sensor_name and any(interface_names):
             raise ControllerError(
                 "both 'sensor_name' and 'interface_names.[force|torque].[x|y|z]' parameters can not be specified "
                 "together."
             )
         kinds = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-        self._names = [f"{parameters.sensor_name}/{kind}" for kind in kinds] if parameters.sensor_name else named
+        self._names = (
+            [f"{parameters.sensor_name}/{kind}" for kind in kinds] if parameters.sensor_name else interface_names
+        )
         super().on_configure()
 
     def state_interfaces(self) -> InterfaceNames:
@@ -263,17 +265,17 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         return [name for name in self._names if name]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """Return a wrench message with 0 for axes without an interface, after offsets and factors."""
-        there = iter(values)
+        """Return a wrench message; axes without an interface have the value 0 before offset and multiplier."""
+        remaining_values = iter(values)
         parameters = self.parameters
-        six = [
-            ((next(there) if name else 0.0) + offset) * factor
+        wrench_values = [
+            ((next(remaining_values) if name else 0.0) + offset) * factor
             for name, offset, factor in zip(
                 self._names, _wrench_values(parameters.offset), _wrench_values(parameters.multiplier), strict=True
             )
         ]
         wrench = get_message("geometry_msgs/msg/Wrench")
-        return kind(header=header, wrench=wrench(force=_vector(six[:3]), torque=_vector(six[3:])))
+        return kind(header=header, wrench=wrench(force=_vector(wrench_values[:3]), torque=_vector(wrench_values[3:])))
 
 
 class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
@@ -312,22 +314,30 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
             ControllerError: neither or both of ``pose_name`` and ``interface_names`` are set.
         """
         parameters = self.parameters
-        place, turn = parameters.interface_names.position, parameters.interface_names.orientation
-        named = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
-        if not parameters.pose_name and not all(named):
+        position, orientation = parameters.interface_names.position, parameters.interface_names.orientation
+        interface_names = [
+            position.x,
+            position.y,
+            position.z,
+            orientation.x,
+            orientation.y,
+            orientation.z,
+            orientation.w,
+        ]
+        if not parameters.pose_name and not all(interface_names):
             raise ControllerError(
                 "'pose_name' or 'interface_names.[position.[x|y|z]|orientation.[x|y|z|w]]' parameter has to be "
                 "specified."
             )
-        if parameters.pose_name and any(named):
+        if parameters.pose_name and any(interface_names):
             raise ControllerError(
                 "'pose_name' and 'interface_names.[position.[x|y|z]|orientation.[x|y|z|w]]' parameters can not be "
                 "specified together."
             )
         kinds = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axis in "xyzw")]
-        self._names = [f"{parameters.pose_name}/{kind}" for kind in kinds] if parameters.pose_name else named
+        self._names = [f"{parameters.pose_name}/{kind}" for kind in kinds] if parameters.pose_name else interface_names
         self._next_transform_ns = 0
-        self._child = parameters.tf.child_frame_id or parameters.pose_name
+        self._child_frame = parameters.tf.child_frame_id or parameters.pose_name
         self._transforms = self.node.publisher("tf2_msgs/msg/TFMessage", "/tf", 100) if parameters.tf.enable else None
         super().on_configure()
 
@@ -346,13 +356,13 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         super().update(time_ns, period_s)
         rate = self.parameters.tf.publish_rate
         period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate else 0
-        waits = 0 < self._next_transform_ns - time_ns <= period_ns  # Longer if simulated time was reset.
-        if self._transforms is None or not self._child or waits:
+        is_waiting = 0 < self._next_transform_ns - time_ns <= period_ns  # More after a reset of simulated time.
+        if self._transforms is None or not self._child_frame or is_waiting:
             return
         values = [state.value for state in self.states]
         if not self._transforms.is_wanted or not all(map(isfinite, values)):
             return
         self._next_transform_ns = time_ns + period_ns
         transform = Transform(_vector(values), Quaternion(*values[3:]))
-        stamped = TransformStamped(self.header(time_ns), self._child, transform)
-        self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")([stamped]))
+        stamped_transform = TransformStamped(self.header(time_ns), self._child_frame, transform)
+        self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")([stamped_transform]))

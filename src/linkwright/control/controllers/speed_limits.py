@@ -1,8 +1,8 @@
 """Parameters of drive controllers that limit velocity, acceleration, deceleration and jerk.
 
 Source: diff_drive_controller of Humble (``has_..._limits``, ``min_acceleration``) and of Jazzy (NaN for no limit,
-``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. A positive limit applies if
-``has_..._limits`` is not set.
+``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. If ``has_..._limits`` is not set, positive
+limits apply.
 """
 
 from __future__ import annotations
@@ -18,10 +18,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """The limits of one velocity component, and of its first and second derivatives.
-
-    The component is in m/s or rad/s.
-    """
+    """The limits of one velocity component, in m/s or rad/s, and of its first and second derivatives."""
 
     has_velocity_limits: bool | None = parameter(
         None, description="whether the limits of the velocity apply", only=HUMBLE
@@ -49,24 +46,26 @@ class SpeedLimits:
         Raises:
             ControllerError: an enabled limit has no value, or a minimum is above its maximum.
         """
-        velocity = acceleration = reverse = jerk = UNBOUNDED
-        if self._holds(axis, "velocity", self.has_velocity_limits, self.max_velocity):
+        velocity = acceleration = reverse_acceleration = jerk = UNBOUNDED
+        if self._is_enabled(axis, "velocity", self.has_velocity_limits, self.max_velocity):
             velocity = _bounds(axis, "velocity", self.min_velocity, self.max_velocity)
-        if self._holds(axis, "acceleration", self.has_acceleration_limits, self.max_acceleration):
-            fastest = self.max_acceleration
-            backward = _given(self.max_acceleration_reverse, self.min_acceleration, -fastest)
-            braking = _given(self.max_deceleration, backward)
-            acceleration = _bounds(axis, "acceleration", braking, fastest)
-            reverse = _bounds(axis, "acceleration", backward, _given(self.max_deceleration_reverse, fastest))
-        if self._holds(axis, "jerk", self.has_jerk_limits, self.max_jerk):
+        if self._is_enabled(axis, "acceleration", self.has_acceleration_limits, self.max_acceleration):
+            max_acceleration = self.max_acceleration
+            min_acceleration = _first_number(self.max_acceleration_reverse, self.min_acceleration, -max_acceleration)
+            braking_limit = _first_number(self.max_deceleration, min_acceleration)
+            acceleration = _bounds(axis, "acceleration", braking_limit, max_acceleration)
+            reverse_acceleration = _bounds(
+                axis, "acceleration", min_acceleration, _first_number(self.max_deceleration_reverse, max_acceleration)
+            )
+        if self._is_enabled(axis, "jerk", self.has_jerk_limits, self.max_jerk):
             jerk = _bounds(axis, "jerk", self.min_jerk, self.max_jerk)
-        return SpeedLimiter(velocity, acceleration, jerk, reverse_acceleration=reverse, brakes_freely=True)
+        return SpeedLimiter(velocity, acceleration, jerk, reverse_acceleration=reverse_acceleration, brakes_freely=True)
 
     @staticmethod
-    def _holds(axis: str, kind: str, enabled: bool | None, greatest: float) -> bool:
+    def _is_enabled(axis: str, kind: str, enabled: bool | None, max_value: float) -> bool:
         if enabled is None:
-            return greatest > 0.0
-        if enabled and isnan(greatest):
+            return max_value > 0.0
+        if enabled and isnan(max_value):
             raise ControllerError(
                 phrase(
                     "Error configuring {axis} speed limiter: Cannot apply {kind} limits if max_{kind} is not specified",
@@ -80,21 +79,21 @@ class SpeedLimits:
 NO_LIMITS = SpeedLimits()
 
 
-def _given(*values: float) -> float:
+def _first_number(*values: float) -> float:
     """Return the first value that is not NaN."""
     return next(value for value in values if not isnan(value))
 
 
-def _bounds(axis: str, kind: str, least: float, greatest: float) -> Bounds:
-    least = _given(least, -greatest)
-    if least > greatest:
+def _bounds(axis: str, kind: str, min_value: float, max_value: float) -> Bounds:
+    min_value = _first_number(min_value, -max_value)
+    if min_value > max_value:
         raise ControllerError(
             phrase(
-                "the minimum {kind} of '{axis}', {least:g}, is above the maximum, {greatest:g}",
+                "the minimum {kind} of '{axis}' ({least:g}) is greater than the maximum ({greatest:g})",
                 kind=kind,
                 axis=axis,
-                least=least,
-                greatest=greatest,
+                least=min_value,
+                greatest=max_value,
             )
         )
-    return least, greatest
+    return min_value, max_value

@@ -1,9 +1,9 @@
 """The base class of controllers of steered vehicles, which have a driven axle and a steered axle.
 
 Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
-defaults, topics, the order of joints: right, left). Three things differ: odometry and wheels use the tangent of the
-steering angle throughout, open-loop odometry does not move while there is no command, and a command that is not a
-number stops the vehicle.
+defaults, topics, the order of joints: right, left). Deliberate differences: odometry and wheels always use the tangent
+of the steering angle, open-loop odometry does not move without a command, and a command that is not finite stops the
+vehicle.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from linkwright.messages import Header, Time, get_message
 from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, above, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
-_NEAR, _FAR = pi / 6.0, 1.5608
-"""The steering errors in rad above which wheels slow down, and above which they do not slow down further."""
+_DEFAULT_VARIANCES = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
+_SLOWDOWN_START, _SLOWDOWN_END = pi / 6.0, 1.5608
+"""The steering errors at which the wheels start and stop to slow down, in rad."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,14 +57,16 @@ class SteeringParameters:
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
     odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the velocity")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _DEFAULT_VARIANCES, description="variances of the velocity"
+    )
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="variances of the pose")
     position_feedback: bool = parameter(False, description="odometry by positions of wheels, not by velocities")
     use_stamped_vel: bool = parameter(True, description="whether ~/reference_unstamped is not taken too", only=HUMBLE)
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def select_traction(self, front: float, rear: float) -> float:
-        """Return the driven axle's value, given the older parameters for front and rear."""
+        """Return the value for the driven axle from Humble's parameters for the front and the rear axle."""
         return rear if self.front_steering else front
 
     @property
@@ -83,15 +85,15 @@ class SteeringParameters:
 
     @property
     def traction_states(self) -> tuple[str, ...]:
-        """The components whose states are those of the driven joints."""
-        older = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
-        return self.traction_joints_state_names or older or self.traction
+        """The names of the components that provide the states of the driven joints."""
+        humble_names = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
+        return self.traction_joints_state_names or humble_names or self.traction
 
     @property
     def steering_states(self) -> tuple[str, ...]:
-        """The components whose states are those of the steered joints."""
-        older = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
-        return self.steering_joints_state_names or older or self.steering
+        """The names of the components that provide the states of the steered joints."""
+        humble_names = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
+        return self.steering_joints_state_names or humble_names or self.steering
 
 
 P = TypeVar("P", bound=SteeringParameters)
@@ -113,7 +115,7 @@ class SteeringController(Controller[P], Generic[P]):
 
     @abstractmethod
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions of the vehicle, which need not be valid."""
+        """Return the drive with the dimensions of the vehicle, which are not checked."""
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the velocities of the driven joints, then the positions of the steered joints."""
@@ -134,7 +136,7 @@ class SteeringController(Controller[P], Generic[P]):
         ]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references: the forward velocity in m/s, and the angular velocity around z in rad/s."""
+        """Return the references: the forward velocity in m/s, and the angular velocity about z in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
     def on_configure(self) -> None:
@@ -148,9 +150,9 @@ class SteeringController(Controller[P], Generic[P]):
         self._check_joints()
         self._drive = self.drive()
         for name, value in (("wheelbase", self._drive.wheelbase), ("traction_wheels_radius", self._drive.radius)):
-            wrong = above(0.0)(name, value)
-            if wrong is not None:
-                raise ControllerError(wrong)
+            problem = above(0.0)(name, value)
+            if problem is not None:
+                raise ControllerError(problem)
         unstamped = "" if parameters.use_stamped_vel else "~/reference_unstamped"
         timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, unstamped=unstamped, qos=REFERENCE_QOS)
@@ -160,8 +162,8 @@ class SteeringController(Controller[P], Generic[P]):
             "~/tf_odometry",
             frame=parameters.odom_frame_id,
             child=parameters.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
             window=parameters.velocity_rolling_window_size,
         )
@@ -169,12 +171,12 @@ class SteeringController(Controller[P], Generic[P]):
         self._state = node.publisher("control_msgs/msg/SteeringControllerStatus", "~/controller_state")
 
     def _check_joints(self) -> None:
-        parameters, (driving, steering) = self.parameters, self.JOINTS
-        for what, needed, names in (
-            ("traction", driving, parameters.traction),
-            ("steering", steering, parameters.steering),
-            ("traction state", driving, parameters.traction_states),
-            ("steering state", steering, parameters.steering_states),
+        parameters, (driven_count, steered_count) = self.parameters, self.JOINTS
+        for role, needed, names in (
+            ("traction", driven_count, parameters.traction),
+            ("steering", steered_count, parameters.steering),
+            ("traction state", driven_count, parameters.traction_states),
+            ("steering state", steered_count, parameters.steering_states),
         ):
             if len(names) != needed:
                 raise ControllerError(
@@ -182,18 +184,18 @@ class SteeringController(Controller[P], Generic[P]):
                         "{kind} configuration requires exactly {needed} {what} joint(s), but {count} were provided",
                         kind=self.KIND,
                         needed=needed,
-                        what=what,
+                        what=role,
                         count=len(names),
                     )
                 )
 
     def on_activate(self) -> None:
-        """Start at rest, and accept commands."""
+        """Reset the velocities to zero, and accept commands."""
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.reset_velocity()
-        self._angles: list[float] | None = None
-        self._steered = 0.0
+        self._last_angles: list[float] | None = None
+        self._measured_angle = 0.0
         self._input.open()
 
     def on_deactivate(self) -> None:
@@ -211,12 +213,12 @@ class SteeringController(Controller[P], Generic[P]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the wheels and the steering, and publish the odometry."""
         forward, angular = (reference.value for reference in self.references)
-        finite = isfinite(forward) and isfinite(angular)
+        is_finite = isfinite(forward) and isfinite(angular)
         if self._settings.open_loop:
-            self._odometry.odometer.add_commanded((forward, 0.0, angular) if finite else (0.0, 0.0, 0.0), period_s)
+            self._odometry.odometer.add_commanded((forward, 0.0, angular) if is_finite else (0.0, 0.0, 0.0), period_s)
         else:
             self._measure(period_s)
-        if finite:
+        if is_finite:
             self._move(forward, angular)
         else:
             for command in self.commands[: self.JOINTS[0]]:
@@ -229,16 +231,16 @@ class SteeringController(Controller[P], Generic[P]):
 
     def _measure(self, period_s: float) -> None:
         """Update the odometry from wheels and steering, unless a value is not finite."""
-        driving, steering = self.JOINTS
+        driven_count, steered_count = self.JOINTS
         values = [state.value for state in self.states]
         if not all(map(isfinite, values)) or period_s <= 0.0:
             return
-        wheels, angles = values[:driving], values[driving:]
+        wheels, angles = values[:driven_count], values[driven_count:]
         if self._settings.position_feedback:
-            before, self._angles = self._angles or wheels, wheels
-            wheels = [(now - then) / period_s for now, then in zip(wheels, before, strict=True)]
-        self._steered = self._drive.middle_angle(angles[-1], angles[0]) if steering > 1 else angles[0]
-        forward, angular = self._drive.motion(wheels[-1], wheels[0], self._steered)
+            last_angles, self._last_angles = self._last_angles or wheels, wheels
+            wheels = [(angle - last_angle) / period_s for angle, last_angle in zip(wheels, last_angles, strict=True)]
+        self._measured_angle = self._drive.middle_angle(angles[-1], angles[0]) if steered_count > 1 else angles[0]
+        forward, angular = self._drive.motion(wheels[-1], wheels[0], self._measured_angle)
         self._odometry.odometer.measure((forward, 0.0, angular), period_s)
 
     def _move(self, forward: float, angular: float) -> None:
@@ -246,28 +248,30 @@ class SteeringController(Controller[P], Generic[P]):
 
         In open loop, wheel velocities match the commanded angle.
         """
-        parameters, (driving, steering) = self._settings, self.JOINTS
+        parameters, (driven_count, steered_count) = self._settings, self.JOINTS
         angle = self._drive.steering_angle(forward, angular)
-        steered = angle if parameters.open_loop else self._steered
+        wheel_angle = angle if parameters.open_loop else self._measured_angle
         if parameters.reduce_wheel_speed_until_steering_reached:
-            error = abs(steered - angle)
-            forward *= cos(min(error, _FAR)) / cos(_NEAR) if error >= _NEAR else 1.0
-        left, right = self._drive.wheel_speeds(forward, steered)
-        angles = self._drive.steering_angles(angle) if steering > 1 else (angle,)
-        for command, value in zip(self.commands, ((right, left)[:driving] + angles[::-1]), strict=True):
+            error = abs(wheel_angle - angle)
+            forward *= cos(min(error, _SLOWDOWN_END)) / cos(_SLOWDOWN_START) if error >= _SLOWDOWN_START else 1.0
+        left_speed, right_speed = self._drive.wheel_speeds(forward, wheel_angle)
+        angles = self._drive.steering_angles(angle) if steered_count > 1 else (angle,)
+        for command, value in zip(
+            self.commands, ((right_speed, left_speed)[:driven_count] + angles[::-1]), strict=True
+        ):
             command.value = value
 
     def _publish_state(self, time_ns: int) -> None:
-        driving = self.JOINTS[0]
+        driven_count = self.JOINTS[0]
         states, commands = [state.value for state in self.states], [command.value for command in self.commands]
-        wheels: list[float] = states[:driving]
-        by_position = self._settings.position_feedback
+        wheels: list[float] = states[:driven_count]
+        has_positions = self._settings.position_feedback
         status = get_message("control_msgs/msg/SteeringControllerStatus")(
             header=Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self._settings.odom_frame_id),
-            traction_wheels_position=wheels if by_position else [],
-            traction_wheels_velocity=[] if by_position else wheels,
-            steer_positions=states[driving:],
-            linear_velocity_command=commands[:driving],
-            steering_angle_command=commands[driving:],
+            traction_wheels_position=wheels if has_positions else [],
+            traction_wheels_velocity=[] if has_positions else wheels,
+            steer_positions=states[driven_count:],
+            linear_velocity_command=commands[:driven_count],
+            steering_angle_command=commands[driven_count:],
         )
         self._state.publish(status)

@@ -1,7 +1,7 @@
-"""``tricycle_controller/TricycleController``: a vehicle whose front wheel is driven and steered.
+"""``tricycle_controller/TricycleController``: a vehicle with a driven and steered front wheel.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics; the wheel is slow while it is far from its
-angle). One thing differs: open-loop odometry is computed from the limited commands of the wheel.
+angle). A deliberate difference: open-loop odometry is computed from the limited commands of the wheel.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from linkwright.kinematics.limits import UNBOUNDED, Bounds
 from linkwright.messages import get_message
 from linkwright.nodes.parameter_tables import above, not_empty, parameter
 
-_NONE = (0.0,) * 6
-_NEAR, _FAR = pi / 6.0, pi / 2.0
-"""Steering errors in rad: below the first the wheel has its commanded speed, beyond the second it hardly moves."""
-_CREEPING = 0.01
+_NO_VARIANCES = (0.0,) * 6
+_MAX_FULL_SPEED_ERROR, _MIN_CREEP_ERROR = pi / 6.0, pi / 2.0
+"""The steering errors below which the wheel has its commanded speed, and above which it hardly moves, in rad."""
+_CREEP_FRACTION = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +56,7 @@ class SteeringLimits:
     min_acceleration: float = nan
 
 
-_ANY_TRACTION, _ANY_STEERING = TractionLimits(), SteeringLimits()
+_NO_TRACTION_LIMITS, _NO_STEERING_LIMITS = TractionLimits(), SteeringLimits()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +69,8 @@ class Parameters:
     wheel_radius: float = parameter(0.0, description="in m")
     odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the pose")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the velocity")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the velocity")
     open_loop: bool = parameter(False, description="odometry by the commands of the wheel, not by its motion")
     enable_odom_tf: bool = parameter(False, description="whether the transform of odometry is published")
     odom_only_twist: bool = parameter(False, description="odometry without the pose")
@@ -78,8 +78,8 @@ class Parameters:
     publish_ackermann_command: bool = parameter(False, description="whether ~/cmd_ackermann is published")
     velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
     use_stamped_vel: bool = parameter(True, description="whether commands have headers")
-    traction: TractionLimits = _ANY_TRACTION
-    steering: SteeringLimits = _ANY_STEERING
+    traction: TractionLimits = _NO_TRACTION_LIMITS
+    steering: SteeringLimits = _NO_STEERING_LIMITS
 
 
 class TricycleController(Controller[Parameters]):
@@ -113,11 +113,14 @@ class TricycleController(Controller[Parameters]):
             ("wheelbase", above(0.0)),
             ("wheel_radius", above(0.0)),
         ):
-            wrong = check(name, getattr(parameters, name))
-            if wrong is not None:
-                raise ControllerError(wrong)
+            problem = check(name, getattr(parameters, name))
+            if problem is not None:
+                raise ControllerError(problem)
         self._drive = TricycleDrive(parameters.wheelbase, parameters.wheel_radius)
-        self._traction, self._steering = _traction_limiter(parameters.traction), _steering_limiter(parameters.steering)
+        self._traction_limiter, self._steering_limiter = (
+            _traction_limiter(parameters.traction),
+            _steering_limiter(parameters.steering),
+        )
         timeout = parameters.cmd_vel_timeout / 1000.0
         unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel"
         self._input = VelocityInput(node, "~/cmd_vel", timeout_s=timeout, unstamped=unstamped)
@@ -127,21 +130,23 @@ class TricycleController(Controller[Parameters]):
             "/tf",
             frame=parameters.odom_frame_id,
             child=parameters.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
             publishes_pose=not parameters.odom_only_twist,
             window=parameters.velocity_rolling_window_size,
         )
-        node.service("std_srvs/srv/Empty", "~/reset_odometry", self._reset)
-        asked = parameters.publish_ackermann_command
-        self._output = node.publisher("ackermann_msgs/msg/AckermannDrive", "~/cmd_ackermann") if asked else None
+        node.service("std_srvs/srv/Empty", "~/reset_odometry", self._on_reset)
+        publishes_command = parameters.publish_ackermann_command
+        self._output = (
+            node.publisher("ackermann_msgs/msg/AckermannDrive", "~/cmd_ackermann") if publishes_command else None
+        )
 
     def on_activate(self) -> None:
-        """Start at rest, and accept commands."""
-        self._traction.restart()
+        """Reset the velocities to zero, and accept commands."""
+        self._traction_limiter.restart()
         angle = self.states[1].value
-        self._steering.restart(0.0 if isnan(angle) else angle)
+        self._steering_limiter.restart(0.0 if isnan(angle) else angle)
         self._odometry.odometer.reset_velocity()
         self._input.open()
 
@@ -157,82 +162,89 @@ class TricycleController(Controller[Parameters]):
         Raises:
             ControllerError: the wheel has no valid state.
         """
-        measured, angle_now = (state.value for state in self.states)
-        if isnan(measured) or isnan(angle_now):
-            raise ControllerError(phrase("Could not read feedback value"))
+        measured_speed, measured_angle = (state.value for state in self.states)
+        if isnan(measured_speed) or isnan(measured_angle):
+            raise ControllerError(phrase("the state of the wheel or of the steering is not a number"))
         forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         speed, angle = self._drive.wheel(forward, angular)
-        speed = self._traction.follow(speed * _speed_fraction(abs(angle - angle_now)), period_s)
-        angle = self._steering.follow(angle, period_s)
+        speed = self._traction_limiter.follow(speed * _speed_fraction(abs(angle - measured_angle)), period_s)
+        angle = self._steering_limiter.follow(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle
         if self._settings.open_loop:
             forward, angular = self._drive.motion(speed, angle)
             self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
         else:
-            forward, angular = self._drive.motion(measured, angle_now)
+            forward, angular = self._drive.motion(measured_speed, measured_angle)
             self._odometry.odometer.measure((forward, 0.0, angular), period_s)
         self._odometry.publish(time_ns)
         if self._output is not None and self._output.is_wanted:
             command = get_message("ackermann_msgs/msg/AckermannDrive")(steering_angle=angle, speed=speed)
             self._output.publish(command)
 
-    def _reset(self, request: Any, response: Any) -> Any:
+    def _on_reset(self, request: Any, response: Any) -> Any:
         self._odometry.odometer.reset()
         return response
 
 
 def _speed_fraction(error: float) -> float:
-    """Return the fraction of the speed at which to drive at a steering error in rad."""
-    if error < _NEAR:
+    """Return the fraction of the commanded speed for a steering error in rad."""
+    if error < _MAX_FULL_SPEED_ERROR:
         return 1.0
-    return _CREEPING if error > _FAR else cos(error)
+    return _CREEP_FRACTION if error > _MIN_CREEP_ERROR else cos(error)
 
 
 def _traction_limiter(limits: TractionLimits) -> TractionLimiter:
-    part = "traction"
+    limiter_name = "traction"
     return TractionLimiter(
-        _magnitudes(part, "velocity", limits.min_velocity, limits.max_velocity),
-        _magnitudes(part, "acceleration", limits.min_acceleration, limits.max_acceleration),
-        _magnitudes(part, "deceleration", limits.min_deceleration, limits.max_deceleration),
-        _magnitudes(part, "jerk", limits.min_jerk, limits.max_jerk),
+        _magnitude_bounds(limiter_name, "velocity", limits.min_velocity, limits.max_velocity),
+        _magnitude_bounds(limiter_name, "acceleration", limits.min_acceleration, limits.max_acceleration),
+        _magnitude_bounds(limiter_name, "deceleration", limits.min_deceleration, limits.max_deceleration),
+        _magnitude_bounds(limiter_name, "jerk", limits.min_jerk, limits.max_jerk),
     )
 
 
 def _steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
-    part, least, greatest = "steering", limits.min_position, limits.max_position
+    limiter_name, min_position, max_position = "steering", limits.min_position, limits.max_position
     position = UNBOUNDED
-    if not (isnan(least) and isnan(greatest)):
-        position = (-greatest if isnan(least) else least, -least if isnan(greatest) else greatest)
+    if not (isnan(min_position) and isnan(max_position)):
+        position = (
+            -max_position if isnan(min_position) else min_position,
+            -min_position if isnan(max_position) else max_position,
+        )
     if position[0] > position[1]:
-        raise _wrong_order(part, "position")
+        raise _wrong_order_error(limiter_name, "position")
     return SteeringLimiter(
         position,
-        _magnitudes(part, "velocity", limits.min_velocity, limits.max_velocity),
-        _magnitudes(part, "acceleration", limits.min_acceleration, limits.max_acceleration),
+        _magnitude_bounds(limiter_name, "velocity", limits.min_velocity, limits.max_velocity),
+        _magnitude_bounds(limiter_name, "acceleration", limits.min_acceleration, limits.max_acceleration),
     )
 
 
-def _magnitudes(part: str, kind: str, least: float, greatest: float) -> Bounds:
+def _magnitude_bounds(limiter_name: str, kind: str, min_value: float, max_value: float) -> Bounds:
     """Return the bounds of a magnitude, with defaults for bounds that are NaN.
 
     Raises:
         ControllerError: a bound is negative, or the minimum is above the maximum.
     """
-    if least < 0.0 or greatest < 0.0:
+    if min_value < 0.0 or max_value < 0.0:
         raise ControllerError(
             phrase(
                 "Error configuring {part} limiter: {kind} limits cannot be negative, they are for both directions",
-                part=part,
+                part=limiter_name,
                 kind=kind,
             )
         )
-    bounds = (ANY[0] if isnan(least) else least, inf if isnan(greatest) else greatest)
+    bounds = (ANY[0] if isnan(min_value) else min_value, inf if isnan(max_value) else max_value)
     if bounds[0] > bounds[1]:
-        raise _wrong_order(part, kind)
+        raise _wrong_order_error(limiter_name, kind)
     return bounds
 
 
-def _wrong_order(part: str, kind: str) -> ControllerError:
+def _wrong_order_error(limiter_name: str, kind: str) -> ControllerError:
     return ControllerError(
-        phrase("Error configuring {part} limiter: Min {kind} cannot be greater than max {kind}", part=part, kind=kind)
+        phrase(
+            "Error configuring {part} limiter: Min {kind} cannot be greater than max {kind}",
+            part=limiter_name,
+            kind=kind,
+        )
     )

@@ -21,14 +21,14 @@ class Parameters(SteeringParameters):
 
 
 class TricycleSteeringController(SteeringController[Parameters]):
-    """A controller of a tricycle whose single wheel is steered and not driven."""
+    """A controller of a tricycle with two driven wheels and a steered wheel."""
 
     PARAMETERS = Parameters
     KIND = "Tricycle"
     JOINTS = (2, 1)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions in the parameters, under current or older names."""
+        """Return the drive with the dimensions from the parameters, which have different names in Humble and Jazzy."""
         parameters = self.parameters
         radius = parameters.traction_wheels_radius or parameters.select_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius

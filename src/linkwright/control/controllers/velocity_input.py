@@ -12,11 +12,11 @@ from linkwright.graph import QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""The profile of controllers' subscriptions to ``~/reference``."""
+"""The QoS of the controllers' subscriptions to ``~/reference``."""
 
 
 class VelocityInput:
-    """The velocity commands of a ``geometry_msgs/msg/TwistStamped`` topic, which expire.
+    """The velocity commands of a ``geometry_msgs/msg/TwistStamped`` topic, which expire after a timeout.
 
     The age of a command counts from the time in its header. If that time is zero or in the future, the age counts from
     the update that first uses the command, so every command expires. A command that is not finite stops the drive.
@@ -29,23 +29,23 @@ class VelocityInput:
             `topic`, only commands without headers are received.
         qos: the QoS of the subscriptions.
 
-    Source: diff_drive_controller of ros2_controllers, with two differences: a command with a time in the future does
-    expire, and commands with headers are accepted even if commands without headers are requested, since Jazzy accepts
-    no others.
+    Source: diff_drive_controller of ros2_controllers, with two differences: a command with a time in the future
+    expires, too, and commands with headers are accepted even if commands without headers are requested, because Jazzy
+    accepts only commands with headers.
     """
 
     def __init__(
         self, node: ControllerNode, topic: str, *, timeout_s: float, unstamped: str = "", qos: QoSProfile | int = 10
     ) -> None:
         self._logger = node.logger
-        self._timeout = round(timeout_s * NANOSECONDS_PER_SECOND)
+        self._timeout_ns = round(timeout_s * NANOSECONDS_PER_SECOND)
         self._is_open = False
         self.forget()
         commander = node.commander(self._on_publisher_lost)
         if topic != unstamped:
-            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._receive_stamped, qos, commander=commander)
+            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._on_stamped, qos, commander=commander)
         if unstamped:
-            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._receive_twist, qos, commander=commander)
+            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._on_twist, qos, commander=commander)
 
     def open(self) -> None:
         """Start accepting commands."""
@@ -59,61 +59,60 @@ class VelocityInput:
 
     def forget(self) -> None:
         """Discard the last command."""
-        self._come: tuple[Velocity, int] | None = None
+        self._new_command: tuple[Velocity, int] | None = None
         self._command: tuple[Velocity, int] | None = None
 
     def _on_publisher_lost(self) -> bool:
-        """Discard the command of a lost publisher, and return whether the command was not zero."""
-        velocity, _ = self._come or self._command or ((0.0,), 0)
+        """Discard the last command when its publisher disappears, and return whether the command was not zero."""
+        velocity, _ = self._new_command or self._command or ((0.0,), 0)
         self.forget()
         return any(velocity)
 
     def velocity(self, time_ns: int) -> Velocity | None:
         """Return the command that is valid at a time in nanoseconds, or None if there is none."""
-        if self._come is not None:
-            self._receive(*self._come, time_ns)
-            self._come = None
+        if self._new_command is not None:
+            self._receive(*self._new_command, time_ns)
+            self._new_command = None
         if self._command is None:
             return None
-        velocity, since = self._command
-        if 0 <= time_ns - since <= self._timeout:
+        velocity, start_ns = self._command
+        if 0 <= time_ns - start_ns <= self._timeout_ns:
             return velocity
         self._command = None
         return None
 
-    def _receive_stamped(self, message: Any) -> None:
+    def _on_stamped(self, message: Any) -> None:
         stamp = message.header.stamp
-        nanoseconds = stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec
-        if not nanoseconds and self._is_open:
+        stamp_ns = stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec
+        if not stamp_ns and self._is_open:
             self._logger.warning(
-                phrase(
-                    "Received TwistStamped with zero timestamp, setting it to current time, "
-                    "this message will only be shown once"
-                ),
+                phrase("a TwistStamped without a stamp was received, so the current time is used (reported once)"),
                 once=True,
             )
-        self._receive_twist(message.twist, nanoseconds)
+        self._on_twist(message.twist, stamp_ns)
 
-    def _receive_twist(self, twist: Any, stamp: int = 0) -> None:
+    def _on_twist(self, twist: Any, stamp: int = 0) -> None:
         if not self._is_open:
-            self._logger.warning(phrase("Can't accept new commands. subscriber is inactive"))
+            self._logger.warning(phrase("a velocity command is ignored because the controller is not active"))
             return
-        self._come = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)), stamp
+        self._new_command = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)), stamp
 
-    def _receive(self, velocity: Velocity, stamp: int, now: int) -> None:
-        since = stamp if 0 < stamp <= now else now
+    def _receive(self, velocity: Velocity, stamp: int, now_ns: int) -> None:
+        start_ns = stamp if 0 < stamp <= now_ns else now_ns
         if not all(map(isfinite, velocity)):
             self._command = None
-            self._logger.warning(phrase("a command that is not a finite number is rejected: the drive stops"))
-        elif now - since <= self._timeout or self._timeout == 0:
-            self._command = velocity, (now if self._timeout == 0 else since)
+            self._logger.warning(
+                phrase("a velocity command that is not a finite number is rejected, and the drive stops")
+            )
+        elif now_ns - start_ns <= self._timeout_ns or self._timeout_ns == 0:
+            self._command = velocity, (now_ns if self._timeout_ns == 0 else start_ns)
         else:
             self._logger.warning(
                 phrase(
                     "Ignoring the received message (timestamp {stamp:.3f}) because it is older than the current time "
                     "by {age:.3f} seconds, which exceeds the allowed timeout ({timeout:.3f})",
                     stamp=stamp / NANOSECONDS_PER_SECOND,
-                    age=(now - since) / NANOSECONDS_PER_SECOND,
-                    timeout=self._timeout / NANOSECONDS_PER_SECOND,
+                    age=(now_ns - start_ns) / NANOSECONDS_PER_SECOND,
+                    timeout=self._timeout_ns / NANOSECONDS_PER_SECOND,
                 )
             )

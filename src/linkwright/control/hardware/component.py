@@ -20,7 +20,7 @@ GROUP = "linkwright.hardware"
 
 
 class HardwareError(LinkwrightError):
-    """Raised when hardware refuses a request or fails; the message is logged.
+    """Raised when hardware fails or does not accept a request; the message is logged.
 
     Args:
         message: what is wrong.
@@ -40,7 +40,7 @@ class Hardware:
     Attributes:
         description: the component's description in the URDF.
         logger: the logger of its events.
-        states, commands: the component's interfaces; a state starts with its initial value, or NaN.
+        states, commands: the interfaces of the hardware; a state starts with its initial value, or NaN.
         state: the lifecycle state.
         timings: the timers of reading and writing; None while no statistics are requested.
     """
@@ -58,7 +58,7 @@ class Hardware:
 
     def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
         value = interface.initial_value
-        if value != value:  # NaN: use the older form of initial_value.
+        if value != value:  # NaN means that initial_value is missing, so the older parameter ``initial_NAME`` is used.
             text = component.parameters.get(f"initial_{interface.name}", "")
             value = float(text) if text.replace(".", "", 1).lstrip("-").isdigit() else nan
         return StateInterface(component.name, interface.name, value)
@@ -94,7 +94,7 @@ class Hardware:
             stop: names of the command interfaces that controllers will release.
 
         Raises:
-            HardwareError: the switch is not possible; nothing is switched.
+            HardwareError: the switch is not possible, so no interface is switched.
         """
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
@@ -104,11 +104,11 @@ class Hardware:
         """Update `states` from the hardware.
 
         Raises:
-            HardwareError: the hardware does not answer; its controllers are stopped.
+            HardwareError: the hardware does not respond; its controllers are stopped.
         """
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Send `commands` to the hardware; NaN represents no command.
+        """Send `commands` to the hardware; NaN means that a command is missing.
 
         Raises:
             HardwareError: the hardware does not accept the commands; its controllers are stopped.
@@ -125,9 +125,9 @@ def hardware_class(plugin: str) -> type[Hardware] | None:
     if entry is None:
         return None
     try:
-        found: type[Hardware] = entry.load()
+        loaded_class: type[Hardware] = entry.load()
     except Exception as error:
         message = phrase("the hardware '{name}' cannot be imported", name=plugin)
-        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase("it is part of '{place}': {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("CTL121", message, hint=hint)) from error
-    return found
+    return loaded_class

@@ -1,8 +1,8 @@
 """The data of a description's ``<ros2_control>`` elements.
 
-Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another through the joint's
-``<mimic>`` (Jazzy), or through its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"``
-prevents that.
+Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another joint if the URDF
+joint has ``<mimic>`` (Jazzy), or if the component has the parameters ``mimic``, ``multiplier`` and ``offset`` (Humble);
+``mimic="false"`` disables this.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class InterfaceDescription:
 
     Attributes:
         name: the kind of interface, such as ``position``.
-        minimum, maximum: the bounds of commands; NaN if not given.
-        initial_value: the initial value of a state; NaN if not given.
-        limited: whether commands are limited if the manager enforces limits.
+        minimum, maximum: the bounds of commands; NaN if they are not set.
+        initial_value: the initial value of a state; NaN if it is not set.
+        is_limited: whether commands are limited if the manager enforces limits.
         parameters: all parameters as written.
     """
 
@@ -36,7 +36,7 @@ class InterfaceDescription:
     minimum: float = nan
     maximum: float = nan
     initial_value: float = nan
-    limited: bool = True
+    is_limited: bool = True
     parameters: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -58,7 +58,7 @@ class ComponentDescription:
         kind: ``joint``, ``sensor`` or ``gpio``.
         commands, states: the component's interfaces.
         parameters: the parameters as written.
-        mimic: the relation to the joint that the component mimics; None if it mimics none.
+        mimic: the relation to the joint that the component mimics; None if it mimics no joint.
     """
 
     name: str
@@ -101,23 +101,23 @@ class HardwareDescription:
         return self.parameters.get(name, "").strip() in _TRUE
 
 
-def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
+def hardware_from_robot(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
     """Return the hardware of a robot, and findings about its ``<ros2_control>`` elements.
 
-    Invalid elements are left out: hardware without a name or with an unknown type, a joint that the robot does not
-    have, a value that is not a number.
+    Invalid elements are left out: hardware without a name or with an invalid type, joints that the robot does not have,
+    and values that are not numbers.
     """
     reader = _Reader(robot)
-    found = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]
-    named: dict[str, HardwareDescription] = {}
-    for hardware in found:
+    hardware_list = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]
+    hardware_by_name: dict[str, HardwareDescription] = {}
+    for hardware in hardware_list:
         if hardware is not None:
-            named.setdefault(hardware.name, hardware)
+            hardware_by_name.setdefault(hardware.name, hardware)
     if not any(extension.tag == "ros2_control" for extension in robot.extensions):
         message = phrase("the description has no <ros2_control>")
         hint = phrase("add <ros2_control> with the hardware, its joints and their interfaces")
         reader.findings.append(Diagnostic("CTL110", message, severity=Severity.WARNING, hint=hint))
-    return list(named.values()), reader.findings
+    return list(hardware_by_name.values()), reader.findings
 
 
 class _Reader:
@@ -141,13 +141,18 @@ class _Reader:
             return None
         joints = [self._component(child, "joint") for child in element.elements("joint")]
         names = [joint.name for joint in joints]
-        for each, written in zip(joints, element.elements("joint"), strict=True):
-            if each.name not in self._robot.joints:
-                message = phrase("<ros2_control> has joint '{name}', which the robot does not have", name=each.name)
-                self._report("CTL113", message, written, did_you_mean(each.name, self._robot.joints))
-            elif each.mimic is not None and each.mimic.joint not in names:
-                message = phrase("Mimicked joint '{name}' not found", name=each.mimic.joint)
-                self._report("CTL114", message, written, did_you_mean(each.mimic.joint, names))
+        for joint_component, joint_element in zip(joints, element.elements("joint"), strict=True):
+            if joint_component.name not in self._robot.joints:
+                message = phrase(
+                    ("<ros2_control> names the joint '{name}', which the robot does not have"),
+                    name=joint_component.name,
+                )
+                self._report("CTL113", message, joint_element, did_you_mean(joint_component.name, self._robot.joints))
+            elif joint_component.mimic is not None and joint_component.mimic.joint not in names:
+                message = phrase(
+                    ("the mimicked joint '{name}' is not in this <ros2_control>"), name=joint_component.mimic.joint
+                )
+                self._report("CTL114", message, joint_element, did_you_mean(joint_component.mimic.joint, names))
         return HardwareDescription(
             name,
             kind,
@@ -184,17 +189,17 @@ class _Reader:
         return MimicDescription(joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset)
 
     def _interfaces(self, element: Element, tag: str) -> tuple[InterfaceDescription, ...]:
-        found = {}
+        interfaces = {}
         for child in element.elements(tag):
             parameters = _parameters(child)
-            low, high, initial = (
+            minimum, maximum, initial = (
                 self._number(parameters[name], child) if parameters.get(name, "").strip() else nan
                 for name in ("min", "max", "initial_value")
             )
             name = child.attributes.get("name", "")
-            limited = _is_limited(element) and _is_limited(child)
-            found[name] = InterfaceDescription(name, low, high, initial, limited, parameters)
-        return tuple(found.values())
+            is_limited = _is_limited(element) and _is_limited(child)
+            interfaces[name] = InterfaceDescription(name, minimum, maximum, initial, is_limited, parameters)
+        return tuple(interfaces.values())
 
     def _number(self, text: str, element: Element) -> float:
         try:

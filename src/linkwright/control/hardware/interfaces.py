@@ -1,4 +1,4 @@
-"""Interfaces of ros2_control, which are named numbers that hardware and controllers exchange.
+"""The interfaces of ros2_control: named numbers that hardware and controllers exchange.
 
 Source: hardware_interface of ros2_control (names, units of REP 103, NaN for unknown values).
 """
@@ -21,8 +21,9 @@ class Interface:
         value: the initial number; NaN while it is unknown.
 
     Attributes:
-        component, kind: the component and the kind of value.
-        name: component and kind, such as ``joint1/position``.
+        component: the joint, sensor, GPIO or controller.
+        kind: the kind of value.
+        name: the component and the kind, such as ``joint1/position``.
         value: the current number.
     """
 
@@ -54,7 +55,7 @@ class CommandInterface(Interface):
 
 
 class Interfaces(Enum):
-    """Constants for a controller that uses all interfaces, or none."""
+    """A constant for a controller that uses all interfaces."""
 
     ALL = "all"
-    """Every interface that there is."""
+    """All interfaces."""

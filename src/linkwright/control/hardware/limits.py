@@ -1,9 +1,9 @@
 """Limits of joints, which are applied to commands.
 
-Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits apply where).
-The limits are those of the joint's ``<limit>`` and ``<safety_controller>``, narrowed by ``min`` and ``max`` of its
-command interfaces; ``<limits enable="false"/>`` disables them. A velocity or effort limit of 0 means no limit. One
-thing differs: starting from the last command, a position command never moves faster than the velocity limit.
+Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager, and the limits for each
+kind of command). The limits come from the joint's ``<limit>`` and ``<safety_controller>``, narrowed by ``min`` and
+``max`` of its command interfaces; ``<limits enable="false"/>`` disables them. A velocity or effort limit of 0 means no
+limit. A deliberate difference: a position command never moves faster from the last command than the velocity limit.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ class JointLimits:
     """The limits of a joint in rad and N m, or m and N, and seconds; infinite if there are none.
 
     Attributes:
-        position: the minimum and the maximum.
-        velocity, effort: the maximum in either direction.
-        acceleration, deceleration: the maxima for velocity and acceleration commands.
-        safety: soft limits, within the other limits; None if there are none.
+        position: the minimum and the maximum position.
+        velocity, effort: the maximum velocity and effort in both directions.
+        acceleration, deceleration: the maximum acceleration and deceleration, for velocity and acceleration commands.
+        safety: the soft limits, within the other limits; None if there are none.
         kinds: the kinds of interfaces whose commands are limited.
     """
 
@@ -50,9 +50,9 @@ class JointLimits:
     kinds: frozenset[str] = frozenset()
 
 
-def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
+def limits_of(joint: Joint, component: ComponentDescription) -> JointLimits:
     """Return the limits of a joint, from its URDF element and its description as hardware."""
-    limit, interfaces = joint.limit, {command.name: command for command in described.commands}
+    limit, interfaces = joint.limit, {command.name: command for command in component.commands}
     position, velocity, effort, acceleration, deceleration = _UNLIMITED, inf, inf, inf, inf
     if limit is not None:
         if joint.type in ("revolute", "prismatic"):
@@ -61,15 +61,15 @@ def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
         acceleration = abs(limit.acceleration or inf)
         deceleration = abs(limit.deceleration or acceleration)
     lower, upper = _range(interfaces.get(POSITION))
-    acceleration = min(acceleration, _greatest(interfaces.get(ACCELERATION)))
+    acceleration = min(acceleration, _max_magnitude(interfaces.get(ACCELERATION)))
     return JointLimits(
         (max(position[0], lower), min(position[1], upper)),
-        min(velocity, _greatest(interfaces.get(VELOCITY))),
-        min(effort, _greatest(interfaces.get(EFFORT))),
+        min(velocity, _max_magnitude(interfaces.get(VELOCITY))),
+        min(effort, _max_magnitude(interfaces.get(EFFORT))),
         acceleration,
         deceleration if isfinite(deceleration) else acceleration,
         joint.safety,
-        frozenset(command.name for command in described.commands if command.limited),
+        frozenset(command.name for command in component.commands if command.is_limited),
     )
 
 
@@ -92,17 +92,19 @@ class JointLimiter:
     ) -> None:
         self.name = name
         self._limits = limits
-        self._limiting = {
+        self._limit_functions = {
             POSITION: self._position,
             VELOCITY: self._velocity,
             EFFORT: self._effort,
-            ACCELERATION: self._acceleration,
+            ACCELERATION: self._limit_acceleration,
         }
         self._commands = {
-            kind: each for kind, each in commands.items() if kind in self._limiting and kind in limits.kinds
+            kind: command
+            for kind, command in commands.items()
+            if kind in self._limit_functions and kind in limits.kinds
         }
         self._states = states
-        self._before: dict[str, float] = {}
+        self._last_commands: dict[str, float] = {}
 
     def enforce(self, period_s: float, claimed: Collection[str]) -> list[tuple[str, float, float]]:
         """Limit commands in place.
@@ -112,56 +114,58 @@ class JointLimiter:
             claimed: names of the interfaces that controllers have claimed; other interfaces are ignored.
 
         Returns:
-            For each command outside its limits: the kind, the commanded value, and the limited value.
+            For each command outside its limits: the kind, the commanded value and the limited value.
         """
         exceeded = []
         for kind, command in self._commands.items():
-            wanted = command.value
+            requested = command.value
             if command.name not in claimed:
-                self._before.pop(kind, None)
-            elif not isnan(wanted):
-                given = self._before[kind] = self._limiting[kind](wanted, period_s)
-                if given != wanted:
-                    command.value = given
-                    exceeded.append((kind, wanted, given))
+                self._last_commands.pop(kind, None)
+            elif not isnan(requested):
+                limited = self._last_commands[kind] = self._limit_functions[kind](requested, period_s)
+                if limited != requested:
+                    command.value = limited
+                    exceeded.append((kind, requested, limited))
         return exceeded
 
     def _state(self, kind: str) -> float | None:
         state = self._states.get(kind)
         return None if state is None or not isfinite(state.value) else state.value
 
-    def _speeds(self, position: float | None) -> tuple[float, float]:
+    def _velocity_range(self, position: float | None) -> tuple[float, float]:
         """Return the velocity limits in both directions, which decrease towards soft limits."""
-        greatest, safety = self._limits.velocity, self._limits.safety
+        max_velocity, safety = self._limits.velocity, self._limits.safety
         if safety is None or position is None or not safety.k_position:
-            return -greatest, greatest
+            return -max_velocity, max_velocity
         low = safety.k_position * (safety.soft_lower_limit - position)
         high = safety.k_position * (safety.soft_upper_limit - position)
-        return _within(low, -greatest, greatest), _within(high, -greatest, greatest)
+        return _clamp(low, -max_velocity, max_velocity), _clamp(high, -max_velocity, max_velocity)
 
-    def _position(self, wanted: float, period_s: float) -> float:
-        before = self._before.get(POSITION, self._state(POSITION))
-        wanted = _within(wanted, *self._limits.position)
-        if before is None:
-            return wanted
-        low, high = self._speeds(before)
-        return _within(wanted, before + low * period_s, before + high * period_s)
+    def _position(self, requested: float, period_s: float) -> float:
+        last_position = self._last_commands.get(POSITION, self._state(POSITION))
+        requested = _clamp(requested, *self._limits.position)
+        if last_position is None:
+            return requested
+        low, high = self._velocity_range(last_position)
+        return _clamp(requested, last_position + low * period_s, last_position + high * period_s)
 
-    def _velocity(self, wanted: float, period_s: float) -> float:
+    def _velocity(self, requested: float, period_s: float) -> float:
         limits, position = self._limits, self._state(POSITION)
-        low, high = self._speeds(position)
-        wanted = _within(wanted, low, high)
-        before = self._before.get(VELOCITY, self._state(VELOCITY))
-        if before is not None:
-            up = limits.acceleration if before >= 0.0 else limits.deceleration
-            down = limits.deceleration if before > 0.0 else limits.acceleration
-            wanted = _within(wanted, before - down * period_s, before + up * period_s)
+        low, high = self._velocity_range(position)
+        requested = _clamp(requested, low, high)
+        last_velocity = self._last_commands.get(VELOCITY, self._state(VELOCITY))
+        if last_velocity is not None:
+            max_increase = limits.acceleration if last_velocity >= 0.0 else limits.deceleration
+            max_decrease = limits.deceleration if last_velocity > 0.0 else limits.acceleration
+            requested = _clamp(
+                requested, last_velocity - max_decrease * period_s, last_velocity + max_increase * period_s
+            )
         if position is None or period_s <= 0.0:
-            return wanted
+            return requested
         lower, upper = limits.position
-        return _within(wanted, min(0.0, (lower - position) / period_s), max(0.0, (upper - position) / period_s))
+        return _clamp(requested, min(0.0, (lower - position) / period_s), max(0.0, (upper - position) / period_s))
 
-    def _effort(self, wanted: float, period_s: float) -> float:
+    def _effort(self, requested: float, period_s: float) -> float:
         limits, safety = self._limits, self._limits.safety
         low, high = -limits.effort, limits.effort
         position, velocity = self._state(POSITION), self._state(VELOCITY)
@@ -169,20 +173,20 @@ class JointLimiter:
             low = 0.0 if position <= limits.position[0] else low
             high = 0.0 if position >= limits.position[1] else high
         if velocity is not None:
-            slowest, fastest = self._speeds(position)
+            min_velocity, max_velocity = self._velocity_range(position)
             if safety is not None and safety.k_velocity:
-                low = _within(safety.k_velocity * (slowest - velocity), low, high)
-                high = _within(safety.k_velocity * (fastest - velocity), low, high)
+                low = _clamp(safety.k_velocity * (min_velocity - velocity), low, high)
+                high = _clamp(safety.k_velocity * (max_velocity - velocity), low, high)
             else:
-                low = 0.0 if velocity < slowest else low
-                high = 0.0 if velocity > fastest else high
-        return _within(wanted, low, high)
+                low = 0.0 if velocity < min_velocity else low
+                high = 0.0 if velocity > max_velocity else high
+        return _clamp(requested, low, high)
 
-    def _acceleration(self, wanted: float, period_s: float) -> float:
+    def _limit_acceleration(self, requested: float, period_s: float) -> float:
         velocity = self._state(VELOCITY) or 0.0
-        slows = wanted * velocity < 0.0
-        greatest = self._limits.deceleration if slows else self._limits.acceleration
-        return _within(wanted, -greatest, greatest)
+        is_braking = requested * velocity < 0.0
+        max_acceleration = self._limits.deceleration if is_braking else self._limits.acceleration
+        return _clamp(requested, -max_acceleration, max_acceleration)
 
 
 class CommandLimits:
@@ -203,7 +207,7 @@ class CommandLimits:
     def enforce(self, period_s: float, claimed: Collection[str]) -> None:
         """Limit commands in place; see `JointLimiter.enforce`."""
         for limiter in self._limiters:
-            for kind, wanted, given in limiter.enforce(period_s, claimed):
+            for kind, requested, limited in limiter.enforce(period_s, claimed):
                 if (limiter.name, kind) not in self._reported:
                     self._reported.add((limiter.name, kind))
                     self._logger.warning(
@@ -212,14 +216,14 @@ class CommandLimits:
                             "is sent instead (reported once)",
                             joint=limiter.name,
                             kind=kind,
-                            wanted=wanted,
-                            given=given,
+                            wanted=requested,
+                            given=limited,
                         )
                     )
 
 
 def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
-    """Return the minimum and maximum of an interface in the description, infinite if not given."""
+    """Return the minimum and maximum of an interface in the description; infinite if they are not set."""
     if interface is None:
         return _UNLIMITED
     return (
@@ -228,11 +232,11 @@ def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
     )
 
 
-def _greatest(interface: InterfaceDescription | None) -> float:
+def _max_magnitude(interface: InterfaceDescription | None) -> float:
     """Return the largest magnitude that an interface permits in both directions."""
     lower, upper = _range(interface)
     return min(abs(lower), abs(upper))
 
 
-def _within(value: float, low: float, high: float) -> float:
-    return min(max(value, low), high)
+def _clamp(value: float, minimum: float, maximum: float) -> float:
+    return min(max(value, minimum), maximum)

@@ -27,15 +27,12 @@ _MODES = (POSITION, VELOCITY, ACCELERATION)
 
 
 class _Joint:
-    """A simulated joint with all kinds of states.
+    """A simulated joint with all kinds of states, of which only those in the description have an interface."""
 
-    The interfaces show only the states in the description.
-    """
-
-    def __init__(self, described: ComponentDescription, states: dict[str, StateInterface]) -> None:
-        self.described = described
+    def __init__(self, description: ComponentDescription, states: dict[str, StateInterface]) -> None:
+        self.described = description
         self.mode = POSITION
-        self.shown = [states[state.name] for state in described.states if state.name in _STANDARD]
+        self.shown = [states[state.name] for state in description.states if state.name in _STANDARD]
         self.values = dict.fromkeys(_STANDARD, 0.0)
         for interface in self.shown:
             if isnan(interface.value):
@@ -49,77 +46,77 @@ class GenericSystem(Hardware):
 
     def __init__(self, description: HardwareDescription, logger: Logger) -> None:
         super().__init__(description, logger)
-        given = description.is_set
-        self._disabled = given("disable_commands")
-        self._dynamic = given("calculate_dynamics")
+        is_set = description.is_set
+        self._is_disabled = is_set("disable_commands")
+        self._has_dynamics = is_set("calculate_dynamics")
         self._offset = float(description.parameters.get("position_state_following_offset") or 0.0)
         self._offset_interface = description.parameters.get("custom_interface_with_following_offset", "")
         states = {state.name: state for state in self.states}
-        self._add_mock_commands("sensor", wanted=given("mock_sensor_commands") or given("fake_sensor_commands"))
-        self._add_mock_commands("gpio", wanted=given("mock_gpio_commands") or given("fake_gpio_commands"))
+        self._add_mock_commands("sensor", enabled=is_set("mock_sensor_commands") or is_set("fake_sensor_commands"))
+        self._add_mock_commands("gpio", enabled=is_set("mock_gpio_commands") or is_set("fake_gpio_commands"))
         self._joints = {
             joint.name: _Joint(joint, {state.kind: state for state in self.states if state.component == joint.name})
             for joint in description.joints
         }
-        self._mirrored: list[tuple[CommandInterface, StateInterface]] = []
+        self._mirrored_pairs: list[tuple[CommandInterface, StateInterface]] = []
         for command in self.commands:
             joint = self._joints.get(command.component)
             if joint is not None and command.kind in _STANDARD:
                 joint.commands[command.kind] = command
             elif command.name in states:
-                self._mirrored.append((command, states[command.name]))
-        self._followers = [
+                self._mirrored_pairs.append((command, states[command.name]))
+        self._mimic_joints = [
             (joint, self._joints[joint.described.mimic.joint], joint.described.mimic)
             for joint in self._joints.values()
             if joint.described.mimic is not None and joint.described.mimic.joint in self._joints
         ]
-        self._following = [
+        self._offset_states = [
             (self._joints[state.component], state)
             for state in self.states
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
-        # At 1 kHz each lookup counts, so states are copied directly unless dynamics or a mimic joint requires them.
-        tied = {other for joint, followed, _ in self._followers for other in (joint, followed)}
-        joints = [joint for joint in self._joints.values() if self._dynamic or joint in tied]
-        free = [joint for joint in self._joints.values() if not self._dynamic and joint not in tied]
-        self._shown = [(state, joint.values, state.kind) for joint in joints for state in joint.shown]
-        self._repeated = [
-            (command, joint.values, kind, self._offset_of(kind))
+        # Lookups are slow at 1 kHz, so states are copied directly unless dynamics or a mimic joint needs their values.
+        coupled = {other for joint, mimicked, _ in self._mimic_joints for other in (joint, mimicked)}
+        joints = [joint for joint in self._joints.values() if self._has_dynamics or joint in coupled]
+        uncoupled = [joint for joint in self._joints.values() if not self._has_dynamics and joint not in coupled]
+        self._shown_states = [(state, joint.values, state.kind) for joint in joints for state in joint.shown]
+        self._repeated_commands = [
+            (command, joint.values, kind, self._state_offset(kind))
             for joint in joints
             for kind, command in joint.commands.items()
         ]
-        self._copied = [
-            (joint.commands[state.kind], state, self._offset_of(state.kind))
-            for joint in free
+        self._copied_commands = [
+            (joint.commands[state.kind], state, self._state_offset(state.kind))
+            for joint in uncoupled
             for state in joint.shown
             if state.kind in joint.commands
         ]
-        self._read: Callable[[float], None] = self._integrate if self._dynamic else self._repeat
+        self._read: Callable[[float], None] = self._integrate if self._has_dynamics else self._repeat
 
-    def _add_mock_commands(self, kind: str, *, wanted: bool) -> None:
+    def _add_mock_commands(self, kind: str, *, enabled: bool) -> None:
         names = {command.name for command in self.commands}
         for component in self.description.components:
-            if wanted and component.kind == kind:
+            if enabled and component.kind == kind:
                 for state in component.states:
                     command = CommandInterface(component.name, state.name)
                     if command.name not in names:
                         self.commands.append(command)
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Check that each joint gets exactly one mode, if dynamics are calculated.
+        """If dynamics are calculated, check that each joint with started interfaces gets exactly one mode.
 
         The mode is position, velocity or acceleration.
 
         Raises:
-            HardwareError: a joint gets no mode or several modes.
+            HardwareError: such a joint gets no mode or several modes.
         """
-        if not self._dynamic:
+        if not self._has_dynamics:
             return
         for name in self._joints:
-            begin = f"{name}/"
-            asked = [name.removeprefix(begin) for name in start if name.startswith(begin)]
-            modes = [item for item in asked if item in _MODES]
-            if asked and not modes:
+            prefix = f"{name}/"
+            kinds = [name.removeprefix(prefix) for name in start if name.startswith(prefix)]
+            modes = [item for item in kinds if item in _MODES]
+            if kinds and not modes:
                 raise HardwareError(
                     f"Joint '{name}' has to have '{POSITION}', '{VELOCITY}', or '{ACCELERATION}' interface!"
                 )
@@ -129,44 +126,44 @@ class GenericSystem(Hardware):
                 )
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Set the modes of joints to the started command interfaces, if dynamics are calculated."""
+        """If dynamics are calculated, set the modes of joints to their started command interfaces."""
         for name, joint in self._joints.items():
             for mode in _MODES:
-                if self._dynamic and f"{name}/{mode}" in start:
+                if self._has_dynamics and f"{name}/{mode}" in start:
                     joint.mode = mode
 
     def read(self, time_ns: int, period_s: float) -> None:
         """Compute the states from the commands."""
-        if self._disabled:
+        if self._is_disabled:
             return
-        for command, state, offset in self._copied:
+        for command, state, offset in self._copied_commands:
             value = command.value
             if value == value:
                 state.value = value + offset
         self._read(period_s)
-        for joint, followed, mimic in self._followers:
-            joint.values[POSITION] = mimic.multiplier * followed.values[POSITION] + mimic.offset
+        for joint, mimicked, mimic in self._mimic_joints:
+            joint.values[POSITION] = mimic.multiplier * mimicked.values[POSITION] + mimic.offset
             for kind in (VELOCITY, ACCELERATION, EFFORT):
-                joint.values[kind] = mimic.multiplier * followed.values[kind]
-        for state, values, kind in self._shown:
+                joint.values[kind] = mimic.multiplier * mimicked.values[kind]
+        for state, values, kind in self._shown_states:
             state.value = values[kind]
-        for command, state in self._mirrored:
+        for command, state in self._mirrored_pairs:
             if command.value == command.value:
                 state.value = command.value
-        for joint, state in self._following:
-            wanted = _given(joint.commands.get(POSITION))
-            if wanted is not None:
-                state.value = wanted + self._offset
+        for joint, state in self._offset_states:
+            position = _command_value(joint.commands.get(POSITION))
+            if position is not None:
+                state.value = position + self._offset
 
     @property
-    def _own_offset(self) -> float:
+    def _position_offset(self) -> float:
         return 0.0 if self._offset_interface else self._offset
 
-    def _offset_of(self, kind: str) -> float:
-        return self._own_offset if kind == POSITION else 0.0
+    def _state_offset(self, kind: str) -> float:
+        return self._position_offset if kind == POSITION else 0.0
 
     def _repeat(self, _: float) -> None:
-        for command, values, kind, offset in self._repeated:
+        for command, values, kind, offset in self._repeated_commands:
             value = command.value
             if value == value:
                 values[kind] = value + offset
@@ -174,31 +171,31 @@ class GenericSystem(Hardware):
     def _integrate(self, period_s: float) -> None:
         for joint in self._joints.values():
             self._move(joint, period_s)
-            effort = _given(joint.commands.get(EFFORT))
+            effort = _command_value(joint.commands.get(EFFORT))
             if effort is not None:
                 joint.values[EFFORT] = effort
 
     def _move(self, joint: _Joint, period_s: float) -> None:
         """Integrate a joint over one period from its previous values, as ros2_control does."""
         values = joint.values
-        wanted = _given(joint.commands.get(joint.mode))
+        target = _command_value(joint.commands.get(joint.mode))
         velocity = values[VELOCITY]
         if joint.mode == POSITION:
-            if wanted is not None:
-                before, values[POSITION] = values[POSITION], wanted + self._own_offset
-                values[VELOCITY] = (values[POSITION] - before) / period_s if period_s else 0.0
+            if target is not None:
+                last_position, values[POSITION] = values[POSITION], target + self._position_offset
+                values[VELOCITY] = (values[POSITION] - last_position) / period_s if period_s else 0.0
                 values[ACCELERATION] = (values[VELOCITY] - velocity) / period_s if period_s else 0.0
             return
-        values[POSITION] += velocity * period_s + self._own_offset
+        values[POSITION] += velocity * period_s + self._position_offset
         if joint.mode == ACCELERATION:
             values[VELOCITY] += values[ACCELERATION] * period_s
-            if wanted is not None:
-                values[ACCELERATION] = wanted
-        elif wanted is not None:
-            values[VELOCITY] = wanted
-            values[ACCELERATION] = (wanted - velocity) / period_s if period_s else 0.0
+            if target is not None:
+                values[ACCELERATION] = target
+        elif target is not None:
+            values[VELOCITY] = target
+            values[ACCELERATION] = (target - velocity) / period_s if period_s else 0.0
 
 
-def _given(command: Interface | None) -> float | None:
+def _command_value(command: Interface | None) -> float | None:
     """Return the value of a command, or None if there is no interface or no command."""
     return None if command is None or isnan(command.value) else command.value

@@ -1,4 +1,4 @@
-"""The hardware of a robot, with its interfaces, claims of controllers, and lifecycle.
+"""The hardware of a robot: its interfaces, the claims of controllers, and its lifecycle.
 
 Source: the resource manager of ros2_control (rules and messages).
 """
@@ -16,20 +16,20 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.graph.log.logger import Logger
 
-Maker = Callable[[HardwareDescription, Logger], "Hardware | None"]
-"""Makes the hardware of a description; None where it does not know that type."""
+HardwareFactory = Callable[[HardwareDescription, Logger], "Hardware | None"]
+"""Creates the hardware of a description; returns None if the type is not supported."""
 
 N = TypeVar("N", bound=Interface)
 
-_ORDER = (UNCONFIGURED, INACTIVE, ACTIVE)
-_UP = ("configure", "activate")
-_DOWN = ("cleanup", "deactivate")
+_STATE_ORDER = (UNCONFIGURED, INACTIVE, ACTIVE)
+_UP_TRANSITIONS = ("configure", "activate")
+_DOWN_TRANSITIONS = ("cleanup", "deactivate")
 
 
 def hardware_by_entry_points(description: HardwareDescription, logger: Logger) -> Hardware | None:
     """Create the hardware of a description, or return None if its type is not installed."""
-    found = hardware_class(description.plugin)
-    return None if found is None else found(description, logger)
+    hardware_type = hardware_class(description.plugin)
+    return None if hardware_type is None else hardware_type(description, logger)
 
 
 class Resources:
@@ -56,8 +56,8 @@ class Resources:
 
     # --- loading ------------------------------------------------------------------------------------------------------
 
-    def load(self, descriptions: Sequence[HardwareDescription], make: Maker) -> None:
-        """Create hardware from descriptions; unknown types are replaced by a mock, with a warning."""
+    def load(self, descriptions: Sequence[HardwareDescription], make: HardwareFactory) -> None:
+        """Create hardware from descriptions; a mock replaces types that are not supported, with a warning."""
         for description in descriptions:
             self._logger.info(f"Loading hardware '{description.name}' ")
             try:
@@ -68,7 +68,7 @@ class Resources:
             if hardware is None:
                 self._logger.warning(
                     phrase(
-                        "hardware '{name}': Linkwright does not support '{plugin}'; "
+                        "hardware '{name}': Linkwright does not support '{plugin}', so "
                         "mock_components/GenericSystem replaces it, and its states follow the commands",
                         name=description.name,
                         plugin=description.plugin,
@@ -78,8 +78,8 @@ class Resources:
             if description.is_async:
                 self._logger.info(
                     phrase(
-                        "hardware '{name}' requests is_async, which is not supported: it is read and written in the "
-                        "control loop",
+                        "hardware '{name}' requests is_async, which is not supported, so it is read and "
+                        "written in the control loop",
                         name=description.name,
                     )
                 )
@@ -102,35 +102,38 @@ class Resources:
     @property
     def command_names(self) -> list[str]:
         """The names of all command interfaces, including references of chainable controllers."""
-        return [*self._commands, *(interface.name for given in self._references.values() for interface in given)]
+        return [
+            *self._commands,
+            *(interface.name for references in self._references.values() for interface in references),
+        ]
 
     def is_available(self, name: str) -> bool:
         """Return whether an interface is available.
 
-        Hardware must be configured, and controllers must be active, for their interfaces to be available.
+        An interface is available if its hardware is configured or its controller is active.
         """
         owner = self._owners.get(name)
         return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
 
     def states(self, names: Sequence[str] | Interfaces) -> list[StateInterface]:
-        """Return state interfaces by name, or all available ones.
+        """Return state interfaces by name, or all available state interfaces.
 
         Raises:
             KeyError: a named interface does not exist, or is not available.
         """
         if names is Interfaces.ALL:
-            return [all_state for all_state in self._all_states() if self.is_available(all_state.name)]
-        return [self._one(name, self._all_states(), "State") for name in names]
+            return [state for state in self._all_states() if self.is_available(state.name)]
+        return [self._find_interface(name, self._all_states(), "State") for name in names]
 
     def commands(self, names: Sequence[str] | Interfaces) -> list[CommandInterface]:
-        """Return command interfaces by name, or all available ones.
+        """Return command interfaces by name, or all available command interfaces.
 
         Raises:
             KeyError: a named interface does not exist, or is not available.
         """
         if names is Interfaces.ALL:
-            return [all_command for all_command in self._all_commands() if self.is_available(all_command.name)]
-        return [self._one(name, self._all_commands(), "Command") for name in names]
+            return [command for command in self._all_commands() if self.is_available(command.name)]
+        return [self._find_interface(name, self._all_commands(), "Command") for name in names]
 
     def _all_states(self) -> Iterator[StateInterface]:
         yield from self._states.values()
@@ -139,16 +142,16 @@ class Resources:
 
     def _all_commands(self) -> Iterator[CommandInterface]:
         yield from self._commands.values()
-        for given in self._references.values():
-            yield from given
+        for references in self._references.values():
+            yield from references
 
-    def _one(self, name: str, known: Iterator[N], kind: str) -> N:
-        found = next((each for each in known if each.name == name), None)
-        if found is None:
+    def _find_interface(self, name: str, interfaces: Iterator[N], kind: str) -> N:
+        match = next((interface for interface in interfaces if interface.name == name), None)
+        if match is None:
             raise KeyError(f"{kind} interface with key '{name}' does not exist")
         if not self.is_available(name):
             raise KeyError(f"{kind} interface with '{name}' does not exist")
-        return found
+        return match
 
     def offer(self, controller: str, references: list[CommandInterface], exported: list[StateInterface]) -> None:
         """Add the references and exported states of a chainable controller."""
@@ -160,7 +163,7 @@ class Resources:
         self._references.pop(controller, None)
         self._exported.pop(controller, None)
 
-    def references_of(self, controller: str) -> list[str]:
+    def reference_names(self, controller: str) -> list[str]:
         """Return the names of a controller's references."""
         return [reference.name for reference in self._references.get(controller, ())]
 
@@ -179,18 +182,22 @@ class Resources:
         if hardware.state == FINALIZED:
             return target == FINALIZED
         if target == FINALIZED:
-            reached = self.set_state(name, UNCONFIGURED)
+            is_reached = self.set_state(name, UNCONFIGURED)
             hardware.state = FINALIZED
-            return reached
+            return is_reached
         while hardware.state != target:
-            place = _ORDER.index(hardware.state)
-            up = _ORDER.index(target) > place
-            done = self._pass(hardware, _UP[place] if up else _DOWN[place - 1], _ORDER[place + (1 if up else -1)])
-            if not done:
+            index = _STATE_ORDER.index(hardware.state)
+            is_upward = _STATE_ORDER.index(target) > index
+            is_done = self._run_transition(
+                hardware,
+                _UP_TRANSITIONS[index] if is_upward else _DOWN_TRANSITIONS[index - 1],
+                _STATE_ORDER[index + (1 if is_upward else -1)],
+            )
+            if not is_done:
                 return False
         return True
 
-    def _pass(self, hardware: Hardware, transition: str, goal: LifecycleState) -> bool:
+    def _run_transition(self, hardware: Hardware, transition: str, goal: LifecycleState) -> bool:
         name = hardware.description.name
         self._logger.info(f"'{transition}' hardware '{name}' ")
         failure = _call_hardware(getattr(hardware, f"on_{transition}"))
@@ -209,10 +216,10 @@ class Resources:
         Returns an error message, or an empty string if the switch is possible.
         """
         for hardware in self.components.values():
-            refusal = _call_hardware(hardware.prepare_switch, start, stop)
-            if refusal:
+            failure = _call_hardware(hardware.prepare_switch, start, stop)
+            if failure:
                 name = hardware.description.name
-                return f"Component '{name}' did not accept command interfaces combination: {refusal}"
+                return f"Component '{name}' did not accept command interfaces combination: {failure}"
         return ""
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
@@ -225,8 +232,8 @@ class Resources:
     def read(self, time_ns: int, period_s: float) -> list[Hardware]:
         """Read the states of all hardware that is inactive or active.
 
-        Returns the components that failed. Their errors are logged, and they become unconfigured, or finalized if
-        handling the error fails, too.
+        Returns the components that failed. Their errors are logged, and they become unconfigured; if their `on_error`
+        also fails, they become finalized.
         """
         failed = []
         for hardware in self.components.values():

@@ -1,4 +1,4 @@
-"""The exchange for controllers that are updated on the event loop, so that nothing needs to be queued."""
+"""The exchange for controllers that are updated on the event loop, which needs no queues."""
 
 from __future__ import annotations
 

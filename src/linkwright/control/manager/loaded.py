@@ -19,10 +19,10 @@ class Loaded:
     Attributes:
         name, type: the controller's name and type name.
         controller: the controller.
-        fallbacks: the names of the controllers to activate if this one fails.
+        fallbacks: the names of the controllers that are activated if this controller fails.
         period_ns: the time between two updates; 0 to update in each cycle of the manager.
         next_ns: the time of the next update.
-        before: the last finite values of its commands.
+        last_commands: the last finite values of its commands.
         timing: the timer of its updates; None while no statistics are requested.
     """
 
@@ -32,7 +32,7 @@ class Loaded:
     fallbacks: tuple[str, ...] = ()
     period_ns: int = 0
     next_ns: int = 0
-    before: list[float] = field(default_factory=list)
+    last_commands: list[float] = field(default_factory=list)
     timing: Timing | None = None
 
     @property
@@ -55,24 +55,24 @@ class Loaded:
         """Whether other controllers can command this controller, or read its exported states."""
         return bool(self.controller.references or self.controller.exported)
 
-    def wanted_commands(self, known: list[str]) -> list[str]:
+    def claimed_commands(self, all_names: list[str]) -> list[str]:
         """Return the names of the command interfaces that the controller claims.
 
-        If the controller claims all interfaces, these are the `known` ones.
+        If the controller claims all interfaces, these are `all_names`.
         """
-        wanted = self.controller.command_interfaces()
-        return [*known] if isinstance(wanted, Interfaces) else [*wanted]
+        claims = self.controller.command_interfaces()
+        return [*all_names] if isinstance(claims, Interfaces) else [*claims]
 
-    def wanted_states(self, known: list[str]) -> list[str]:
+    def required_states(self, all_names: list[str]) -> list[str]:
         """Return the names of the state interfaces that the controller reads.
 
-        If the controller reads all interfaces, these are the `known` ones.
+        If the controller reads all interfaces, these are `all_names`.
         """
-        wanted = self.controller.state_interfaces()
-        return [*known] if isinstance(wanted, Interfaces) else [*wanted]
+        requirements = self.controller.state_interfaces()
+        return [*all_names] if isinstance(requirements, Interfaces) else [*requirements]
 
     def replace_invalid_commands(self) -> str:
-        """Replace positions that are not finite by the last finite ones, and other commands by 0.
+        """Replace position commands that are not finite by their last finite values, and other such commands by 0.
 
         Returns:
             The name of the first replaced interface, or an empty string.
@@ -82,21 +82,21 @@ class Loaded:
             return ""
         values = [command.value for command in commands]
         if isfinite(sum(values)) or all(map(isfinite, values)):  # A sum is fast, but may overflow.
-            self.before = values
+            self.last_commands = values
             return ""
-        wrong = ""
-        before = self.before
-        for place, command in enumerate(commands):
+        replaced_name = ""
+        before = self.last_commands
+        for index, command in enumerate(commands):
             value = command.value
             if isfinite(value):
-                before[place] = value
-            elif isfinite(before[place]):
-                wrong = wrong or command.name
-                command.value = before[place] if command.kind == POSITION else 0.0
-            elif value == value:  # Infinite, without a finite command before.
-                wrong = wrong or command.name
-                command.value = before[place]
-        return wrong
+                before[index] = value
+            elif isfinite(before[index]):
+                replaced_name = replaced_name or command.name
+                command.value = before[index] if command.kind == POSITION else 0.0
+            elif value == value:  # The value is infinite, and a finite command is missing.
+                replaced_name = replaced_name or command.name
+                command.value = before[index]
+        return replaced_name
 
     def halt(self) -> None:
         """Command 0 to the claimed interfaces that have a command, except positions."""

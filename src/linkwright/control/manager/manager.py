@@ -31,11 +31,11 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class SavedState:
-    """The state of a manager, from which another manager can continue.
+    """The state of a manager that another manager can resume.
 
     Attributes:
         parameters: the parameters of the manager's node, by name.
-        controllers: the names of the loaded controllers, with the labels of their states, in the order of updates.
+        controllers: the name and the state label of each loaded controller, in the order of updates.
     """
 
     parameters: dict[str, Any] = field(default_factory=dict)
@@ -58,7 +58,7 @@ class ControllerManager:
         update_rate: the update rate, in Hz.
         robot_description: the URDF of the robot.
         controllers: the loaded controllers by name, in the order in which they are updated.
-        limits: limits the commands to joints; None if limits are not enforced.
+        limits: the limiter of the commands to joints; None if limits are not enforced.
         on_change: called when the state of a controller or of hardware has changed.
     """
 
@@ -100,7 +100,7 @@ class ControllerManager:
             return False
         logger.info(f"Loading controller '{name}'")
         try:
-            made = controller_class(str(kind))
+            controller_type = controller_class(str(kind))
         except LinkwrightError as error:
             logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400 - `_log_error` says why
             self._log_error(error)
@@ -108,7 +108,7 @@ class ControllerManager:
             for kind in controller_types():
                 logger.info(f"  {kind}")
             return False
-        controller = self._made(made, name)
+        controller = self._made(controller_type, name)
         if controller is None:
             logger.error(f"Could not initialize the controller named '{name}'")
             return False
@@ -117,17 +117,17 @@ class ControllerManager:
         self.on_change()
         return True
 
-    def _made(self, made: type[Controller[Any]], name: str) -> Controller[Any] | None:
+    def _made(self, controller_type: type[Controller[Any]], name: str) -> Controller[Any] | None:
         node = None
         try:
             node = controller_node(self.node, name, self._process)
             rate = node.declare_parameter("update_rate", int(self.update_rate)).value
             if not is_before_iron() and node.declare_parameter("is_async", False).value:
                 node.get_logger().info(
-                    phrase("is_async is requested, but not supported: the controller is updated in the control loop")
+                    phrase("is_async is not supported, so the controller is updated in the control loop")
                 )
-            place = ControllerContext(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
-            return made.variant(node.undeclared_overrides())(place)
+            context = ControllerContext(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
+            return controller_type.variant(node.undeclared_overrides())(context)
         except LinkwrightError as error:
             self._log_error(error)
         except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
@@ -138,14 +138,14 @@ class ControllerManager:
 
     def unload(self, name: str) -> bool:
         """Unload a controller, unless it is active, and return whether that succeeded."""
-        loaded = self.controllers.get(name)
-        if loaded is None or loaded.is_active:
-            why = "it is still active" if loaded is not None else "no controller with this name exists"
-            self._logger.error(f"Could not unload controller with name '{name}' because {why}")
+        loaded_controller = self.controllers.get(name)
+        if loaded_controller is None or loaded_controller.is_active:
+            reason = "it is still active" if loaded_controller is not None else "no controller with this name exists"
+            self._logger.error(f"Could not unload controller with name '{name}' because {reason}")
             return False
-        if loaded.is_inactive:
-            self._clean(loaded)
-        loaded.controller.node.close()
+        if loaded_controller.is_inactive:
+            self._clean_up(loaded_controller)
+        loaded_controller.controller.node.close()
         del self.controllers[name]
         self.on_change()
         return True
@@ -172,23 +172,25 @@ class ControllerManager:
 
     def saved_state(self) -> SavedState:
         """Return the manager's parameters and the states of its controllers, for `resume`."""
-        parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
+        parameters = {
+            name: node_parameter.value for name, node_parameter in self.node.get_parameters_by_prefix("").items()
+        }
         states = tuple((controller.name, controller.controller.state.label) for controller in self.controllers.values())
         return SavedState(parameters, states)
 
-    def resume(self, saved: SavedState) -> None:
+    def resume(self, saved_state: SavedState) -> None:
         """Load another manager's controllers, and bring them to their states as far as possible."""
-        new = [
+        missing_parameters = [
             Parameter(name, value=value)
-            for name, value in saved.parameters.items()
+            for name, value in saved_state.parameters.items()
             if not self.node.has_parameter(name)
         ]
-        if new:
-            self.node.set_parameters(new)
-        for name, state in saved.controllers:
+        if missing_parameters:
+            self.node.set_parameters(missing_parameters)
+        for name, state in saved_state.controllers:
             if self.load(name) and state != UNCONFIGURED.label:
                 self.configure(name)
-        active = [name for name, state in saved.controllers if state == ACTIVE.label and name in self.controllers]
+        active = [name for name, state in saved_state.controllers if state == ACTIVE.label and name in self.controllers]
         if active:
             self.switch(active, (), BEST_EFFORT)
 
@@ -214,7 +216,7 @@ class ControllerManager:
         if controller.state in (ACTIVE, FINALIZED):
             self._logger.error(f"Controller '{name}' can not be configured from '{controller.state.label}' state.")
             return False
-        if loaded.is_inactive and not self._clean(loaded):
+        if loaded.is_inactive and not self._clean_up(loaded):
             return False
         if not self._call(loaded, "on_configure", controller.on_configure):
             label = controller.state.label
@@ -236,36 +238,43 @@ class ControllerManager:
         """Clean up an inactive controller, and return whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or not loaded.is_inactive:
-            why = "it is not inactive" if loaded is not None else "no controller with this name exists"
-            self._logger.error(f"Could not cleanup controller with name '{name}' because {why}")
+            reason = "it is not inactive" if loaded is not None else "no controller with this name exists"
+            self._logger.error(f"Could not cleanup controller with name '{name}' because {reason}")
             return False
-        done = self._clean(loaded)
+        is_clean = self._clean_up(loaded)
         self.on_change()
-        return done
+        return is_clean
 
     def _set_rate(self, loaded: Loaded) -> None:
-        rate, mine = loaded.controller.update_rate, self.update_rate
-        loaded.period_ns = 0 if rate >= mine or rate <= 0 else round(NANOSECONDS_PER_SECOND / rate)
-        if rate > mine:
+        controller_rate, manager_rate = loaded.controller.update_rate, self.update_rate
+        loaded.period_ns = (
+            0
+            if controller_rate >= manager_rate or controller_rate <= 0
+            else round(NANOSECONDS_PER_SECOND / controller_rate)
+        )
+        if controller_rate > manager_rate:
             self._logger.warning(
-                f"The controller : {loaded.name} update rate : {rate:g} Hz should be less than or equal to controller "
-                f"manager's update rate : {mine:g} Hz!. The controller will be updated at controller_manager's update "
+                f"The controller : {loaded.name} update rate : {controller_rate:g} Hz should be less than "
+                "or equal to controller "
+                f"manager's update rate : {manager_rate:g} Hz!. The controller will be updated at "
+                "controller_manager's update "
                 "rate."
             )
 
-    def _clean(self, loaded: Loaded) -> bool:
+    def _clean_up(self, loaded: Loaded) -> bool:
         self.resources.withdraw(loaded.name)
-        done = self._call(loaded, "on_cleanup", loaded.controller.on_cleanup)
+        is_clean = self._call(loaded, "on_cleanup", loaded.controller.on_cleanup)
         loaded.controller.node.clear()
         loaded.controller.references, loaded.controller.exported = [], []
-        loaded.controller.state = UNCONFIGURED if done else loaded.controller.state
-        return done
+        loaded.controller.state = UNCONFIGURED if is_clean else loaded.controller.state
+        return is_clean
 
     def _sort(self) -> None:
         """Sort the controllers by their dependencies, into the order of updates.
 
-        A controller precedes those whose references it commands, and follows those whose exported states it only reads.
-        A controller that does both precedes them, such as a drive above PID controllers that export wheel speeds.
+        A controller precedes the controllers whose references it commands, and follows the controllers whose exported
+        states it reads. If it does both, it precedes them, as a drive precedes the PID controllers that export wheel
+        speeds.
         """
         order: dict[str, Loaded] = {}
         names = self.resources.command_names
@@ -273,13 +282,15 @@ class ControllerManager:
         def add(loaded: Loaded, path: tuple[str, ...]) -> None:
             if loaded.name in order or loaded.name in path:
                 return
-            references = set(self.resources.references_of(loaded.name))
-            reads: set[str] = set()
+            references = set(self.resources.reference_names(loaded.name))
+            read_controllers: set[str] = set()
             if loaded.is_configured:
-                reads = _owners(loaded.wanted_states([])) - _owners(loaded.wanted_commands([]))
+                read_controllers = _component_names(loaded.required_states([])) - _component_names(
+                    loaded.claimed_commands([])
+                )
             for other in self.controllers.values():
-                if other.name in reads or (
-                    references and other.is_configured and references.intersection(other.wanted_commands(names))
+                if other.name in read_controllers or (
+                    references and other.is_configured and references.intersection(other.claimed_commands(names))
                 ):
                     add(other, (*path, loaded.name))
             order[loaded.name] = loaded
@@ -316,10 +327,10 @@ class ControllerManager:
             return True, "Empty activate and deactivate list, not requesting switch"
         start, stop = self._interfaces(switch.activate), self._interfaces(switch.deactivate)
         if start or stop:
-            objection = self.resources.prepare_switch(start, stop)
-            if objection:
+            problem = self.resources.prepare_switch(start, stop)
+            if problem:
                 message = "Could not switch controllers since prepare command mode switch was rejected."
-                self._logger.error(objection)
+                self._logger.error(problem)
                 self._logger.error(message)
                 return False, message
         failed = self._perform(switch, start, stop)
@@ -329,8 +340,8 @@ class ControllerManager:
         return True, "Successfully switched controllers!"
 
     def _interfaces(self, names: Sequence[str]) -> list[str]:
-        known = self.resources.command_names
-        return [wanted_command for name in names for wanted_command in self.controllers[name].wanted_commands(known)]
+        all_names = self.resources.command_names
+        return [command_name for name in names for command_name in self.controllers[name].claimed_commands(all_names)]
 
     def _perform(self, switch: Switch, start: list[str], stop: list[str]) -> list[str]:
         self.resources.perform_switch(start, stop)
@@ -340,30 +351,30 @@ class ControllerManager:
             self._set_chained(self.controllers[name], chained=False)
         for name in switch.to_chained:
             self._set_chained(self.controllers[name], chained=True)
-        followers = [controller for controller in reversed(self.controllers) if controller in switch.activate]
-        return [failure for name in followers if (failure := self._activate(self.controllers[name]))]
+        activation_order = [controller for controller in reversed(self.controllers) if controller in switch.activate]
+        return [failure for name in activation_order if (failure := self._activate(self.controllers[name]))]
 
     def _set_chained(self, loaded: Loaded, *, chained: bool) -> None:
         if self._call(loaded, "on_set_chained_mode", lambda: loaded.controller.on_set_chained_mode(chained)):
-            loaded.controller.chained = chained
+            loaded.controller.is_chained = chained
 
     def _activate(self, loaded: Loaded) -> str:
         """Activate a controller, and return an error message, or an empty string if that succeeded."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
-        wanted = loaded.wanted_commands(
+        claims = loaded.claimed_commands(
             [command_name for command_name in resources.command_names if resources.is_available(command_name)]
         )
         failure = next(
             (
-                f"Resource conflict for controller '{name}'. Command interface '{each}' is already claimed."
-                for each in wanted
-                if each in resources.claims
+                f"Resource conflict for controller '{name}'. Command interface '{claim}' is already claimed."
+                for claim in claims
+                if claim in resources.claims
             ),
             "",
         )
         if not failure:
             try:
-                controller.commands = resources.commands(wanted)
+                controller.commands = resources.commands(claims)
                 controller.states = resources.states(controller.state_interfaces())
             except KeyError as error:
                 failure = f"Can't activate controller '{name}': {error.args[0]}"
@@ -371,8 +382,8 @@ class ControllerManager:
             self._logger.error(failure)
             controller.commands, controller.states = [], []
             return failure
-        resources.claims.update(dict.fromkeys(wanted, name))
-        loaded.next_ns, loaded.before = 0, [nan] * len(controller.commands)
+        resources.claims.update(dict.fromkeys(claims, name))
+        loaded.next_ns, loaded.last_commands = 0, [nan] * len(controller.commands)
         if not self._call(loaded, "on_activate", controller.on_activate):
             label = controller.state.label
             failure = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."
@@ -384,11 +395,11 @@ class ControllerManager:
         self._active = [controller for controller in self.controllers.values() if controller.is_active]
         return ""
 
-    def _deactivate(self, loaded: Loaded, *, halts: bool = False) -> None:
+    def _deactivate(self, loaded: Loaded, *, stop_joints: bool = False) -> None:
         controller = loaded.controller
         self._call(loaded, "on_deactivate", controller.on_deactivate)
         loaded.replace_invalid_commands()
-        if halts:
+        if stop_joints:
             loaded.halt()
         controller.state = INACTIVE
         self._release(loaded)
@@ -397,11 +408,11 @@ class ControllerManager:
 
     def _release(self, loaded: Loaded) -> None:
         claims = self.resources.claims
-        for name in [each for each, owner in claims.items() if owner == loaded.name]:
+        for name in [interface_name for interface_name, owner in claims.items() if owner == loaded.name]:
             del claims[name]
         loaded.controller.commands, loaded.controller.states = [], []
 
-    def _call(self, loaded: Loaded, what: str, callback: Callable[[], object]) -> bool:
+    def _call(self, loaded: Loaded, callback_name: str, callback: Callable[[], object]) -> bool:
         """Call a callback of a controller, log any error, and return whether the callback succeeded."""
         logger = loaded.controller.node.logger
         try:
@@ -410,7 +421,7 @@ class ControllerManager:
             logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
             return False
         except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
-            logger.error(_traced(f"Caught exception in callback for {what}", error))  # noqa: TRY400 - `_traced` has its place
+            logger.error(_traced(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_traced` has its place
             self._on_error(loaded)
             return False
         return True
@@ -430,9 +441,9 @@ class ControllerManager:
         hardware = self.resources.components[name]
         if hardware.state is ACTIVE and target is not ACTIVE:
             self._stop(self._users_of([hardware]))
-        done = self.resources.set_state(name, target)
+        is_reached = self.resources.set_state(name, target)
         self.on_change()
-        return done
+        return is_reached
 
     # --- updating -----------------------------------------------------------------------------------------------------
 
@@ -448,7 +459,7 @@ class ControllerManager:
             self._stop_users_of(failed)
         for loaded in self._active:
             if loaded.controller.state is not ACTIVE:
-                continue  # Deactivated in this cycle, because an earlier controller failed.
+                continue  # The failure of an earlier controller deactivated it in this cycle.
             if loaded.period_ns:
                 if time_ns < loaded.next_ns:
                     continue
@@ -462,11 +473,11 @@ class ControllerManager:
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
-                self._fail(loaded, error)  # Safe while iterating: a new list replaces `_active`.
+                self._fail(loaded, error)  # Safe in the loop: a new list replaces `_active`.
                 continue
-            wrong = loaded.replace_invalid_commands()
-            if wrong:
-                self._log_wrong_command(loaded, wrong)
+            replaced_name = loaded.replace_invalid_commands()
+            if replaced_name:
+                self._log_wrong_command(loaded, replaced_name)
         if self.limits is not None:
             self.limits.enforce(period_s, self.resources.claims)
         failed = self.resources.write(time_ns, period_s)
@@ -482,16 +493,17 @@ class ControllerManager:
     def _fail(self, loaded: Loaded, error: Exception) -> None:
         """Handle an exception in a controller's update.
 
-        The controller and those that command it are deactivated, their joints are stopped, and fallbacks are activated.
+        The controller and the controllers that command it are deactivated, their joints are stopped, and the fallbacks
+        are activated.
         """
         message = _traced("Caught exception while updating", error)
         if isinstance(error, ControllerError):
             message = error.diagnostics[0].message
         loaded.controller.node.logger.error(message)
-        stopped = [loaded, *self._commanding_controllers(loaded)]
-        names = " ".join(controller.name for controller in stopped)
+        stopped_controllers = [loaded, *self._commanding_controllers(loaded)]
+        names = " ".join(controller.name for controller in stopped_controllers)
         self._logger.error(f"Deactivating controllers : [ {names} ] as their update resulted in an error!")
-        self._stop(stopped)
+        self._stop(stopped_controllers)
         self._on_error(loaded)
         if loaded.fallbacks:
             self._logger.error(f"Activating fallback controllers : [ {' '.join(loaded.fallbacks)} ]")
@@ -499,47 +511,50 @@ class ControllerManager:
 
     def _commanding_controllers(self, loaded: Loaded) -> list[Loaded]:
         """Return the active controllers that command a controller directly or indirectly."""
-        references = self.resources.references_of(loaded.name)
+        references = self.resources.reference_names(loaded.name)
         owners = dict.fromkeys(
             self.resources.claims[reference] for reference in references if reference in self.resources.claims
         )
-        found = [self.controllers[owner] for owner in owners]
-        return [*found, *(more for controller in found for more in self._commanding_controllers(controller))]
+        commanders = [self.controllers[owner] for owner in owners]
+        return [
+            *commanders,
+            *(indirect for controller in commanders for indirect in self._commanding_controllers(controller)),
+        ]
 
     def _stop_users_of(self, failed: Sequence[Hardware]) -> None:
-        stopped = self._users_of(failed)
-        if stopped:
+        users = self._users_of(failed)
+        if users:
             self._logger.error(
-                f"Deactivating controllers : [ {' '.join(controller.name for controller in stopped)} ] as their "
+                f"Deactivating controllers : [ {' '.join(controller.name for controller in users)} ] as their "
                 f"hardware components failed: [ {' '.join(hardware.description.name for hardware in failed)} ]"
             )
-            self._stop(stopped)
+            self._stop(users)
         self.on_change()
 
     def _users_of(self, hardware: Sequence[Hardware]) -> list[Loaded]:
         """Return the active controllers that use hardware, and the controllers that command them."""
         names = {name for component in hardware for name in self.resources.names_of(component)}
-        found = [
+        users = [
             loaded
             for loaded in self._active
             if any(command.name in names for command in (*loaded.controller.commands, *loaded.controller.states))
         ]
         return [
-            *found,
+            *users,
             *(
                 controller
-                for loaded in found
+                for loaded in users
                 for controller in self._commanding_controllers(loaded)
-                if controller not in found
+                if controller not in users
             ),
         ]
 
-    def _stop(self, stopped: Sequence[Loaded]) -> None:
-        for controller in stopped:
+    def _stop(self, controllers: Sequence[Loaded]) -> None:
+        for controller in controllers:
             if controller.is_active:
-                following = {command.component for command in controller.controller.commands}
-                self._deactivate(controller, halts=True)
-                for name in following & self.controllers.keys():
+                commanded_names = {command.component for command in controller.controller.commands}
+                self._deactivate(controller, stop_joints=True)
+                for name in commanded_names & self.controllers.keys():
                     self._set_chained(self.controllers[name], chained=False)
         self.on_change()
 
@@ -549,12 +564,12 @@ class ControllerManager:
             self._logger.error(f"{diagnostic.message}{hint}")
 
 
-def _owners(interfaces: Iterable[str]) -> set[str]:
-    """Return the components that interface names begin with: joints or controllers."""
+def _component_names(interfaces: Iterable[str]) -> set[str]:
+    """Return the joints or controllers at the beginning of interface names."""
     return {interface.partition("/")[0] for interface in interfaces}
 
 
-def _traced(what: str, error: Exception) -> str:
+def _traced(message: str, error: Exception) -> str:
     """Return an error message with a traceback, for authors of controllers."""
     frames = traceback.format_exception(type(error), error, error.__traceback__)
-    return f"{what}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"
+    return f"{message}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

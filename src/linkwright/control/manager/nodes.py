@@ -1,7 +1,7 @@
 """Creation of controllers' nodes, with their names, parameters and remappings.
 
-Source: the controller manager of ros2_control. A controller's node gets its parameters from the files that the
-manager's process was started with, then from the files in ``NAME.params_file``, then from ``NAME.node_options_args``.
+Source: the controller manager of ros2_control. A controller's node gets its parameters from the files in the arguments
+of the manager's process, then from the files in ``NAME.params_file``, then from ``NAME.node_options_args``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.graph.parameters.parameter import ParameterRules
 
-_OF_THE_PROCESS = ("__node", "__name", "__ns")
+_PROCESS_REMAPPINGS = ("__node", "__name", "__ns")
 
 
 @dataclass(slots=True)
@@ -44,24 +44,27 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     if manager.has_parameter("use_sim_time"):
         values["use_sim_time"] = manager.get_parameter("use_sim_time").value
     values |= process.parameters.for_node(full_name)
-    left_out = process.parameters.left_out_for(full_name)
+    ignored_findings = process.parameters.left_out_for(full_name)
     for path in words_of(manager, f"{name}.params_file"):
         rules = read_parameter_file(path)
         values |= rules.for_node(full_name)
-        left_out += rules.left_out_for(full_name)
-    for message in dict.fromkeys(str(finding.message) for finding in left_out):
+        ignored_findings += rules.left_out_for(full_name)
+    for message in dict.fromkeys(str(finding.message) for finding in ignored_findings):
         manager.get_logger().warning(f"{name}: {message}; the parameter is left out")
-    ros = parse(
-        ["--ros-args", *(word for word in words_of(manager, f"{name}.node_options_args") if word != "--ros-args")]
+    ros_arguments = parse(
+        [
+            "--ros-args",
+            *(argument for argument in words_of(manager, f"{name}.node_options_args") if argument != "--ros-args"),
+        ]
     )
-    values |= ros.parameters_for(full_name)
-    remappings = [*ros.remappings_for(name), *process.remappings]
+    values |= ros_arguments.parameters_for(full_name)
+    remappings = [*ros_arguments.remappings_for(name), *process.remappings]
     node = Node(
         manager.graph,
         name,
         namespace=namespace,
         parameters=values,
-        remappings=[remapping for remapping in remappings if remapping[0] not in _OF_THE_PROCESS],
+        remappings=[remapping for remapping in remappings if remapping[0] not in _PROCESS_REMAPPINGS],
     )
     manager.graph.creators[node.get_logger().name] = manager.get_logger().name
     return node

@@ -28,23 +28,23 @@ class ManagerServices:
 
     Args:
         manager: the manager.
-        node: the manager's node in the form that plugins use; its callbacks run in the update thread.
+        node: the manager's node as a `SteppedNode`; its callbacks run in the update thread.
     """
 
     def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
         self._manager = manager
-        self._activity = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", LATCHED_QOS)
-        self._diagnostics = node.publisher("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics")
+        self._activity_output = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", LATCHED_QOS)
+        self._diagnostics_output = node.publisher("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics")
         self._statistics = None if is_before_iron() else StatisticsTopics(manager, node)
         manager.on_change = self.publish_activity
-        answers: dict[str, Callable[[Any, Any], Any]] = {
+        callbacks: dict[str, Callable[[Any, Any], Any]] = {
             "ListControllers": self._list_controllers,
             "ListControllerTypes": _list_types,
-            "LoadController": lambda request, response: _answered(response, manager.load(request.name)),
-            "ConfigureController": lambda request, response: _answered(response, manager.configure(request.name)),
-            "CleanupController": lambda request, response: _answered(response, manager.cleanup(request.name)),
-            "UnloadController": lambda request, response: _answered(response, manager.unload(request.name)),
-            "ReloadControllerLibraries": lambda request, response: _answered(
+            "LoadController": lambda request, response: _set_ok(response, manager.load(request.name)),
+            "ConfigureController": lambda request, response: _set_ok(response, manager.configure(request.name)),
+            "CleanupController": lambda request, response: _set_ok(response, manager.cleanup(request.name)),
+            "UnloadController": lambda request, response: _set_ok(response, manager.unload(request.name)),
+            "ReloadControllerLibraries": lambda request, response: _set_ok(
                 response, manager.reload(force=request.force_kill)
             ),
             "SwitchController": self._switch,
@@ -52,8 +52,8 @@ class ManagerServices:
             "ListHardwareInterfaces": self._list_interfaces,
             "SetHardwareComponentState": self._set_state,
         }
-        for name, answer in answers.items():
-            node.service(f"{_PACKAGE}/srv/{name}", f"~/{_service_name(name)}", answer)
+        for name, callback in callbacks.items():
+            node.service(f"{_PACKAGE}/srv/{name}", f"~/{_service_name(name)}", callback)
         self.publish_activity()
 
     def publish_activity(self) -> None:
@@ -65,9 +65,9 @@ class ManagerServices:
             for controller in self._manager.controllers.values()
         ]
         message.hardware_components = [
-            _named_state(name, each.state) for name, each in self._manager.resources.components.items()
+            _named_state(name, hardware.state) for name, hardware in self._manager.resources.components.items()
         ]
-        self._activity.publish(message)
+        self._activity_output.publish(message)
 
     def publish_diagnostics(self) -> None:
         """Publish whether controllers and hardware are active, and the statistics.
@@ -76,7 +76,7 @@ class ManagerServices:
         """
         if self._statistics is not None:
             self._statistics.publish()
-        if not self._diagnostics.is_wanted:
+        if not self._diagnostics_output.is_wanted:
             return
         message = get_message("diagnostic_msgs/msg/DiagnosticArray")()
         message.header.stamp = self._manager.node.get_clock().now().to_msg()
@@ -84,12 +84,12 @@ class ManagerServices:
         controllers = {
             controller.name: controller.controller.state for controller in self._manager.controllers.values()
         }
-        components = {name: each.state for name, each in self._manager.resources.components.items()}
+        components = {name: hardware.state for name, hardware in self._manager.resources.components.items()}
         message.status = [
             _status(f"{name}: Controllers Activity", "controllers", controllers),
             _status(f"{name}: Hardware Components Activity", "hardware components", components),
         ]
-        self._diagnostics.publish(message)
+        self._diagnostics_output.publish(message)
 
     # --- controllers --------------------------------------------------------------------------------------------------
 
@@ -104,16 +104,16 @@ class ManagerServices:
         message.state = controller.state.label
         message.update_rate = int(controller.update_rate)
         message.claimed_interfaces = [name for name, owner in resources.claims.items() if owner == loaded.name]
-        message.is_chainable, message.is_chained = loaded.is_chainable, controller.chained
+        message.is_chainable, message.is_chained = loaded.is_chainable, controller.is_chained
         if not loaded.is_configured:
             return message
-        message.required_command_interfaces = loaded.wanted_commands(resources.command_names)
-        message.required_state_interfaces = loaded.wanted_states(resources.state_names)
+        message.required_command_interfaces = loaded.claimed_commands(resources.command_names)
+        message.required_state_interfaces = loaded.required_states(resources.state_names)
         message.exported_state_interfaces = [interface.kind for interface in controller.exported]
         message.reference_interfaces = [reference.kind for reference in controller.references]
         chains: dict[str, list[str]] = {}
-        for required_command_interface in message.required_command_interfaces:
-            name, _, kind = required_command_interface.partition("/")
+        for interface_name in message.required_command_interfaces:
+            name, _, kind = interface_name.partition("/")
             if name in self._manager.controllers:
                 chains.setdefault(name, []).append(kind)
         connection = get_message(f"{_PACKAGE}/msg/ChainConnection")
@@ -129,20 +129,22 @@ class ManagerServices:
     # --- hardware -----------------------------------------------------------------------------------------------------
 
     def _list_components(self, _: Any, response: Any) -> Any:
-        response.component = [self._component(component) for component in self._manager.resources.components.values()]
+        response.component = [
+            self._component_message(component) for component in self._manager.resources.components.values()
+        ]
         return response
 
-    def _component(self, hardware: Hardware) -> Any:
-        described = hardware.description
-        message = get_message(f"{_PACKAGE}/msg/HardwareComponentState")(name=described.name, type=described.type)
-        message.plugin_name = message.class_type = described.plugin
+    def _component_message(self, hardware: Hardware) -> Any:
+        description = hardware.description
+        message = get_message(f"{_PACKAGE}/msg/HardwareComponentState")(name=description.name, type=description.type)
+        message.plugin_name = message.class_type = description.plugin
         message.rw_rate = int(self._manager.update_rate)
         message.state.id, message.state.label = hardware.state.state_id, hardware.state.label
-        message.command_interfaces = [self._interface(command.name) for command in hardware.commands]
-        message.state_interfaces = [self._interface(state.name) for state in hardware.states]
+        message.command_interfaces = [self._interface_message(command.name) for command in hardware.commands]
+        message.state_interfaces = [self._interface_message(state.name) for state in hardware.states]
         return message
 
-    def _interface(self, name: str) -> Any:
+    def _interface_message(self, name: str) -> Any:
         resources = self._manager.resources
         return get_message(f"{_PACKAGE}/msg/HardwareInterface")(
             name, "double", resources.is_available(name), name in resources.claims
@@ -150,8 +152,10 @@ class ManagerServices:
 
     def _list_interfaces(self, _: Any, response: Any) -> Any:
         resources = self._manager.resources
-        response.command_interfaces = [self._interface(command_name) for command_name in resources.command_names]
-        response.state_interfaces = [self._interface(state_name) for state_name in resources.state_names]
+        response.command_interfaces = [
+            self._interface_message(command_name) for command_name in resources.command_names
+        ]
+        response.state_interfaces = [self._interface_message(state_name) for state_name in resources.state_names]
         for state_interface in response.state_interfaces:
             state_interface.is_claimed = False
         return response
@@ -162,9 +166,9 @@ class ManagerServices:
             self._manager.node.get_logger().error(f"hardware component with name '{request.name}' does not exist")
             response.ok = False
             return response
-        wanted = request.target_state
-        target = _STATES.get(wanted.id) or next(
-            (state for state in _STATES.values() if state.label == wanted.label), None
+        requested = request.target_state
+        target = _STATES.get(requested.id) or next(
+            (state for state in _STATES.values() if state.label == requested.label), None
         )
         response.ok = target is not None and self._manager.set_hardware_state(request.name, target)
         state = resources.components[request.name].state
@@ -173,12 +177,12 @@ class ManagerServices:
 
 
 def _service_name(name: str) -> str:
-    """Return a service's name for its type: ``list_controllers`` for ``ListControllers``."""
-    return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")
+    """Return the name of the service with a type, such as ``list_controllers`` for ``ListControllers``."""
+    return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
 
 
-def _answered(response: Any, done: bool) -> Any:
-    response.ok = done
+def _set_ok(response: Any, succeeded: bool) -> Any:
+    response.ok = succeeded
     return response
 
 
@@ -189,12 +193,12 @@ def _list_types(_: Any, response: Any) -> Any:
 
     for name in controller_types():
         try:
-            found = controller_class(name)
+            controller_type = controller_class(name)
         except LinkwrightError:
             continue  # The error of a broken package is reported on loading.
-        chains = found.reference_interfaces is not Controller.reference_interfaces
+        is_chainable = controller_type.reference_interfaces is not Controller.reference_interfaces
         response.types.append(name)
-        response.base_classes.append(_CHAINABLE if chains else _PLAIN)
+        response.base_classes.append(_CHAINABLE if is_chainable else _PLAIN)
     return response
 
 
@@ -204,10 +208,10 @@ def _named_state(name: str, state: LifecycleState) -> Any:
     return message
 
 
-def _status(name: str, what: str, states: dict[str, LifecycleState]) -> Any:
+def _status(name: str, subject: str, states: dict[str, LifecycleState]) -> Any:
     status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name=name, hardware_id="ros2_control")
     value = get_message("diagnostic_msgs/msg/KeyValue")
     status.values = [value(key, state.label) for key, state in states.items()]
-    everything = all(state is ACTIVE for state in states.values())
-    status.message = f"All {what} are active" if everything else f"Not all {what} are active"
+    all_active = all(state is ACTIVE for state in states.values())
+    status.message = f"All {subject} are active" if all_active else f"Not all {subject} are active"
     return status

@@ -1,13 +1,13 @@
-"""Loading of hardware from the robot's description and a manager's parameters.
+"""Loading of hardware from the robot's description and the manager's parameters.
 
 Source: the controller manager of ros2_control, with the names of Humble and of Jazzy.
 """
 
 from __future__ import annotations
 
-from linkwright.control.hardware.description import hardware_of
+from linkwright.control.hardware.description import hardware_from_robot
 from linkwright.control.hardware.limits import CommandLimits, JointLimiter, limits_of
-from linkwright.control.hardware.resources import Maker, Resources
+from linkwright.control.hardware.resources import HardwareFactory, Resources
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.nodes import words_of
 from linkwright.descriptions import DescriptionLibrary
@@ -17,19 +17,17 @@ from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE, UNCONFIGURED
 from linkwright.messages.distribution import is_before_kilted
 from linkwright.urdf import Robot
 
-_INITIAL = "hardware_components_initial_state"
+_INITIAL_STATE_PARAMETER = "hardware_components_initial_state"
 
 
-def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, make: Maker) -> bool:
-    """Load the hardware of a description, and bring it to its initial lifecycle states.
-
-    The manager's parameters specify these states.
+def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, factory: HardwareFactory) -> bool:
+    """Load the hardware of a description, and bring it to the initial states in the manager's parameters.
 
     Args:
         manager: the manager.
         text: the URDF.
         library: the robot descriptions that the process has read.
-        make: creates hardware from its description.
+        factory: creates hardware from its description.
 
     Returns:
         Whether the description is readable; its errors are logged.
@@ -40,32 +38,38 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         logger.error("The published robot description file (urdf) seems not to be genuine.")
         _log(logger, [diagnostic for diagnostic in reading.diagnostics if diagnostic.severity is Severity.ERROR])
         return False
-    descriptions, findings = hardware_of(reading.robot)
+    descriptions, findings = hardware_from_robot(reading.robot)
     _log(logger, findings)
     manager.robot_description = text
     resources = manager.resources
-    resources.load(descriptions, make)
-    enforces = node.get_parameter_or("enforce_command_limits").value
-    if enforces if enforces is not None else not is_before_kilted():
-        manager.limits = _limits_of(reading.robot, resources, logger)
-    waiting = dict.fromkeys(resources.components)
-    configured = [*words_of(node, f"{_INITIAL}.inactive"), *words_of(node, "configure_components_on_start")]
-    for target, names in ((UNCONFIGURED, words_of(node, f"{_INITIAL}.unconfigured")), (INACTIVE, configured)):
+    resources.load(descriptions, factory)
+    enforces_limits = node.get_parameter_or("enforce_command_limits").value
+    if enforces_limits if enforces_limits is not None else not is_before_kilted():
+        manager.limits = _command_limits(reading.robot, resources, logger)
+    remaining = dict.fromkeys(resources.components)
+    inactive_names = [
+        *words_of(node, f"{_INITIAL_STATE_PARAMETER}.inactive"),
+        *words_of(node, "configure_components_on_start"),
+    ]
+    for target, names in (
+        (UNCONFIGURED, words_of(node, f"{_INITIAL_STATE_PARAMETER}.unconfigured")),
+        (INACTIVE, inactive_names),
+    ):
         for name in filter(None, names):
-            if name not in waiting:
+            if name not in remaining:
                 logger.warning(f"Hardware component '{name}' is unknown, therefore not set in '{target.label}' state.")
                 continue
             logger.info(f"Setting component '{name}' to '{target.label}' state.")
             resources.set_state(name, target)
-            del waiting[name]
-    started = words_of(node, "activate_components_on_start")
-    for name in waiting:
-        if not started or name in started:
+            del remaining[name]
+    activated_names = words_of(node, "activate_components_on_start")
+    for name in remaining:
+        if not activated_names or name in activated_names:
             resources.set_state(name, ACTIVE)
     return True
 
 
-def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLimits:
+def _command_limits(robot: Robot, resources: Resources, logger: Logger) -> CommandLimits:
     """Return the command limits of the hardware, from the limits of the robot's joints."""
     limiters = []
     for hardware in resources.components.values():

@@ -1,8 +1,8 @@
 """Durations and rates of controllers and hardware, published on ``~/statistics/...``.
 
-Source: controller_manager of ros2_control from Jazzy on (topics, names, units: execution times in microseconds,
-periodicity in Hz). One thing differs: nothing is measured without a subscription; measuring starts within a second
-after the first subscription.
+Source: controller_manager of ros2_control since Jazzy (topics, names, units: execution times in microseconds,
+periodicity in Hz). A deliberate difference: nothing is measured without a subscription; measuring starts within a
+second after the first subscription.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ class StatisticsTopics:
 
     def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
         self._manager = manager
-        self._full = node.publisher(f"{_PACKAGE}/Statistics", "~/statistics/full")
-        self._names = node.publisher(f"{_PACKAGE}/StatisticsNames", "~/statistics/names", LATCHED_QOS)
+        self._full_output = node.publisher(f"{_PACKAGE}/Statistics", "~/statistics/full")
+        self._names_output = node.publisher(f"{_PACKAGE}/StatisticsNames", "~/statistics/names", LATCHED_QOS)
         self._values = node.publisher(f"{_PACKAGE}/StatisticsValues", "~/statistics/values")
-        self._known: list[str] = []
+        self._published_names: list[str] = []
         self._version = 0
 
     def publish(self) -> None:
@@ -40,36 +40,38 @@ class StatisticsTopics:
 
         The caller is a timer with a period of 1 s.
         """
-        wanted = self._full.is_wanted or self._values.is_wanted
-        timings = dict(self._timings(wanted=wanted))
-        if not wanted:
+        is_wanted = self._full_output.is_wanted or self._values.is_wanted
+        timings = dict(self._timings(enabled=is_wanted))
+        if not is_wanted:
             return
-        measured = {f"{name}/{kind}": value for name, timing in timings.items() for kind, value in timing.items()}
+        statistics = {f"{name}/{kind}": value for name, timing in timings.items() for kind, value in timing.items()}
         stamp = self._manager.node.get_clock().now().to_msg()
-        if list(measured) != self._known:
-            self._known, self._version = list(measured), self._version + 1
-            names = get_message(f"{_PACKAGE}/StatisticsNames")(names=self._known, names_version=self._version)
+        if list(statistics) != self._published_names:
+            self._published_names, self._version = list(statistics), self._version + 1
+            names = get_message(f"{_PACKAGE}/StatisticsNames")(names=self._published_names, names_version=self._version)
             names.header.stamp = stamp
-            self._names.publish(names)
+            self._names_output.publish(names)
         values: Any = get_message(f"{_PACKAGE}/StatisticsValues")(
-            values=list(measured.values()), names_version=self._version
+            values=list(statistics.values()), names_version=self._version
         )
         values.header.stamp = stamp
         self._values.publish(values)
-        if self._full.is_wanted:
-            one = get_message(f"{_PACKAGE}/Statistic")
-            full = get_message(f"{_PACKAGE}/Statistics")(statistics=[one(*item) for item in measured.items()])
-            full.header.stamp = stamp
-            self._full.publish(full)
+        if self._full_output.is_wanted:
+            statistic_type = get_message(f"{_PACKAGE}/Statistic")
+            message = get_message(f"{_PACKAGE}/Statistics")(
+                statistics=[statistic_type(*item) for item in statistics.items()]
+            )
+            message.header.stamp = stamp
+            self._full_output.publish(message)
 
-    def _timings(self, *, wanted: bool) -> Iterator[tuple[str, Timing]]:
+    def _timings(self, *, enabled: bool) -> Iterator[tuple[str, Timing]]:
         """Switch measuring on or off, and iterate over the timings with the prefixes of their names."""
         for name, loaded in self._manager.controllers.items():
-            loaded.timing = (loaded.timing or Timing()) if wanted else None
+            loaded.timing = (loaded.timing or Timing()) if enabled else None
             if loaded.timing is not None:
                 yield f"{name}.stats", loaded.timing
         for name, hardware in self._manager.resources.components.items():
-            hardware.timings = (hardware.timings or (Timing(), Timing())) if wanted else None
+            hardware.timings = (hardware.timings or (Timing(), Timing())) if enabled else None
             if hardware.timings is not None:
                 for cycle, timing in zip(("read_cycle", "write_cycle"), hardware.timings, strict=True):
                     yield f"{name}.stats/{cycle}", timing

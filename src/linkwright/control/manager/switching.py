@@ -13,9 +13,9 @@ from linkwright.control.manager.loaded import Loaded
 from linkwright.graph.log.logger import Logger
 
 BEST_EFFORT, STRICT, AUTO, FORCE_AUTO = 1, 2, 3, 4
-"""The strictness of a request, in controller_manager_msgs/srv/SwitchController."""
+"""The values of the strictness in controller_manager_msgs/srv/SwitchController."""
 
-_MORE = (
+_ADVICE = (
     "Check above warnings for more details. Check the state of the controllers and their required interfaces using "
     "`ros2 control list_controllers -v` CLI to get more information."
 )
@@ -31,7 +31,8 @@ class Switch:
 
     Attributes:
         activate, deactivate: the names of the controllers to activate and deactivate, in order.
-        to_chained, from_chained: names of the controllers whose references other controllers start or stop commanding.
+        to_chained: the names of the controllers that other controllers start to command.
+        from_chained: the names of the controllers that other controllers stop to command.
     """
 
     activate: list[str] = field(default_factory=list)
@@ -56,94 +57,98 @@ class SwitchPlanner:
         self._controllers = controllers
         self._resources = resources
         self._logger = logger
-        self._strict = strictness == STRICT
-        self._auto = strictness in (AUTO, FORCE_AUTO)
+        self._is_strict = strictness == STRICT
+        self._adds_following = strictness in (AUTO, FORCE_AUTO)
         self._force = strictness == FORCE_AUTO
         self._switch = Switch()
 
     def plan(self, activate: Sequence[str], deactivate: Sequence[str]) -> Switch:
-        """Plan a switch, without impossible parts of the request unless the switch is strict.
+        """Plan a switch; impossible parts of the request are left out unless the switch is strict.
 
         Raises:
-            SwitchRefusedError: a part of the request is impossible, and the strictness requires a refusal.
+            SwitchRefusedError: a part of the request is impossible, and the switch is strict.
         """
         switch = self._switch
-        switch.deactivate = self._known(deactivate, "deactivate")
-        switch.activate = self._known(activate, "activate")
-        if self._auto:
+        switch.deactivate = self._existing_names(deactivate, "deactivate")
+        switch.activate = self._existing_names(activate, "activate")
+        if self._adds_following:
             self._add_following()
         if self._force:
             self._add_conflicting()
         for name in switch.deactivate:
             if self._controllers[name].is_active:
                 switch.from_chained += [
-                    each for each in self._following(self._controllers[name]) if each not in switch.from_chained
+                    following_name
+                    for following_name in self._following_names(self._controllers[name])
+                    if following_name not in switch.from_chained
                 ]
-        switch.activate = [item for item in switch.activate if self._may(item, self._objection_to_activation(item))]
+        switch.activate = [item for item in switch.activate if self._is_permitted(item, self._activation_problem(item))]
         switch.deactivate = [
-            item for item in switch.deactivate if self._may(item, self._objection_to_deactivation(item), "deactivate")
+            item
+            for item in switch.deactivate
+            if self._is_permitted(item, self._deactivation_problem(item), "deactivate")
         ]
         for name in (*switch.to_chained, *switch.from_chained):
             if self._controllers[name].is_active and name not in switch.deactivate:
                 switch.deactivate.append(name)
                 switch.activate.append(name)
-        self._check_twice()
+        self._check_current_states()
         return switch
 
-    def _known(self, names: Sequence[str], action: str) -> list[str]:
-        found = []
+    def _existing_names(self, names: Sequence[str], action: str) -> list[str]:
+        existing_names = []
         for name in dict.fromkeys(names):
             if name in self._controllers:
-                found.append(name)
+                existing_names.append(name)
                 continue
             message = f"Could not '{action}' controller with name '{name}' because no controller with this name exists"
             self._logger.warning(message)
-            if self._strict:
+            if self._is_strict:
                 self._logger.error("Aborting, no controller is switched! ('STRICT' switch)")
                 raise SwitchRefusedError(message)
-        return found
+        return existing_names
 
-    def _may(self, name: str, objection: str, action: str = "activate") -> bool:
-        if not objection:
+    def _is_permitted(self, name: str, problem: str, action: str = "activate") -> bool:
+        if not problem:
             return True
-        self._logger.warning(objection)
-        self._logger.warning(f"Could not {action} controller with name '{name}'. {_MORE}")
-        if self._strict:
+        self._logger.warning(problem)
+        self._logger.warning(f"Could not {action} controller with name '{name}'. {_ADVICE}")
+        if self._is_strict:
             self._logger.error("Aborting, no controller is switched! (::STRICT switch)")
-            raise SwitchRefusedError(objection)
+            raise SwitchRefusedError(problem)
         return False
 
-    def _following(self, loaded: Loaded) -> Iterator[str]:
+    def _following_names(self, loaded: Loaded) -> Iterator[str]:
         """Iterate over the names of the controllers whose references a controller commands."""
-        for interface in loaded.wanted_commands([]):
+        for interface in loaded.claimed_commands([]):
             name = interface.partition("/")[0]
             if name in self._controllers and name != loaded.name:
                 yield name
 
-    def _preceding(self, loaded: Loaded) -> Iterator[Loaded]:
+    def _preceding_controllers(self, loaded: Loaded) -> Iterator[Loaded]:
         """Iterate over the controllers that command the references of a controller."""
-        references = set(self._resources.references_of(loaded.name))
+        references = set(self._resources.reference_names(loaded.name))
         for other in self._controllers.values():
-            if references.intersection(other.wanted_commands([])):
+            if references.intersection(other.claimed_commands([])):
                 yield other
 
     def _add_following(self) -> None:
         switch = self._switch
-        waiting = list(switch.activate)
-        while waiting:
-            for name in self._following(self._controllers[waiting.pop()]):
+        pending = list(switch.activate)
+        while pending:
+            for name in self._following_names(self._controllers[pending.pop()]):
                 if self._controllers[name].is_inactive and name not in switch.activate:
                     switch.activate.insert(0, name)
-                    waiting.append(name)
+                    pending.append(name)
 
     def _add_conflicting(self) -> None:
         for name in self._switch.activate:
-            for interface in self._controllers[name].wanted_commands(self._resources.command_names):
+            for interface in self._controllers[name].claimed_commands(self._resources.command_names):
                 owner = self._resources.claims.get(interface)
                 if owner is not None and owner not in self._switch.deactivate:
                     self._switch.deactivate.append(owner)
 
-    def _objection_to_activation(self, name: str) -> str:
+    def _activation_problem(self, name: str) -> str:
         loaded = self._controllers[name]
         if loaded.is_active and name in self._switch.deactivate:
             return ""
@@ -152,40 +157,40 @@ class SwitchPlanner:
                 f"Controller with name '{name}' is not inactive so its following controllers do not have to be "
                 "checked, because it cannot be activated."
             )
-        return self._objection_to_following(loaded)
+        return self._following_problem(loaded)
 
-    def _objection_to_following(self, loaded: Loaded) -> str:
+    def _following_problem(self, loaded: Loaded) -> str:
         switch = self._switch
-        for interface in loaded.wanted_commands([]):
-            following = self._controllers.get(interface.partition("/")[0])
-            if following is None or following is loaded:
+        for interface in loaded.claimed_commands([]):
+            commanded = self._controllers.get(interface.partition("/")[0])
+            if commanded is None or commanded is loaded:
                 continue
-            name = following.name
-            if following.controller.state.label != "unconfigured" and not following.is_chainable:
+            name = commanded.name
+            if commanded.controller.state.label != "unconfigured" and not commanded.is_chainable:
                 return (
                     f"No reference interface '{interface}' exist, since the following controller with name '{name}' "
                     "is not chainable."
                 )
-            if following.is_active and name in switch.deactivate and name not in switch.activate:
+            if commanded.is_active and name in switch.deactivate and name not in switch.activate:
                 return f"The following controller with name '{name}' will be deactivated."
-            if not following.is_active and name not in switch.activate:
+            if not commanded.is_active and name not in switch.activate:
                 return f"The following controller with name '{name}' is not active and will not be activated."
-            objection = self._objection_to_following(following)
-            if objection:
-                return objection
+            problem = self._following_problem(commanded)
+            if problem:
+                return problem
             if name in switch.from_chained:
                 switch.from_chained.remove(name)
-            elif not following.controller.chained and name not in switch.to_chained:
+            elif not commanded.controller.is_chained and name not in switch.to_chained:
                 switch.to_chained.append(name)
         return ""
 
-    def _objection_to_deactivation(self, name: str) -> str:
+    def _deactivation_problem(self, name: str) -> str:
         loaded = self._controllers[name]
         if not loaded.is_active:
             return f"Controller with name '{name}' can not be deactivated since it is not active."
-        if not loaded.controller.chained:
+        if not loaded.controller.is_chained:
             return ""
-        for other in self._preceding(loaded):
+        for other in self._preceding_controllers(loaded):
             if other.is_inactive and other.name in self._switch.activate:
                 return (
                     f"Could not deactivate controller with name '{name}' because preceding controller with name "
@@ -198,7 +203,7 @@ class SwitchPlanner:
                 )
         return ""
 
-    def _check_twice(self) -> None:
+    def _check_current_states(self) -> None:
         switch = self._switch
         for name in tuple(switch.activate):
             loaded = self._controllers[name]
@@ -208,7 +213,7 @@ class SwitchPlanner:
                 message = f"Could not activate controller '{name}' since it is not in inactive state"
             else:
                 continue
-            if self._strict:
+            if self._is_strict:
                 self._logger.error(message)
                 raise SwitchRefusedError(message)
             self._logger.warning(message)

@@ -1,6 +1,6 @@
 """Limits of a driven and steered wheel for velocity, steering angle and their derivatives, in both directions.
 
-Source: the limiters of tricycle_controller. Two things differ: a minimum never makes a wheel move that is at rest, and
+Source: the limiters of tricycle_controller. Deliberate differences: a minimum never moves a wheel that is at rest, and
 the bound of a second difference is not doubled.
 """
 
@@ -11,7 +11,7 @@ from math import copysign, inf
 from linkwright.kinematics.limits import UNBOUNDED, Bounds
 
 ANY: Bounds = (0.0, inf)
-"""No bound of a magnitude."""
+"""The bounds of a magnitude without a limit."""
 
 
 class TractionLimiter:
@@ -38,15 +38,15 @@ class TractionLimiter:
 
     def restart(self) -> None:
         """Reset the speed and the acceleration to zero."""
-        self.speed = self._before = 0.0
+        self.speed = self._previous_speed = 0.0
 
-    def follow(self, wanted: float, seconds: float) -> float:
-        """Return the next speed towards a wanted one, `seconds` after the last call."""
+    def follow(self, target: float, seconds: float) -> float:
+        """Return the next speed towards a target, `seconds` after the last call."""
         speed = self.speed
-        wanted = _limit_second_difference(speed, self._before, wanted, self._jerk, seconds)
-        bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
-        reached = speed + _within(bounds, wanted - speed, seconds)
-        self.speed, self._before = _within(self._velocity, reached), speed
+        target = _limit_second_difference(speed, self._previous_speed, target, self._jerk, seconds)
+        bounds = self._acceleration if abs(target) >= abs(speed) else self._deceleration
+        new_speed = speed + _limit_magnitude(bounds, target - speed, seconds)
+        self.speed, self._previous_speed = _limit_magnitude(self._velocity, new_speed), speed
         return self.speed
 
 
@@ -70,27 +70,27 @@ class SteeringLimiter:
 
     def restart(self, angle: float = 0.0) -> None:
         """Reset the angle to a value, at rest."""
-        self.angle = self._before = angle
+        self.angle = self._previous_speed = angle
 
-    def follow(self, wanted: float, seconds: float) -> float:
-        """Return the next angle towards a wanted one, `seconds` after the last call."""
+    def follow(self, target: float, seconds: float) -> float:
+        """Return the next angle towards a target, `seconds` after the last call."""
         angle = self.angle
-        wanted = _limit_second_difference(angle, self._before, wanted, self._acceleration, seconds)
-        reached = angle + _within(self._velocity, wanted - angle, seconds)
-        self.angle, self._before = min(max(reached, self._position[0]), self._position[1]), angle
+        target = _limit_second_difference(angle, self._previous_speed, target, self._acceleration, seconds)
+        new_angle = angle + _limit_magnitude(self._velocity, target - angle, seconds)
+        self.angle, self._previous_speed = min(max(new_angle, self._position[0]), self._position[1]), angle
         return self.angle
 
 
-def _limit_second_difference(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
-    """Return the wanted value, limited so that the second difference is within bounds.
+def _limit_second_difference(current: float, previous: float, target: float, bounds: Bounds, seconds: float) -> float:
+    """Return the target, limited so that the second difference is within bounds.
 
-    `now` and `before` are the last two values; `seconds` is the time between values.
+    `current` and `previous` are the last two values; `seconds` is the time between values.
     """
-    straight = now + now - before
-    return straight + _within(bounds, wanted - straight, seconds * seconds)
+    extrapolated = current + current - previous
+    return extrapolated + _limit_magnitude(bounds, target - extrapolated, seconds * seconds)
 
 
-def _within(bounds: Bounds, value: float, factor: float = 1.0) -> float:
+def _limit_magnitude(bounds: Bounds, value: float, factor: float = 1.0) -> float:
     """Return a value with its magnitude limited to bounds times a factor; 0 stays 0."""
     if value == 0.0:
         return value

@@ -7,9 +7,9 @@ from collections import deque
 from linkwright.kinematics.planar import PlanarPose
 
 Velocity = tuple[float, float, float]
-"""Forward and to the left in m/s, around z in rad/s."""
+"""The velocities forward and to the left in m/s, and about z in rad/s."""
 
-_STANDING: Velocity = (0.0, 0.0, 0.0)
+_AT_REST: Velocity = (0.0, 0.0, 0.0)
 
 
 class Odometer:
@@ -19,40 +19,40 @@ class Odometer:
         window: the number of velocities in the rolling mean; at least 1.
 
     Attributes:
-        place: the robot's pose relative to its start.
+        pose: the robot's pose relative to its start.
         velocity: the robot's smoothed velocity.
 
     Source: the odometry of ros2_controllers (exact arcs, rolling means).
     """
 
     def __init__(self, window: int = 1) -> None:
-        self._last: deque[Velocity] = deque(maxlen=window)
+        self._recent_velocities: deque[Velocity] = deque(maxlen=window)
         self.reset()
 
     def reset(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
         """Set the pose, in m and rad, and the velocity to zero."""
-        self.place = PlanarPose(x, y, yaw)
+        self.pose = PlanarPose(x, y, yaw)
         self.reset_velocity()
 
     def reset_velocity(self) -> None:
         """Set the velocity to zero, and keep the pose."""
-        self._last.clear()
-        self.velocity = _STANDING
+        self._recent_velocities.clear()
+        self.velocity = _AT_REST
 
     def measure(self, velocity: Velocity, seconds: float) -> None:
         """Integrate a measured velocity over a duration, and update the rolling mean."""
-        self._go(velocity, seconds)
-        last = self._last
-        last.append(velocity)
-        count = len(last)
-        forward, sideways, angular = map(sum, zip(*last, strict=True))
+        self._integrate(velocity, seconds)
+        recent = self._recent_velocities
+        recent.append(velocity)
+        count = len(recent)
+        forward, sideways, angular = map(sum, zip(*recent, strict=True))
         self.velocity = forward / count, sideways / count, angular / count
 
     def add_commanded(self, velocity: Velocity, seconds: float) -> None:
-        """Integrate a commanded velocity over a duration; it becomes the velocity without smoothing."""
-        self._go(velocity, seconds)
+        """Integrate a commanded velocity over a duration, and set the velocity to it without smoothing."""
+        self._integrate(velocity, seconds)
         self.velocity = velocity
 
-    def _go(self, velocity: Velocity, seconds: float) -> None:
+    def _integrate(self, velocity: Velocity, seconds: float) -> None:
         forward, sideways, angular = velocity
-        self.place.follow_arc(forward * seconds, sideways * seconds, angular * seconds)
+        self.pose.follow_arc(forward * seconds, sideways * seconds, angular * seconds)

@@ -1,7 +1,7 @@
 """PID control as in control_toolbox of ros2_control.
 
-Source: control_toolbox's ``Pid`` of Humble and Jazzy. The PID controller of gz, which bounds terms at other times, is
-`linkwright.simulation.plugins.pid`.
+Source: control_toolbox's ``Pid`` of Humble and Jazzy. The PID controller of gz, which applies the bounds in a different
+order, is `linkwright.simulation.plugins.pid`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from math import inf, isfinite, sqrt
 
 NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL = "none", "legacy", "back_calculation", "conditional_integration"
 STRATEGIES = (NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL)
-"""The strategies against integral windup, by control_toolbox's names."""
+"""The strategies against integral windup, with control_toolbox's names."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +23,7 @@ class PidGains:
         i_min, i_max: the bounds of the integral term.
         u_min, u_max: the bounds of the command.
         antiwindup: ``none`` bounds the integral term while the integral continues to grow; ``legacy`` bounds the
-            integral itself; ``conditional_integration`` stops integrating if that drives a bounded command farther;
+            integral itself; ``conditional_integration`` stops integrating if that would exceed the bounds further;
             ``back_calculation`` subtracts the excess of a bounded command from the integral.
         tracking_time_constant: the time constant of ``back_calculation`` in s; 0 derives it from the gains.
         error_deadband: the last two strategies do not integrate errors up to this value.
@@ -74,8 +74,7 @@ class Pid:
             rate: the error's rate of change, in its unit per second; None to compute the rate from the previous error.
 
         Returns:
-            The command; 0 if an argument is not finite or no time has passed, in which case the controller's state is
-            unchanged.
+            The command; 0 if an argument is not finite or no time has passed. The controller's state is then unchanged.
         """
         if period_s <= 0.0 or not isfinite(error):
             return 0.0
@@ -85,21 +84,21 @@ class Pid:
         elif not isfinite(rate):
             return 0.0
         gains = self.gains
-        step = gains.i * error * period_s
-        others = gains.p * error + gains.d * rate
+        integral_step = gains.i * error * period_s
+        proportional_and_derivative = gains.p * error + gains.d * rate
         if gains.antiwindup == CLAMPED:
-            self.integral = min(max(self.integral + step, gains.i_min), gains.i_max)
+            self.integral = min(max(self.integral + integral_step, gains.i_min), gains.i_max)
         elif gains.antiwindup == NONE:
-            self.integral += step
-        unbounded = others + min(max(self.integral, gains.i_min), gains.i_max)
+            self.integral += integral_step
+        unbounded = proportional_and_derivative + min(max(self.integral, gains.i_min), gains.i_max)
         command = min(max(unbounded, gains.u_min), gains.u_max)
         if abs(error) > gains.error_deadband:
-            self._unwind(error, step, period_s, command, unbounded)
+            self._update_integral(error, integral_step, period_s, command, unbounded)
         return command
 
-    def _unwind(self, error: float, step: float, period_s: float, command: float, unbounded: float) -> None:
+    def _update_integral(self, error: float, step: float, period_s: float, command: float, unbounded: float) -> None:
         if self.gains.antiwindup == BACK_CALCULATION and self.gains.i:
-            time = self.gains.tracking_time
-            self.integral += step + ((command - unbounded) * period_s / time if time else 0.0)
+            time_constant = self.gains.tracking_time
+            self.integral += step + ((command - unbounded) * period_s / time_constant if time_constant else 0.0)
         elif self.gains.antiwindup == CONDITIONAL and (command == unbounded or error * unbounded <= 0.0):
             self.integral += step

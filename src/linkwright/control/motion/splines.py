@@ -1,7 +1,7 @@
 """The segments of a trajectory, which are splines from one point to the next.
 
-Source: joint_trajectory_controller of ros2_controllers. Between positions alone, a joint moves along a straight line;
-with velocities, along a cubic polynomial; with accelerations as well, along a quintic polynomial.
+Source: joint_trajectory_controller of ros2_controllers. A segment is linear if its points have only positions, cubic if
+they also have velocities, and quintic if they have accelerations as well.
 """
 
 from __future__ import annotations
@@ -48,16 +48,16 @@ class Segment:
         count = len(start.positions)
         polynomials: list[_Polynomial] = []
         for joint in range(count):
-            begin, stop = start.positions[joint], end.positions[joint]
+            start_position, end_position = start.positions[joint], end.positions[joint]
             if not (start.velocities and end.velocities):
-                polynomials.append((begin, (stop - begin) / duration_s, 0.0, 0.0, 0.0, 0.0))
+                polynomials.append((start_position, (end_position - start_position) / duration_s, 0.0, 0.0, 0.0, 0.0))
                 continue
-            speeds = start.velocities[joint], end.velocities[joint]
+            velocities = start.velocities[joint], end.velocities[joint]
             if not (start.accelerations and end.accelerations):
-                polynomials.append(_cubic(begin, stop, *speeds, duration_s))
+                polynomials.append(_cubic(start_position, end_position, *velocities, duration_s))
                 continue
-            changes = start.accelerations[joint], end.accelerations[joint]
-            polynomials.append(_quintic(begin, stop, *speeds, *changes, duration_s))
+            accelerations = start.accelerations[joint], end.accelerations[joint]
+            polynomials.append(_quintic(start_position, end_position, *velocities, *accelerations, duration_s))
         self._polynomials = polynomials
 
     def at(self, seconds: float) -> MotionState:
@@ -74,26 +74,26 @@ class Segment:
 
 
 def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
-    """Return the cubic polynomial with given positions and velocities at both ends."""
-    way, length = p1 - p0, duration
+    """Return the cubic polynomial for the positions and velocities at both ends."""
+    distance, length = p1 - p0, duration
     return (
         p0,
         v0,
-        (3.0 * way - (2.0 * v0 + v1) * length) / length**2,
-        ((v0 + v1) * length - 2.0 * way) / length**3,
+        (3.0 * distance - (2.0 * v0 + v1) * length) / length**2,
+        ((v0 + v1) * length - 2.0 * distance) / length**3,
         0.0,
         0.0,
     )
 
 
 def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
-    """Return the quintic polynomial with given values and two derivatives at both ends."""
-    way, length = p1 - p0, duration
+    """Return the quintic polynomial for the positions, velocities and accelerations at both ends."""
+    distance, length = p1 - p0, duration
     return (
         p0,
         v0,
         0.5 * a0,
-        (20.0 * way - (8.0 * v1 + 12.0 * v0) * length - (3.0 * a0 - a1) * length**2) / (2.0 * length**3),
-        ((14.0 * v1 + 16.0 * v0) * length - 30.0 * way + (3.0 * a0 - 2.0 * a1) * length**2) / (2.0 * length**4),
-        (12.0 * way - 6.0 * (v1 + v0) * length - (a0 - a1) * length**2) / (2.0 * length**5),
+        (20.0 * distance - (8.0 * v1 + 12.0 * v0) * length - (3.0 * a0 - a1) * length**2) / (2.0 * length**3),
+        ((14.0 * v1 + 16.0 * v0) * length - 30.0 * distance + (3.0 * a0 - 2.0 * a1) * length**2) / (2.0 * length**4),
+        (12.0 * distance - 6.0 * (v1 + v0) * length - (a0 - a1) * length**2) / (2.0 * length**5),
     )

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 UNSPECIFIED, NO_TOLERANCE = 0.0, -1.0
-"""Values of a goal's tolerance: keep the controller's, and allow any error."""
+"""Special values of a goal's tolerance: keep the controller's tolerance, or allow any error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +46,10 @@ class StateTolerance:
                 yield name, error, limit
 
     def overridden(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
-        """Return a copy overridden by a goal's values: 0 keeps a tolerance, -1 removes it.
+        """Return a copy with the tolerances of a goal: 0 keeps a tolerance, and -1 removes it.
 
         Raises:
-            ValueError: a value is another negative number.
+            ValueError: a value is negative and not -1.
         """
         return StateTolerance(
             resolved(self.position, position),
@@ -73,24 +73,24 @@ class Tolerances:
     goal_time_s: float = 0.0
 
     def with_path(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """Return a copy with another tolerance along the trajectory for a joint, given by its index."""
+        """Return a copy with another tolerance along the trajectory for the joint with an index."""
         return replace(self, path=(*self.path[:joint], tolerance, *self.path[joint + 1 :]))
 
     def with_goal(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """Return a copy with another tolerance at the end for a joint, given by its index."""
+        """Return a copy with another tolerance at the end for the joint with an index."""
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 
-def resolved(default: float, given: float) -> float:
-    """Return a default tolerance, overridden by a goal's value.
+def resolved(default: float, goal_value: float) -> float:
+    """Return the tolerance that a default and the value of a goal result in.
 
     Raises:
         ValueError: the goal's value is negative and not -1.
     """
-    if given > 0.0:
-        return given
-    if given == UNSPECIFIED:
+    if goal_value > 0.0:
+        return goal_value
+    if goal_value == UNSPECIFIED:
         return default
-    if given == NO_TOLERANCE:
+    if goal_value == NO_TOLERANCE:
         return 0.0
-    raise ValueError(given)
+    raise ValueError(goal_value)

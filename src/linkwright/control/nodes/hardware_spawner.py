@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 
-from linkwright.control.nodes.manager_client import ManagerClient, ManagerProgram, parsed
+from linkwright.control.nodes.manager_client import ManagerClient, ManagerProgram, parse_arguments
 from linkwright.graph import Graph
 from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
@@ -16,7 +16,7 @@ from linkwright.nodes.options import NodeOptions, create_node
 
 
 class HardwareSpawner(ManagerProgram):
-    """The running node, which exits when its requests to the hardware have been answered.
+    """The running hardware_spawner, which exits when the manager has responded to its requests.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be parsed.
@@ -32,7 +32,7 @@ class HardwareSpawner(ManagerProgram):
         target = parser.add_mutually_exclusive_group(required=True)
         target.add_argument("--activate", action="store_true")
         target.add_argument("--configure", action="store_true")
-        self._arguments = parsed(parser, remove_ros_arguments(options.arguments))
+        self._arguments = parse_arguments(parser, remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._client = ManagerClient(
             self._node, self._arguments.controller_manager, self._arguments.controller_manager_timeout
@@ -42,17 +42,17 @@ class HardwareSpawner(ManagerProgram):
     async def _set_states(self) -> int:
         logger, status = self._node.get_logger(), 0
         target, action = (ACTIVE, "activated") if self._arguments.activate else (INACTIVE, "configured")
-        listed = [component.name for component in (await self._client.ask("list_hardware_components")).component]
+        loaded_names = [component.name for component in (await self._client.ask("list_hardware_components")).component]
         for name in self._arguments.hardware_component_names:
-            if name not in listed:
+            if name not in loaded_names:
                 logger.warning("Hardware Component is not loaded - state can not be changed.")
                 status = 1
                 continue
-            wanted = get_message("lifecycle_msgs/msg/State")(target.state_id, target.label)
-            answer = await self._client.ask("set_hardware_component_state", name=name, target_state=wanted)
-            if answer.ok:
-                logger.info(f"{action} component '{name}'. Hardware now in state: {answer.state.label}.")
+            target_state = get_message("lifecycle_msgs/msg/State")(target.state_id, target.label)
+            response = await self._client.ask("set_hardware_component_state", name=name, target_state=target_state)
+            if response.ok:
+                logger.info(f"{action} component '{name}'. Hardware now in state: {response.state.label}.")
             else:
-                logger.warning(f"Could not {action} component '{name}'. Hardware is in state: {answer.state.label}.")
+                logger.warning(f"Could not {action} component '{name}'. Hardware is in state: {response.state.label}.")
                 status = 1
         return status

@@ -17,15 +17,15 @@ from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.options import SingleNode
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_LOOK_AGAIN = 10.0
-"""Seconds between two log lines about a service that is not available."""
+_LOG_PERIOD = 10.0
+"""The seconds between two log lines about a service that is not available."""
 _ATTEMPTS = 3
 
 
 class NoManagerError(Exception):
-    """Raised when the manager's services are missing or do not answer.
+    """Raised when the manager's services are not available or do not respond.
 
-    The message is that of ros2_control.
+    The message is the same as in ros2_control.
     """
 
 
@@ -49,20 +49,20 @@ class ManagerClient:
         """Call one of the manager's services, such as ``list_controllers``, and return the response.
 
         Raises:
-            NoManagerError: the manager is not available, or does not answer.
+            NoManagerError: the manager is not available, or does not respond.
         """
-        kind = "".join(word.capitalize() for word in service.split("_"))
+        kind = "".join(part.capitalize() for part in service.split("_"))
         return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)
 
     async def set_parameter(self, name: str, value: Any) -> bool:
         """Set a parameter of the manager, and return whether the value was accepted.
 
         Raises:
-            NoManagerError: the manager is not available, or does not answer.
+            NoManagerError: the manager is not available, or does not respond.
         """
         parameter = Parameter(name, value=value).to_parameter_msg()
-        answer = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
-        return all(result.successful for result in answer.results)
+        response = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
+        return all(result.successful for result in response.results)
 
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
         """Switch controllers with strictness STRICT, and return the response."""
@@ -77,13 +77,13 @@ class ManagerClient:
         )
 
     async def _call(self, kind: str, service: str, fields: dict[str, Any]) -> Any:
-        made = get_service(kind)
+        service_type = get_service(kind)
         name = f"{self.manager}/{service}"
-        client = self._node.create_client(made, name)
+        client = self._node.create_client(service_type, name)
         try:
-            await self._wait_for(client, name)
+            await self._wait_for_server(client, name)
             for attempt in range(1, _ATTEMPTS + 1):
-                future = client.call_async(made.Request(**fields))
+                future = client.call_async(service_type.Request(**fields))
                 if await wait_for_future(self._node, future, self._call_timeout):
                     return future.result()
                 client.remove_pending_request(future)
@@ -95,7 +95,7 @@ class ManagerClient:
             self._node.destroy_client(client)
         raise NoManagerError(f"Could not successfully call service {name} after {_ATTEMPTS} attempts.")
 
-    async def _wait_for(self, client: Any, name: str) -> None:
+    async def _wait_for_server(self, client: Any, name: str) -> None:
         """Wait until the server of a client is available.
 
         Raises:
@@ -104,7 +104,7 @@ class ManagerClient:
         logger = self._node.get_logger()
         while not client.service_is_ready():
             logger.info(f"waiting for service {name} to become available...")
-            if await wait_for_service(self._node, client, self._timeout or _LOOK_AGAIN):
+            if await wait_for_service(self._node, client, self._timeout or _LOG_PERIOD):
                 return
             if self._timeout:
                 raise NoManagerError(f"Could not contact service {name}")
@@ -119,20 +119,20 @@ class ManagerProgram(SingleNode):
 
     finished: asyncio.Future[int]
 
-    def _begin(self, work: Callable[[], Coroutine[Any, Any, int]]) -> None:
-        """Start a coroutine whose result is the exit status of the program."""
+    def _begin(self, program: Callable[[], Coroutine[Any, Any, int]]) -> None:
+        """Start a coroutine that returns the exit status of the program."""
         self.finished = asyncio.get_running_loop().create_future()
-        self._task = asyncio.get_running_loop().create_task(self._run(work))
+        self._task = asyncio.get_running_loop().create_task(self._run(program))
 
     def close(self) -> None:
         """Cancel the coroutine, and close the node."""
         self._task.cancel()
         super().close()
 
-    async def _run(self, work: Callable[[], Coroutine[Any, Any, int]]) -> None:
+    async def _run(self, program: Callable[[], Coroutine[Any, Any, int]]) -> None:
         status = 1
         try:
-            status = await work()
+            status = await program()
         except NoManagerError as error:
             self._node.get_logger().fatal(str(error))
         except LinkwrightError as error:
@@ -141,20 +141,22 @@ class ManagerProgram(SingleNode):
             self.finished.set_result(status)
 
 
-def _without_empty(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Return command-line arguments without the empty ones that launch files leave.
+def _drop_empty_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+    """Return command-line arguments without empty arguments, which launch files can produce.
 
     Empty values of options are kept.
     """
     flags = [action for action in parser._actions if action.nargs == 0]
     valueless = {"", *(option for action in flags for option in action.option_strings)}
-    before = ["", *words]
+    previous_arguments = ["", *words]
     return [
-        word for word, last in zip(words, before, strict=False) if word or (last[:1] == "-" and last not in valueless)
+        argument
+        for argument, previous in zip(words, previous_arguments, strict=False)
+        if argument or (previous[:1] == "-" and previous not in valueless)
     ]
 
 
-def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+def parse_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
     """Parse the arguments of a command line.
 
     Raises:
@@ -162,12 +164,14 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
     """
 
     def refuse(message: str) -> NoReturn:
-        text = phrase("{program}: {message}", program=parser.prog, message=foreign(message))
+        text = phrase(
+            ("{program} cannot parse its arguments: {message}"), program=parser.prog, message=foreign(message)
+        )
         raise LinkwrightError(Diagnostic("NODE831", text, hint=foreign(parser.format_usage().strip())))
 
     # If a required option is missing, argparse in Python up to 3.12 ends the program even with exit_on_error=False.
     parser.error = refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
-        return parser.parse_args(_without_empty(parser, words))
+        return parser.parse_args(_drop_empty_arguments(parser, words))
     except argparse.ArgumentError as error:
         refuse(str(error))

@@ -1,8 +1,8 @@
 """ros2_control_node of controller_manager, which runs controllers in real time.
 
 The node reads, updates and writes at ``update_rate`` on the event loop, so topics and services need no transfer between
-threads. Late updates are skipped or made up for, according to ``overruns.manage``. The description is received on the
-topic ``robot_description`` (Jazzy), on ``~/robot_description``, or as a parameter (Humble).
+threads. Missed updates are skipped if ``overruns.manage`` is set, and are run later otherwise. The description comes
+from the topic ``robot_description`` (Jazzy), the topic ``~/robot_description``, or a parameter (Humble).
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEFAULT_RATE = 100
-_SIMULATED = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
-"""Hardware of gazebo_ros2_control, gz_ros2_control and their forks, which only runs in a simulator."""
+_SIMULATOR_TYPES = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
+"""The hardware types of gazebo_ros2_control, gz_ros2_control and their forks, which only run in a simulator."""
 
 
-def _hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
+def _create_hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
     """Create the hardware of a description, or return None if its type is not installed.
 
     Raises:
         LinkwrightError: NODE833, the hardware exists only in a simulator.
     """
-    if description.plugin.rpartition("/")[2] in _SIMULATED:
+    if description.plugin.rpartition("/")[2] in _SIMULATOR_TYPES:
         message = phrase(
-            "hardware '{name}': '{plugin}' runs inside a simulator, whose plugin is the controller manager: leave "
-            "ros2_control_node out of the launch file",
+            "hardware '{name}': '{plugin}' only runs in a simulator, where a plugin is the controller manager; "
+            "remove ros2_control_node from the launch file",
             name=description.name,
             plugin=description.plugin,
         )
@@ -65,13 +65,13 @@ class Ros2ControlNode(SingleNode):
             self._start(options)
 
     def _start(self, options: NodeOptions) -> None:
-        ros = parse(options.arguments)
+        ros_arguments = parse(options.arguments)
         rules = ParameterRules()
-        rules.add(options.for_others)
-        rules.add(ros.parameters)
-        remappings = [*ros.remappings_for(self.DEFAULT_NAME), *options.remappings]
+        rules.add(options.parameters_of_others)
+        rules.add(ros_arguments.parameters)
+        remappings = [*ros_arguments.remappings_for(self.DEFAULT_NAME), *options.remappings]
         logger = self._node.get_logger()
-        rate = self._rate()
+        rate = self._read_update_rate()
         logger.info(f"update rate is {rate} Hz")
         self._manages_overruns = self._is_on("overruns.manage")
         self._warns_of_overruns = self._manages_overruns and self._is_on("overruns.print_warnings")
@@ -83,7 +83,7 @@ class Ros2ControlNode(SingleNode):
             ProcessArguments(rules, remappings),
             update_rate=rate,
         )
-        self._loaded = False
+        self._is_loaded = False
         text = self._node.get_parameter_or("robot_description").value
         if text:
             logger.warning(
@@ -104,13 +104,15 @@ class Ros2ControlNode(SingleNode):
         self._manager.close()
         super().close()
 
-    def _rate(self) -> int:
+    def _read_update_rate(self) -> int:
         value: Any = self._node.get_parameter_or("update_rate").value
         if value is None:
             self._node.get_logger().warning("'update_rate' parameter not set, using default value.")
             return _DEFAULT_RATE
         if not isinstance(value, int) or isinstance(value, bool) or not 0 < value <= 100_000:
-            message = phrase("the update_rate {value} is not a positive integer (Hz)", value=value)
+            message = phrase(
+                ("the update_rate must be an integer from 1 to 100000 (Hz), but it is {value}"), value=value
+            )
             raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
         return value
 
@@ -120,15 +122,17 @@ class Ros2ControlNode(SingleNode):
     def _on_description(self, message: String) -> None:
         logger = self._node.get_logger()
         logger.info("Received robot description from topic.")
-        if self._loaded:
+        if self._is_loaded:
             logger.warning("ResourceManager has already loaded a urdf. Ignoring attempt to reload a robot description.")
             return
         self._load(message.data)
 
     def _load(self, text: str) -> None:
         manager = self._manager
-        self._loaded = load_hardware(manager, text, self._library, _hardware) and bool(manager.resources.components)
-        if not self._loaded:  # Offering services would hide those of another manager.
+        self._is_loaded = load_hardware(manager, text, self._library, _create_hardware) and bool(
+            manager.resources.components
+        )
+        if not self._is_loaded:  # Services of this node would hide the services of another manager.
             return
         node = SteppedNode(self._node, DirectExchange(), owned=False)
         services = ManagerServices(manager, node)
@@ -136,40 +140,40 @@ class Ros2ControlNode(SingleNode):
         self._clock = self._node.get_clock()
         self._period_ns = round(NANOSECONDS_PER_SECOND / manager.update_rate)
         self._was_simulated = self._clock.ros_time_is_active
-        self._took_ns = 0
-        self._last_ns = self._clock.timer_ns()
-        self._next_ns = self._last_ns + self._period_ns
+        self._cycle_duration_ns = 0
+        self._last_cycle_ns = self._clock.timer_ns()
+        self._next_cycle_ns = self._last_cycle_ns + self._period_ns
         self._timer = self._node.create_timer(1.0 / manager.update_rate, self._update)
 
     def _update(self) -> None:
-        before_ns, self._next_ns = self._next_ns, self._timer.next_call_ns()
-        missed = round((self._next_ns - before_ns) / self._period_ns) - 1
-        if missed > 0 and self._clock.ros_time_is_active is self._was_simulated is False:
-            self._missed(missed)
+        scheduled_ns, self._next_cycle_ns = self._next_cycle_ns, self._timer.next_call_ns()
+        missed_count = round((self._next_cycle_ns - scheduled_ns) / self._period_ns) - 1
+        if missed_count > 0 and self._clock.ros_time_is_active is self._was_simulated is False:
+            self._handle_missed_updates(missed_count)
         self._cycle()
 
     def _cycle(self) -> None:
         clock = self._clock
-        timer_ns, simulated = clock.timer_ns(), clock.ros_time_is_active
-        period_ns = timer_ns - self._last_ns
-        if simulated is not self._was_simulated or period_ns < 0:  # The time source or time itself jumped.
-            self._was_simulated, period_ns = simulated, self._period_ns
-        self._last_ns = timer_ns
+        timer_ns, is_simulated = clock.timer_ns(), clock.ros_time_is_active
+        period_ns = timer_ns - self._last_cycle_ns
+        if is_simulated is not self._was_simulated or period_ns < 0:  # The time source changed, or time jumped back.
+            self._was_simulated, period_ns = is_simulated, self._period_ns
+        self._last_cycle_ns = timer_ns
         self._manager.cycle(clock.now_ns(), period_ns / NANOSECONDS_PER_SECOND)
-        self._took_ns = clock.timer_ns() - timer_ns
+        self._cycle_duration_ns = clock.timer_ns() - timer_ns
 
-    def _missed(self, count: int) -> None:
-        """Skip missed updates if overruns are managed, else make up for them.
+    def _handle_missed_updates(self, count: int) -> None:
+        """Skip missed updates if overruns are managed, and run them now otherwise.
 
-        If an update took too long, a warning is logged.
+        A warning is logged if the last update took too long.
         """
-        rate, took_ns = self._manager.update_rate, self._took_ns
-        if self._warns_of_overruns and took_ns > self._period_ns:
+        rate, duration_ns = self._manager.update_rate, self._cycle_duration_ns
+        if self._warns_of_overruns and duration_ns > self._period_ns:
             self._node.get_logger().warning(
                 f"Overrun detected! The controller manager missed its desired rate of {rate:.0f} Hz. The loop took "
-                f"{took_ns / 1e6:f} ms (missed cycles : {count}).",
+                f"{duration_ns / 1e6:f} ms (missed cycles : {count}).",
                 throttle_duration_sec=1.0,
             )
         if not self._manages_overruns:
-            for _ in range(min(count, int(rate))):  # At most one second of missed updates is made up for.
+            for _ in range(min(count, int(rate))):  # At most the missed updates of one second are run.
                 self._cycle()

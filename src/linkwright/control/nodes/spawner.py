@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.control.nodes.manager_client import ManagerClient, ManagerProgram, parsed
+from linkwright.control.nodes.manager_client import ManagerClient, ManagerProgram, parse_arguments
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Graph
 from linkwright.graph.command_line.ros_arguments import parse, remove_ros_arguments
@@ -22,8 +22,8 @@ from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, create_node, starting
 
-_TAKEN = ("type", "fallback_controllers")
-"""Parameters of a controller that are the manager's."""
+_MANAGER_ENTRIES = ("type", "fallback_controllers")
+"""The entries in a controller's parameter file that are set as parameters of the manager."""
 
 
 class Spawner(ManagerProgram):
@@ -34,53 +34,56 @@ class Spawner(ManagerProgram):
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._unloads = False
-        wanted = parsed(_parser(), remove_ros_arguments(options.arguments))
-        self._node, _ = create_node(graph, options, f"spawner_{wanted.controller_names[0]}")
-        self._arguments = wanted
-        of_process = [*options.for_others.files, *parse(options.arguments).parameters.files]
-        self._files = list(dict.fromkeys([*(wanted.param_file or ()), *of_process]))
+        self._must_unload = False
+        arguments = parse_arguments(_parser(), remove_ros_arguments(options.arguments))
+        self._node, _ = create_node(graph, options, f"spawner_{arguments.controller_names[0]}")
+        self._arguments = arguments
+        process_files = [*options.parameters_of_others.files, *parse(options.arguments).parameters.files]
+        self._files = list(dict.fromkeys([*(arguments.param_file or ()), *process_files]))
         with starting(self._node):
             for path in self._files:
                 if not Path(path).is_file():
                     message = phrase("parameter file '{path}' does not exist", path=path)
                     raise LinkwrightError(Diagnostic("NODE832", message))
         self._client = ManagerClient(
-            self._node, wanted.controller_manager, wanted.controller_manager_timeout, wanted.service_call_timeout
+            self._node,
+            arguments.controller_manager,
+            arguments.controller_manager_timeout,
+            arguments.service_call_timeout,
         )
         self._begin(self._spawn)
 
     def close(self) -> None:
-        """Close the node, after unloading the controllers if ``--unload-on-kill`` is given."""
-        if self._unloads:
-            self._unloads = False
-            self._unload_at_once()
+        """Unload the controllers if ``--unload-on-kill`` is set, and close the node."""
+        if self._must_unload:
+            self._must_unload = False
+            self._request_unload()
         super().close()
 
     async def _spawn(self) -> int:
-        wanted, logger = self._arguments, self._node.get_logger()
-        for name in wanted.controller_names:
+        arguments, logger = self._arguments, self._node.get_logger()
+        for name in arguments.controller_names:
             if not await self._load(name):
                 return 1
-            if wanted.load_only:
+            if arguments.load_only:
                 continue
             if not (await self._client.ask("configure_controller", name=name)).ok:
                 logger.error("Failed to configure controller")
                 return 1
-            if wanted.inactive or wanted.activate_as_group:
+            if arguments.inactive or arguments.activate_as_group:
                 continue
             if not (await self._activate([name])).ok:
                 logger.error(f"Failed to activate controller : {name}")
                 return 1
             logger.info(f"Configured and activated {name}")
-        if wanted.activate_as_group and not wanted.inactive and not wanted.load_only:
-            if not (await self._activate(wanted.controller_names)).ok:
-                logger.error(f"Failed to activate the parsed controllers list : {wanted.controller_names}")
+        if arguments.activate_as_group and not arguments.inactive and not arguments.load_only:
+            if not (await self._activate(arguments.controller_names)).ok:
+                logger.error(f"Failed to activate the parsed controllers list : {arguments.controller_names}")
                 return 1
-            logger.info(f"Configured and activated all the parsed controllers list : {wanted.controller_names}!")
-        if wanted.unload_on_kill:
+            logger.info(f"Configured and activated all the parsed controllers list : {arguments.controller_names}!")
+        if arguments.unload_on_kill:
             logger.info("Waiting until interrupt to unload controllers")
-            self._unloads = True
+            self._must_unload = True
             await asyncio.get_running_loop().create_future()
         return 0
 
@@ -89,8 +92,8 @@ class Spawner(ManagerProgram):
 
     async def _load(self, name: str) -> bool:
         logger = self._node.get_logger()
-        listed = await self._client.ask("list_controllers")
-        if any(controller.name == name for controller in listed.controller):
+        response = await self._client.ask("list_controllers")
+        if any(controller.name == name for controller in response.controller):
             logger.warning("Controller already loaded, skipping load_controller")
             return True
         for parameter, value in self._parameters(name).items():
@@ -106,37 +109,39 @@ class Spawner(ManagerProgram):
         return True
 
     def _parameters(self, name: str) -> dict[str, Any]:
-        """Return the parameters about a controller, such as its type, to be set on the manager."""
-        wanted, found = self._arguments, {}
-        if wanted.controller_type:
-            found["type"] = wanted.controller_type
-        if wanted.controller_ros_args:
-            found["node_options_args"] = [
-                word for controller_ros_arg in wanted.controller_ros_args for word in controller_ros_arg.split()
+        """Return the parameters to set on the manager for a controller, such as its type."""
+        arguments, parameters = self._arguments, {}
+        if arguments.controller_type:
+            parameters["type"] = arguments.controller_type
+        if arguments.controller_ros_args:
+            parameters["node_options_args"] = [
+                argument
+                for controller_ros_arg in arguments.controller_ros_args
+                for argument in controller_ros_arg.split()
             ]
-        if wanted.fallback_controllers:
-            found["fallback_controllers"] = wanted.fallback_controllers
+        if arguments.fallback_controllers:
+            parameters["fallback_controllers"] = arguments.fallback_controllers
         if self._files:
-            found["params_file"] = self._files
+            parameters["params_file"] = self._files
             full_name = join(self._node.get_namespace(), name)
             for path in self._files:
                 values = read_parameter_file(path).for_node(full_name)
-                found |= {key: values[key] for key in _TAKEN if key in values}
-        return found
+                parameters |= {key: values[key] for key in _MANAGER_ENTRIES if key in values}
+        return parameters
 
-    def _unload_at_once(self) -> None:
-        """Request deactivation and unloading of the controllers, without waiting for responses.
+    def _request_unload(self) -> None:
+        """Request to deactivate and unload the controllers, without waiting for responses.
 
-        The program ends meanwhile.
+        The program ends before the responses arrive.
         """
         names, manager = self._arguments.controller_names, self._client.manager
-        kind = get_service("controller_manager_msgs/srv/SwitchController")
-        switch = self._node.create_client(kind, f"{manager}/switch_controller")
-        switch.call_async(kind.Request(deactivate_controllers=names, strictness=2))
-        unload = get_service("controller_manager_msgs/srv/UnloadController")
-        client = self._node.create_client(unload, f"{manager}/unload_controller")
+        switch_type = get_service("controller_manager_msgs/srv/SwitchController")
+        switch_client = self._node.create_client(switch_type, f"{manager}/switch_controller")
+        switch_client.call_async(switch_type.Request(deactivate_controllers=names, strictness=2))
+        unload_type = get_service("controller_manager_msgs/srv/UnloadController")
+        unload_client = self._node.create_client(unload_type, f"{manager}/unload_controller")
         for name in names:
-            client.call_async(unload.Request(name=name))
+            unload_client.call_async(unload_type.Request(name=name))
 
 
 class Unspawner(ManagerProgram):
@@ -151,7 +156,7 @@ class Unspawner(ManagerProgram):
         parser.add_argument("controller_names", nargs="+")
         parser.add_argument("-c", "--controller-manager", default="/controller_manager")
         parser.add_argument("--switch-timeout", type=float, default=5.0)
-        self._arguments = parsed(parser, remove_ros_arguments(options.arguments))
+        self._arguments = parse_arguments(parser, remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, f"unspawner_{self._arguments.controller_names[0]}")
         self._client = ManagerClient(self._node, self._arguments.controller_manager)
         self._begin(self._unspawn)

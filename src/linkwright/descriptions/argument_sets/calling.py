@@ -21,7 +21,7 @@ from linkwright.packages.readers.xacro_calls.call import (
     launch_names,
 )
 from linkwright.packages.readers.xacro_calls.texts import (
-    MOST_SETS,
+    MAX_VARIATIONS,
     Open,
     Selection,
     Share,
@@ -33,8 +33,8 @@ from linkwright.packages.readers.xacro_calls.texts import (
     variations,
 )
 
-_DEEPEST = 4
-_MOST_LAUNCHES = 16
+_MAX_DEPTH = 4
+_MAX_LAUNCHES = 16
 _MARK = lazy_pattern("\0([^\0]*)\0")
 
 
@@ -44,11 +44,11 @@ class ArgumentSet:
 
     Attributes:
         values: the values, by argument name.
-        open: the names of the arguments whose values are known only at runtime. An empty name represents arguments
-            whose names are also unknown.
+        runtime_names: the names of the arguments whose values are known only at runtime. An empty name represents
+            arguments whose names are also unknown.
         span: the location of the call, or None for values of a configuration.
         is_certain: whether the values are known to occur in combination.
-        varied: the names of the arguments whose values differ from those that the same call passes by default.
+        varied: the names of the arguments whose values differ from the default values of the same call.
         is_mixed: whether a launch argument selects another file than by default, and other arguments also differ from
             their defaults, so that their values may not fit this file.
         is_offered: whether the values are choices that launch arguments offer, while the other arguments have their
@@ -56,7 +56,7 @@ class ArgumentSet:
     """
 
     values: Mapping[str, str]
-    open: tuple[str, ...] = ()
+    runtime_names: tuple[str, ...] = ()
     span: Span | None = None
     is_certain: bool = True
     varied: tuple[str, ...] = ()
@@ -66,7 +66,7 @@ class ArgumentSet:
     @property
     def is_complete(self) -> bool:
         """Whether all values are known and certain to occur in combination."""
-        return self.is_certain and not self.open
+        return self.is_certain and not self.runtime_names
 
 
 def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
@@ -77,7 +77,7 @@ def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tupl
 
     Args:
         path: the file of the description.
-        finder: the finder of packages; by default, it finds those around the file.
+        finder: the finder of packages; by default, one that searches around the file.
 
     Returns:
         The sets without duplicates, the most certain ones first. A call without values has an empty set.
@@ -100,25 +100,32 @@ class ArgumentSets:
         """Return the argument sets of a description; see `argument_sets`."""
         path = Path(os.path.abspath(path))  # noqa: PTH100 - links stay what they are
         finder = finder or PackageFinder(start=path.parent)
-        near = list(self._files.around(path, self._folders))
-        sets = list(_CalledDescription(path, finder, near).sets())
+        nearby_files = list(self._files.around(path, self._folders))
+        sets = list(_CalledDescription(path, finder, nearby_files).sets())
         if not sets:  # A launch file may use a package that is not a declared dependency.
-            sets = list(_CalledDescription(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
-        found: dict[object, ArgumentSet] = {}
+            sets = list(
+                _CalledDescription(path, finder, [*nearby_files, *self._files.elsewhere(path, self._folders)]).sets()
+            )
+        merged: dict[object, ArgumentSet] = {}
         for argument_set in sets:
-            key = (tuple(sorted(argument_set.values.items())), argument_set.open)
-            known = found.get(key)
-            if known is None:
-                found[key] = argument_set
+            key = (tuple(sorted(argument_set.values.items())), argument_set.runtime_names)
+            previous = merged.get(key)
+            if previous is None:
+                merged[key] = argument_set
             else:
-                certain, offered = (
-                    argument_set.is_certain or known.is_certain,
-                    argument_set.is_offered and known.is_offered,
+                is_certain, is_offered = (
+                    argument_set.is_certain or previous.is_certain,
+                    argument_set.is_offered and previous.is_offered,
                 )
-                found[key] = replace(known, is_certain=certain, is_offered=offered)
-        best = sorted(found.values(), key=lambda argument_set: (not argument_set.is_complete, bool(argument_set.open)))
-        complete = [argument_set for argument_set in best if argument_set.is_complete][:MOST_SETS]
-        return (*complete, *[argument_set for argument_set in best if not argument_set.is_complete][:MOST_SETS])
+                merged[key] = replace(previous, is_certain=is_certain, is_offered=is_offered)
+        sorted_sets = sorted(
+            merged.values(), key=lambda argument_set: (not argument_set.is_complete, bool(argument_set.runtime_names))
+        )
+        complete = [argument_set for argument_set in sorted_sets if argument_set.is_complete][:MAX_VARIATIONS]
+        return (
+            *complete,
+            *[argument_set for argument_set in sorted_sets if not argument_set.is_complete][:MAX_VARIATIONS],
+        )
 
 
 @dataclass(eq=False)
@@ -132,51 +139,55 @@ class _CalledDescription:
     def sets(self) -> Iterator[ArgumentSet]:
         """Yield the argument sets of all calls."""
         for package, file in self.files:
-            calls = [call for call in file.calls if self._may_be(call.path)]
+            calls = [call for call in file.calls if self._may_match(call.path)]
             if not calls:
                 continue
             launches = self._launches(package, file)
             for call in calls:
-                for given in launches:
-                    yield from self._of_call(call, file, given)
+                for launch_values in launches:
+                    yield from self._call_sets(call, file, launch_values)
 
-    def _of_call(self, call: XacroCall, file: CallingFile, given: Mapping[str, str]) -> Iterator[ArgumentSet]:
-        first: ArgumentSet | None = None
-        for selection in selections(call.path, file.choices, given):
-            written = resolve(call.path, file.choices, selection)
-            if written is None or not self._is_target(_unquoted(written) if call.is_command else written, file):
+    def _call_sets(self, call: XacroCall, file: CallingFile, launch_values: Mapping[str, str]) -> Iterator[ArgumentSet]:
+        first_set: ArgumentSet | None = None
+        for selection in selections(call.path, file.choices, launch_values):
+            path = resolve(call.path, file.choices, selection)
+            if path is None or not self._is_target(_without_quotes(path) if call.is_command else path, file):
                 continue
-            for taken, certain in variations(call.arguments.values(), file.choices, selection):
-                found = self._set(call, file, taken, is_certain=certain)
-                first = first or found
-                apart = {name for name, row in taken.rows.items() if row != selection.rows.get(name, 0)}
+            for variation, is_certain in variations(call.arguments.values(), file.choices, selection):
+                argument_set = self._argument_set(call, file, variation, is_certain=is_certain)
+                first_set = first_set or argument_set
+                changed_choices = {name for name, row in variation.rows.items() if row != selection.rows.get(name, 0)}
                 yield replace(
-                    found,
-                    varied=_varied(call, found, first),
-                    is_mixed=any(selection.rows.values()) and bool(apart),
-                    is_offered=bool(apart) and apart <= launch_names(file.choices).keys(),
+                    argument_set,
+                    varied=_varied(call, argument_set, first_set),
+                    is_mixed=any(selection.rows.values()) and bool(changed_choices),
+                    is_offered=bool(changed_choices) and changed_choices <= launch_names(file.choices).keys(),
                 )
-        if first is None and _is_open(call.path):
-            yield self._set(call, file, Selection({}, given), is_certain=False)
+        if first_set is None and _is_open(call.path):
+            yield self._argument_set(call, file, Selection({}, launch_values), is_certain=False)
 
-    def _set(self, call: XacroCall, file: CallingFile, selection: Selection, *, is_certain: bool) -> ArgumentSet:
+    def _argument_set(
+        self, call: XacroCall, file: CallingFile, selection: Selection, *, is_certain: bool
+    ) -> ArgumentSet:
         values: dict[str, str] = {}
-        missing: list[str] = []
+        unknown_names: list[str] = []
         for name, text in call.arguments.items():
             value = resolve(text, file.choices, selection)
             value = None if value is None else self._with_folders(value)
             if value is None:
-                missing.append(name)
+                unknown_names.append(name)
             elif not name:
-                words = (word.partition(":=") for word in (_words(value) if call.is_command else value.split()))
-                values.update((word, text) for word, sign, text in words if sign)
+                assignments = (
+                    word.partition(":=") for word in (_split_words(value) if call.is_command else value.split())
+                )
+                values.update((word, text) for word, sign, text in assignments if sign)
             else:
-                values[name] = _unquoted(value) if call.is_command else value
-        return ArgumentSet(values, tuple(missing), call.span, is_certain)
+                values[name] = _without_quotes(value) if call.is_command else value
+        return ArgumentSet(values, tuple(unknown_names), call.span, is_certain)
 
-    # --- which file is meant --------------------------------------------------------------------------------
+    # --- matching of paths ----------------------------------------------------------------------------------
 
-    def _may_be(self, path: Text) -> bool:
+    def _may_match(self, path: Text) -> bool:
         """Return whether a path with unknown parts may be the description."""
         pattern = "".join(re.escape(piece) if isinstance(piece, str) else "\0" for piece in path)
         if "/" not in pattern.strip("\0") and not pattern.strip("\0").endswith(re.escape(self.path.name)):
@@ -185,18 +196,22 @@ class _CalledDescription:
         expression = "(^|.*/)" + pattern.lstrip("\0/").replace("\0", ".*").removeprefix("\\./")
         return re.fullmatch(expression, self.path.as_posix()) is not None
 
-    def _is_target(self, written: str, file: CallingFile) -> bool:
+    def _is_target(self, path_text: str, file: CallingFile) -> bool:
         """Return whether a path without unknown parts is the path of the description."""
-        package, rest = split_mark(written)
-        if _MARK.search(rest):
+        package, relative_path = split_mark(path_text)
+        if _MARK.search(relative_path):
             return False  # A share folder in the middle of a path is not supported.
         if package is None:
-            return self._is_same(Path(os.path.dirname(file.path), written)) or self._is_same(Path(written))  # noqa: PTH120
-        own = enclosing_package(self.path.parent)
-        if own is not None and own[0] == package and self._is_same(own[1] / rest.lstrip("/")):
+            return self._is_same(Path(os.path.dirname(file.path), path_text)) or self._is_same(Path(path_text))  # noqa: PTH120
+        own_package = enclosing_package(self.path.parent)
+        if (
+            own_package is not None
+            and own_package[0] == package
+            and self._is_same(own_package[1] / relative_path.lstrip("/"))
+        ):
             return True
         share = self.finder.find(package)
-        return share is not None and self._is_same(share / rest.lstrip("/"))
+        return share is not None and self._is_same(share / relative_path.lstrip("/"))
 
     def _is_same(self, path: Path) -> bool:
         return os.path.realpath(path) == os.path.realpath(self.path)
@@ -219,26 +234,28 @@ class _CalledDescription:
         """Return the launch arguments with which a file is launched, directly or by including files.
 
         Returns:
-            For each way to launch the file, the given values by the names of their choices.
+            For each way to launch the file, the values of the launch arguments, by the names of their choices.
         """
-        found: list[dict[str, str]] = [{}]
-        if depth >= _DEEPEST:
-            return found
-        for named, by, other, inclusion in self._inclusions.get(Path(file.path).name, ()):
-            if named not in (None, package):
+        launches: list[dict[str, str]] = [{}]
+        if depth >= _MAX_DEPTH:
+            return launches
+        for package_in_path, including_package, including_file, inclusion in self._inclusions.get(
+            Path(file.path).name, ()
+        ):
+            if package_in_path not in (None, package):
                 continue
-            for given in self._launches(by, other, depth + 1):
-                selection = Selection({}, given)
+            for outer_values in self._launches(including_package, including_file, depth + 1):
+                selection = Selection({}, outer_values)
                 texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
-                inherited = {name: (Open(name),) for name in launch_names(other.choices)}
+                inherited_texts = {name: (Open(name),) for name in launch_names(including_file.choices)}
                 values = {
                     name: value
-                    for name, text in {**inherited, **texts}.items()
-                    if (value := resolve(text, other.choices, selection)) is not None
+                    for name, text in {**inherited_texts, **texts}.items()
+                    if (value := resolve(text, including_file.choices, selection)) is not None
                 }
-                if values not in found and len(found) < _MOST_LAUNCHES:
-                    found.append({**given, **values})
-        return found
+                if values not in launches and len(launches) < _MAX_LAUNCHES:
+                    launches.append({**outer_values, **values})
+        return launches
 
     @cached_property
     def _inclusions(self) -> dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]]:
@@ -247,11 +264,11 @@ class _CalledDescription:
         An inclusion is a tuple of the package in the path, the including package, the including file, and the inclusion
         itself.
         """
-        found: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
+        inclusions: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
         for package, file in self.files:
-            for named, name, inclusion in file.included:
-                found.setdefault(name, []).append((named, package, file, inclusion))
-        return found
+            for package_in_path, name, inclusion in file.included:
+                inclusions.setdefault(name, []).append((package_in_path, package, file, inclusion))
+        return inclusions
 
 
 def _is_open(path: Text) -> bool:
@@ -259,22 +276,22 @@ def _is_open(path: Text) -> bool:
     return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
 
 
-def _varied(call: XacroCall, one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
+def _varied(call: XacroCall, argument_set: ArgumentSet, reference_set: ArgumentSet) -> tuple[str, ...]:
     """Return the names of the arguments that differ between two sets.
 
     If some of these arguments are plain choices, the result is limited to them. Texts composed of choices, such as
     paths, are then left out.
     """
-    names = tuple(name for name, value in one.values.items() if other.values.get(name) != value)
+    names = tuple(name for name, value in argument_set.values.items() if reference_set.values.get(name) != value)
     return tuple(name for name in names if len(call.arguments.get(name, ())) == 1) or names
 
 
-def _unquoted(value: str) -> str:
+def _without_quotes(value: str) -> str:
     """Return a command-line value without its quotes."""
-    return "".join(_words(value)) if set(value) & {'"', "'"} else value
+    return "".join(_split_words(value)) if set(value) & {'"', "'"} else value
 
 
-def _words(line: str) -> list[str]:
+def _split_words(line: str) -> list[str]:
     """Return the words of a part of a command line, without their quotes."""
     import shlex  # imported here because quotes are rare
 

@@ -1,4 +1,4 @@
-"""The values with which the conditions of a description compare its arguments."""
+"""The values that the conditions of a description compare with its arguments."""
 
 from __future__ import annotations
 
@@ -17,25 +17,27 @@ _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 
 
 def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
-    """Return each value with which a condition compares an argument, as an uncertain set.
+    """Return an uncertain argument set for each value that a condition compares with an argument.
 
-    An argument is also recognised through a property that contains it, as in ``<xacro:property name="side" value="$(arg
-    side)"/>``. Macro parameters are not followed.
+    An argument is also recognised through a property that contains it, as in
+    ``<xacro:property name="side" value="$(arg side)"/>``. Macro parameters are not followed.
 
     Args:
         documents: the unexpanded files of a description.
     """
     elements = [element for document in documents for element in document.root.walk()]
-    names = dict(_names(elements))
-    found: dict[tuple[str, str], ArgumentSet] = {}
+    names = dict(_argument_names(elements))
+    compared_sets: dict[tuple[str, str], ArgumentSet] = {}
     for element in elements:
         if element.tag not in _CONDITIONS:
             continue
         for operand, value in _comparisons(element.attributes.get("value", "")):
             if operand in names:
-                one = ArgumentSet({names[operand]: value}, (), element.attribute_span("value"), is_certain=False)
-                found.setdefault((names[operand], value), one)
-    return tuple(found.values())
+                argument_set = ArgumentSet(
+                    {names[operand]: value}, (), element.attribute_span("value"), is_certain=False
+                )
+                compared_sets.setdefault((names[operand], value), argument_set)
+    return tuple(compared_sets.values())
 
 
 def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
@@ -44,11 +46,13 @@ def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
     An empty default often means that callers must pass a value.
     """
     elements = (element for document in documents for element in document.root.walk())
-    declared = (element.attributes for element in elements if element.tag == "xacro:arg")
-    return tuple(dict.fromkeys(item["name"] for item in declared if "name" in item and item.get("default") == ""))
+    argument_attributes = (element.attributes for element in elements if element.tag == "xacro:arg")
+    return tuple(
+        dict.fromkeys(item["name"] for item in argument_attributes if "name" in item and item.get("default") == "")
+    )
 
 
-def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
+def _argument_names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
     """Yield the name of each argument, and of each property that contains an argument.
 
     Each name is paired with the name of the argument.
@@ -58,14 +62,14 @@ def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
         if element.tag == "xacro:arg":
             yield name, name
         elif element.tag == "xacro:property":
-            held = re.fullmatch(rf"\s*{_ARGUMENT}\s*", element.attributes.get("value", ""))
-            if held is not None:
-                yield name, held[1]
+            match = re.fullmatch(rf"\s*{_ARGUMENT}\s*", element.attributes.get("value", ""))
+            if match is not None:
+                yield name, match[1]
 
 
 def _comparisons(condition: str) -> Iterator[tuple[str, str]]:
-    """Yield each operand of ``==`` and ``in`` with a text with which it is compared."""
-    for *operands, one, several in _COMPARISON.findall(condition):
+    """Yield each operand of ``==`` and ``in``, paired with each text that it is compared with."""
+    for *operands, single_text, text_list in _COMPARISON.findall(condition):
         operand = next(filter(None, operands))
-        for found in _TEXT.findall(one or several):
-            yield operand, next(filter(None, found))
+        for match in _TEXT.findall(single_text or text_list):
+            yield operand, next(filter(None, match))

@@ -13,14 +13,14 @@ from linkwright.packages.readers.xacro_calls.call import CallingFile
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
-_MOST_FILES = 5_000
-_LARGEST = 1_000_000
-"""Larger files, in bytes, hold data and no calls."""
-_MARKUP = (".launch.xml", "_launch.xml")
-_YAML = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
+_MAX_FILES = 5_000
+_MAX_BYTES = 1_000_000
+"""The size in bytes above which a file is skipped, because it holds data and no calls."""
+_XML_SUFFIXES = (".launch.xml", "_launch.xml")
+_YAML_SUFFIXES = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
 _LAUNCH_FOLDERS = ("launch", "test", "tests")
-"""Folders whose XML files may be launch files whatever they are called."""
-_WORDS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include", "include:")
+"""Folders in which any XML file may be a launch file."""
+_CALL_MARKERS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include", "include:")
 """A file without any of these words calls nothing."""
 
 
@@ -41,13 +41,13 @@ class CallingFiles:
             path: the absolute path of the file.
             folders: packages to search in addition to those nearby.
         """
-        own = enclosing_package(path.parent)
-        if own is None:
+        own_package = enclosing_package(path.parent)
+        if own_package is None:
             yield from ((None, file) for file in self.of(path.parent))
             return
-        name, folder = own
+        name, folder = own_package
         yield from ((name, file) for file in self.of(folder))
-        yield from self._of_others(name, folder, folders, using=True)
+        yield from self._other_calling_files(name, folder, folders, depending=True)
 
     def elsewhere(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
         """Yield the calling files of packages that do not depend on a file's package.
@@ -58,45 +58,45 @@ class CallingFiles:
             path: the absolute path of the file.
             folders: packages to search in addition to those nearby.
         """
-        own = enclosing_package(path.parent)
-        if own is not None:
-            yield from self._of_others(*own, folders, using=False)
+        own_package = enclosing_package(path.parent)
+        if own_package is not None:
+            yield from self._other_calling_files(*own_package, folders, depending=False)
 
-    def _of_others(
-        self, name: str, folder: Path, folders: tuple[Path, ...], *, using: bool
+    def _other_calling_files(
+        self, name: str, folder: Path, folders: tuple[Path, ...], *, depending: bool
     ) -> Iterator[tuple[str, CallingFile]]:
         """Yield the calling files of other packages, with the names of their packages.
 
-        With `using`, these are the packages that depend on the package `name`, otherwise those that do not.
+        With `depending`, these packages depend on the package `name`; otherwise, they do not depend on it.
         """
-        for other, place in self._near(folder, folders).items():
-            if other != name and (name in self._manifest(place)) is using:
-                yield from ((other, file) for file in self.of(place))
+        for other_name, other_folder in self._known_packages(folder, folders).items():
+            if other_name != name and (name in self._manifest(other_folder)) is depending:
+                yield from ((other_name, file) for file in self.of(other_folder))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
         """Return the calling files in and below a folder, except those of nested packages."""
         if folder not in self._read:
-            read = (_read(path, folder) for path in _files(folder))
+            parsed_files = (_read(path, folder) for path in _candidate_files(folder))
             self._read[folder] = tuple(
                 calling_file
-                for calling_file in read
+                for calling_file in parsed_files
                 if calling_file and (calling_file.calls or calling_file.inclusions)
             )
         return self._read[folder]
 
-    def _near(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
+    def _known_packages(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
         """Return the folders of the packages in the workspace and in additional folders, by name."""
         return {
-            **self._beside(folder),
-            **{found[0]: folder for folder in folders if (found := enclosing_package(folder))},
+            **self._neighbouring_packages(folder),
+            **{package[0]: folder for folder in folders if (package := enclosing_package(folder))},
         }
 
-    def _beside(self, folder: Path) -> dict[str, Path]:
+    def _neighbouring_packages(self, folder: Path) -> dict[str, Path]:
         """Return the folders of packages next to a package or below the same ``src``, by name."""
-        above = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
-        if above not in self._packages:
-            self._packages[above] = SourceScan(above).packages()
-        return self._packages[above]
+        source_folder = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
+        if source_folder not in self._packages:
+            self._packages[source_folder] = SourceScan(source_folder).packages()
+        return self._packages[source_folder]
 
     def _manifest(self, folder: Path) -> str:
         if folder not in self._manifests:
@@ -104,26 +104,26 @@ class CallingFiles:
         return self._manifests[folder]
 
 
-def _files(folder: Path) -> Iterator[Path]:
+def _candidate_files(folder: Path) -> Iterator[Path]:
     count = 0
     for top, folders, names in os.walk(folder):
-        place = Path(top)
-        if place != folder and (MANIFEST in names or not IGNORE_MARKERS.isdisjoint(names)):
+        directory = Path(top)
+        if directory != folder and (MANIFEST in names or not IGNORE_MARKERS.isdisjoint(names)):
             folders.clear()
             continue
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
-        markup = (".xml",) if place.name in _LAUNCH_FOLDERS else _MARKUP
+        xml_suffixes = (".xml",) if directory.name in _LAUNCH_FOLDERS else _XML_SUFFIXES
         for name in sorted(names):
-            if name == "CMakeLists.txt" or name.endswith((".py", ".launch", ".test", *markup, *_YAML)):
+            if name == "CMakeLists.txt" or name.endswith((".py", ".launch", ".test", *xml_suffixes, *_YAML_SUFFIXES)):
                 count += 1
-                if count > _MOST_FILES:
+                if count > _MAX_FILES:
                     return
-                yield place / name
+                yield directory / name
 
 
 def _read(path: Path, package: Path) -> CallingFile | None:
     text = _text(path)
-    if text is None or not any(word in text for word in _WORDS):
+    if text is None or not any(word in text for word in _CALL_MARKERS):
         return None
     source = SourceText(str(path), text)
     if path.name == "CMakeLists.txt":
@@ -136,12 +136,12 @@ def _read(path: Path, package: Path) -> CallingFile | None:
         return read_python(source)
     from linkwright.packages.readers.xacro_calls.markup import read_xml, read_yaml
 
-    return read_yaml(source) if path.name.endswith(_YAML) else read_xml(source)
+    return read_yaml(source) if path.name.endswith(_YAML_SUFFIXES) else read_xml(source)
 
 
 def _text(path: Path) -> str | None:
     try:
-        if not path.is_file() or path.stat().st_size > _LARGEST:
+        if not path.is_file() or path.stat().st_size > _MAX_BYTES:
             return None
         return decode(read_bytes(path), str(path))
     except (LinkwrightError, OSError):

@@ -10,12 +10,12 @@ from pathlib import Path
 from linkwright.descriptions.comparison.facts import (
     Block,
     Fact,
-    blocks_of_joint,
-    blocks_of_link,
-    collisions_of,
+    collision_blocks,
+    joint_blocks,
+    link_blocks,
+    match_blocks,
     nearest,
-    pairs_of,
-    visuals_of,
+    visual_blocks,
 )
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.diagnostics import LinkwrightError, Span
@@ -28,7 +28,7 @@ from linkwright.xmltree import Element
 Kind = Literal["added", "removed", "renamed", "changed"]
 Subject = Literal["robot", "link", "joint", "extension"]
 _Pair = tuple[Element | None, Element | None]
-"""Where something is written in the old and in the new description."""
+"""The element in the old description and the element in the new one; None if there is none."""
 _Part = TypeVar("_Part", Link, Joint)
 
 
@@ -36,7 +36,7 @@ _Part = TypeVar("_Part", Link, Joint)
 class Place:
     """The location of a difference.
 
-    `calls` are the macro calls and includes that led there, innermost first.
+    `calls` are the macro calls and includes that produced the element at this location, innermost first.
     """
 
     span: Span
@@ -76,9 +76,8 @@ class Comparison:
     """The differences between two descriptions.
 
     Attributes:
-        differences: first the differences of the robot itself, then those of links and joints in the order of the new
-            description, then removed links and joints, and finally the differences of the elements that other programs
-            read.
+        differences: the differences of the robot itself, then of links and joints in the order of the new description,
+            then of removed links and joints, and finally of the elements that other programs read.
         links: the name in the new description of each matched link, by its name in the old description.
         joints: the name in the new description of each matched joint, by its name in the old description.
     """
@@ -100,7 +99,7 @@ class Side:
     """
 
     robot: Robot
-    normalize: Callable[[str], str] = field(default=lambda words: words)
+    normalize: Callable[[str], str] = field(default=lambda text: text)
     resolve: Callable[[str], Path] | None = None
 
     def mesh(self, address: str) -> Path | None:
@@ -133,20 +132,28 @@ class _Comparer:
 
     def run(self) -> Comparison:
         old, new = self.old.robot, self.new.robot
-        self.matches = match(old, new, self._same_link, self._same_joint)
-        found = [*self._robot(), *self._links(), *self._joints(), *self._extensions()]
-        return Comparison(tuple(found), self.matches.links, self.matches.joints)
+        self.matches = match(old, new, self._is_same_link, self._is_same_joint)
+        differences = [
+            *self._robot(),
+            *self._link_differences(),
+            *self._joint_differences(),
+            *self._extension_differences(),
+        ]
+        return Comparison(tuple(differences), self.matches.links, self.matches.joints)
 
     # --- matching ------------------------------------------------------------------------------------------------
 
-    def _same(self, old: Block, new: Block) -> bool:
+    def _are_equal_blocks(self, old: Block, new: Block) -> bool:
         return old.equals(new, self.old.normalize, self.new.normalize)
 
-    def _same_link(self, old: Link, new: Link) -> bool:
-        return not any(self._in_link(old, new))
+    def _is_same_link(self, old: Link, new: Link) -> bool:
+        return not any(self._link_property_differences(old, new))
 
-    def _same_joint(self, old: Joint, new: Joint) -> bool:
-        return all(difference.property in ("parent", "child", "mimic joint") for difference in self._in_joint(old, new))
+    def _is_same_joint(self, old: Joint, new: Joint) -> bool:
+        return all(
+            difference.property in ("parent", "child", "mimic joint")
+            for difference in self._joint_property_differences(old, new)
+        )
 
     # --- subjects -----------------------------------------------------------------------------------------------
 
@@ -156,16 +163,20 @@ class _Comparer:
             places = _place(old.element, "name"), _place(new.element, "name")
             yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *places)
 
-    def _links(self) -> Iterator[Difference]:
+    def _link_differences(self) -> Iterator[Difference]:
         old, new = self.old.robot.links, self.new.robot.links
-        yield from _named("link", old, new, self.matches.links, self._in_link)
+        yield from _named_differences("link", old, new, self.matches.links, self._link_property_differences)
 
-    def _joints(self) -> Iterator[Difference]:
+    def _joint_differences(self) -> Iterator[Difference]:
         def inside(old: Joint, new: Joint) -> Iterator[Difference]:
-            yield from (difference for difference in self._in_joint(old, new) if not self._follows_a_name(difference))
+            yield from (
+                difference
+                for difference in self._joint_property_differences(old, new)
+                if not self._follows_a_name(difference)
+            )
 
         old, new = self.old.robot.joints, self.new.robot.joints
-        yield from _named("joint", old, new, self.matches.joints, inside)
+        yield from _named_differences("joint", old, new, self.matches.joints, inside)
 
     def _follows_a_name(self, difference: Difference) -> bool:
         """Return whether a value differs only because the link or joint that it names was renamed."""
@@ -173,74 +184,86 @@ class _Comparer:
             return self.matches.links.get(difference.old or "") == difference.new
         return difference.property == "mimic joint" and self.matches.joints.get(difference.old or "") == difference.new
 
-    def _in_joint(self, old: Joint, new: Joint) -> Iterator[Difference]:
-        around = old.element, new.element
-        yield from self._blocks("joint", new.name, blocks_of_joint(old), blocks_of_joint(new), around)
+    def _joint_property_differences(self, old: Joint, new: Joint) -> Iterator[Difference]:
+        elements = old.element, new.element
+        yield from self._all_block_differences("joint", new.name, joint_blocks(old), joint_blocks(new), elements)
 
-    def _in_link(self, old: Link, new: Link) -> Iterator[Difference]:
-        around = old.element, new.element
-        yield from self._blocks("link", new.name, blocks_of_link(old), blocks_of_link(new), around)
-        yield from self._shapes(new.name, visuals_of(old), visuals_of(new), around)
-        yield from self._shapes(new.name, collisions_of(old), collisions_of(new), around)
-        yield from self._meshes(old, new)
+    def _link_property_differences(self, old: Link, new: Link) -> Iterator[Difference]:
+        elements = old.element, new.element
+        yield from self._all_block_differences("link", new.name, link_blocks(old), link_blocks(new), elements)
+        yield from self._shape_differences(new.name, visual_blocks(old), visual_blocks(new), elements)
+        yield from self._shape_differences(new.name, collision_blocks(old), collision_blocks(new), elements)
+        yield from self._mesh_differences(old, new)
 
-    def _shapes(self, link: str, old: Sequence[Block], new: Sequence[Block], around: _Pair) -> Iterator[Difference]:
-        for before, after in pairs_of(old, new, self._same):
-            number = after if after is not None else before or 0
-            some = new[number] if after is not None else old[number]
-            several = max(len(old), len(new)) > 1
+    def _shape_differences(
+        self, link: str, old: Sequence[Block], new: Sequence[Block], elements: _Pair
+    ) -> Iterator[Difference]:
+        for old_index, new_index in match_blocks(old, new, self._are_equal_blocks):
+            number = new_index if new_index is not None else old_index or 0
+            block = new[number] if new_index is not None else old[number]
+            has_several = max(len(old), len(new)) > 1
             name = (
-                f"{some.name} '{some.label}'" if some.label else f"{some.name} {number + 1}" if several else some.name
+                f"{block.name} '{block.label}'"
+                if block.label
+                else f"{block.name} {number + 1}"
+                if has_several
+                else block.name
             )
-            first = None if before is None else old[before]
-            second = None if after is None else new[after]
-            yield from self._block("link", link, name, first, second, around)
+            old_block = None if old_index is None else old[old_index]
+            new_block = None if new_index is None else new[new_index]
+            yield from self._block("link", link, name, old_block, new_block, elements)
 
-    def _meshes(self, old: Link, new: Link) -> Iterator[Difference]:
+    def _mesh_differences(self, old: Link, new: Link) -> Iterator[Difference]:
         """Yield the differences of mesh files that have the same URI but different contents."""
-        for tag, before, after in (("visual", old.visuals, new.visuals), ("collision", old.collisions, new.collisions)):
-            known, wanted = _meshes_of(before), _meshes_of(after)
-            for name in (name for name in wanted if name in known):
+        for tag, old_shapes, new_shapes in (
+            ("visual", old.visuals, new.visuals),
+            ("collision", old.collisions, new.collisions),
+        ):
+            old_meshes, new_meshes = _mesh_elements(old_shapes), _mesh_elements(new_shapes)
+            for name in (uri for uri in new_meshes if uri in old_meshes):
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not _same_bytes(old_file, new_file):
-                    values = _difference_of_bytes(old_file, new_file)
-                    places = _place(known[name]), _place(wanted[name])
+                    values = _content_difference(old_file, new_file)
+                    places = _place(old_meshes[name]), _place(new_meshes[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *places)
 
     # --- blocks of facts ------------------------------------------------------------------------------------------
 
-    def _blocks(
-        self, subject: Subject, name: str, old: Sequence[Block], new: Sequence[Block], around: _Pair
+    def _all_block_differences(
+        self, subject: Subject, name: str, old: Sequence[Block], new: Sequence[Block], elements: _Pair
     ) -> Iterator[Difference]:
-        before, after = {block.name: block for block in old}, {block.name: block for block in new}
-        for block in dict.fromkeys([*after, *before]):
-            yield from self._block(subject, name, block, before.get(block), after.get(block), around)
+        old_blocks, new_blocks = {block.name: block for block in old}, {block.name: block for block in new}
+        for block in dict.fromkeys([*new_blocks, *old_blocks]):
+            yield from self._block(subject, name, block, old_blocks.get(block), new_blocks.get(block), elements)
 
     def _block(
-        self, subject: Subject, name: str, block: str, old: Block | None, new: Block | None, around: _Pair
+        self, subject: Subject, name: str, block: str, old: Block | None, new: Block | None, elements: _Pair
     ) -> Iterator[Difference]:
         if old is None or new is None:
             texts = None if old is None else old.text, None if new is None else new.text
-            first, second = around[0] if old is None else old.element, around[1] if new is None else new.element
-            yield Difference(subject, name, "changed", block, *texts, "", _place(first), _place(second))
+            old_element, new_element = (
+                elements[0] if old is None else old.element,
+                elements[1] if new is None else new.element,
+            )
+            yield Difference(subject, name, "changed", block, *texts, "", _place(old_element), _place(new_element))
             return
         for fact in dict.fromkeys([*new.facts, *old.facts]):
-            before, after = old.facts.get(fact), new.facts.get(fact)
-            if before and after and before.equals(after, self.old.normalize, self.new.normalize):
+            old_fact, new_fact = old.facts.get(fact), new.facts.get(fact)
+            if old_fact and new_fact and old_fact.equals(new_fact, self.old.normalize, self.new.normalize):
                 continue
-            yield _changed(subject, name, f"{block} {fact}".strip(), (before, old), (after, new))
+            yield _change(subject, name, f"{block} {fact}".strip(), (old_fact, old), (new_fact, new))
 
     # --- extensions ------------------------------------------------------------------------------------------------
 
-    def _extensions(self) -> Iterator[Difference]:
-        yield from self._elements(self.old.robot.extensions, self.new.robot.extensions, "", None)
+    def _extension_differences(self) -> Iterator[Difference]:
+        yield from self._child_differences(self.old.robot.extensions, self.new.robot.extensions, "", None)
 
-    def _elements(
+    def _child_differences(
         self,
         old: Sequence[Element],
         new: Sequence[Element],
         path: str,
-        around: tuple[str, Element, Element] | None,
+        enclosing: tuple[str, Element, Element] | None,
     ) -> Iterator[Difference]:
         """Yield the differences between the elements of two robots, or of a pair of elements.
 
@@ -248,37 +271,40 @@ class _Comparer:
             old: the elements of the old description.
             new: the elements of the new description.
             path: the names of the enclosing elements.
-            around: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
+            enclosing: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
         """
-        before, after = _elements_by_key(old), _elements_by_key(new)
-        for key in dict.fromkeys([*after, *before]):
-            first, second = before.get(key), after.get(key)
-            here = f"{path} {key}".strip()
-            if first is not None and second is not None:
-                name, start = (key, "") if around is None else (around[0], here)
-                yield from self._element(name, start, first, second)
-            elif around is None:
-                kind: Kind = "added" if first is None else "removed"
-                yield Difference("extension", key, kind, "", None, None, "", _place(first), _place(second))
+        old_by_key, new_by_key = _elements_by_key(old), _elements_by_key(new)
+        for key in dict.fromkeys([*new_by_key, *old_by_key]):
+            old_element, new_element = old_by_key.get(key), new_by_key.get(key)
+            element_path = f"{path} {key}".strip()
+            if old_element is not None and new_element is not None:
+                name, start_path = (key, "") if enclosing is None else (enclosing[0], element_path)
+                yield from self._element_differences(name, start_path, old_element, new_element)
+            elif enclosing is None:
+                kind: Kind = "added" if old_element is None else "removed"
+                yield Difference("extension", key, kind, "", None, None, "", _place(old_element), _place(new_element))
             else:
-                texts = None if first is None else _flat(first), None if second is None else _flat(second)
-                places = _place(first or around[1]), _place(second or around[2])
-                yield Difference("extension", around[0], "changed", here, *texts, "", *places)
+                texts = (
+                    None if old_element is None else _one_line(old_element),
+                    None if new_element is None else _one_line(new_element),
+                )
+                places = _place(old_element or enclosing[1]), _place(new_element or enclosing[2])
+                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *places)
 
-    def _element(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
+    def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
-            before, after = old.attributes.get(attribute), new.attributes.get(attribute)
-            if not self._same_words(before, after):
+            old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
+            if not self._same_text(old_value, new_value):
                 places = _place(old, attribute), _place(new, attribute)
                 yield Difference(
-                    "extension", name, "changed", f"{path} @{attribute}".strip(), before, after, "", *places
+                    "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *places
                 )
         texts = " ".join(old.text().split()), " ".join(new.text().split())
-        if not self._same_words(*texts):
+        if not self._same_text(*texts):
             yield Difference("extension", name, "changed", path, *texts, "", _place(old), _place(new))
-        yield from self._elements(list(old.elements()), list(new.elements()), path, (name, old, new))
+        yield from self._child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
-    def _same_words(self, old: str | None, new: str | None) -> bool:
+    def _same_text(self, old: str | None, new: str | None) -> bool:
         if old is None or new is None:
             return old is new
         return " ".join(self.old.normalize(old).split()) == " ".join(self.new.normalize(new).split())
@@ -289,20 +315,20 @@ def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
 
     The keys of elements with the same tag and name are numbered.
     """
-    found: dict[str, Element] = {}
+    keyed_elements: dict[str, Element] = {}
     for element in elements:
         name = element.attributes.get("name") or element.attributes.get("reference")
         key = f"{element.tag} {name}" if name else element.tag
         number = 2
-        unique = key
-        while unique in found:
-            unique = f"{key} {number}"
+        unique_key = key
+        while unique_key in keyed_elements:
+            unique_key = f"{key} {number}"
             number += 1
-        found[unique] = element
-    return found
+        keyed_elements[unique_key] = element
+    return keyed_elements
 
 
-def _flat(element: Element) -> str:
+def _one_line(element: Element) -> str:
     """Return an element's attributes, text and child tags as one line."""
     words = [f"{name}={value}" for name, value in element.attributes.items()]
     words += element.text().split()
@@ -310,40 +336,44 @@ def _flat(element: Element) -> str:
     return " ".join(words)
 
 
-def _named(
+def _named_differences(
     subject: Subject,
     old: Mapping[str, _Part],
     new: Mapping[str, _Part],
-    matched: Mapping[str, str],
-    inside: Callable[[_Part, _Part], Iterator[Difference]],
+    matches: Mapping[str, str],
+    compare_pair: Callable[[_Part, _Part], Iterator[Difference]],
 ) -> Iterator[Difference]:
     """Yield the differences of links or joints: added, renamed, changed and removed ones."""
-    names = {after: before for before, after in matched.items()}
-    for name, part in new.items():
+    names = {new_name: old_name for old_name, new_name in matches.items()}
+    for name, item in new.items():
         if name not in names:
-            yield Difference(subject, name, "added", new_place=_place(part.element))
+            yield Difference(subject, name, "added", new_place=_place(item.element))
             continue
-        before = old[names[name]]
-        if before.name != name:
-            places = _place(before.element, "name"), _place(part.element, "name")
-            yield Difference(subject, name, "renamed", "name", before.name, name, "", *places)
-        yield from inside(before, part)
-    for name, part in old.items():
-        if name not in matched:
-            yield Difference(subject, name, "removed", old_place=_place(part.element))
+        old_item = old[names[name]]
+        if old_item.name != name:
+            places = _place(old_item.element, "name"), _place(item.element, "name")
+            yield Difference(subject, name, "renamed", "name", old_item.name, name, "", *places)
+        yield from compare_pair(old_item, item)
+    for name, item in old.items():
+        if name not in matches:
+            yield Difference(subject, name, "removed", old_place=_place(item.element))
 
 
-def _changed(
+def _change(
     subject: Subject, name: str, fact: str, old: tuple[Fact | None, Block], new: tuple[Fact | None, Block]
 ) -> Difference:
-    def place(side: tuple[Fact | None, Block]) -> Place | None:
-        found, block = side
-        return _place(block.element) if found is None else _place(found.element, found.attribute)
+    def place(pair: tuple[Fact | None, Block]) -> Place | None:
+        compared_fact, block = pair
+        return (
+            _place(block.element) if compared_fact is None else _place(compared_fact.element, compared_fact.attribute)
+        )
 
-    before, after = old[0], new[0]
-    some = after or before
-    texts = None if before is None else before.text, None if after is None else after.text
-    return Difference(subject, name, "changed", fact, *texts, some.unit if some else "", place(old), place(new))
+    old_fact, new_fact = old[0], new[0]
+    present_fact = new_fact or old_fact
+    texts = None if old_fact is None else old_fact.text, None if new_fact is None else new_fact.text
+    return Difference(
+        subject, name, "changed", fact, *texts, present_fact.unit if present_fact else "", place(old), place(new)
+    )
 
 
 def _place(element: Element | None, attribute: str = "") -> Place | None:
@@ -357,8 +387,8 @@ def _place(element: Element | None, attribute: str = "") -> Place | None:
     return Place(span, tuple(call for call in calls if call is not None))
 
 
-def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
-    """Return the elements in which meshes are written, by the URI of the mesh."""
+def _mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
+    """Return the ``<mesh>`` elements of shapes, by the URI of the mesh."""
     return {
         shape.geometry.filename: nearest(shape.element, "geometry", "mesh")
         for shape in shapes
@@ -366,7 +396,7 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
     }
 
 
-def _difference_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
+def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
     """Return the old value, the new value and the unit of the difference between two files.
 
     The values are the sizes or, if these are equal, the beginnings of the hashes.

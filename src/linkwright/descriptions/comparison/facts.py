@@ -6,18 +6,18 @@ from collections.abc import Callable, Iterable, Sequence
 from math import sqrt
 
 from linkwright.geometry.shapes import Box, Sphere
-from linkwright.geometry.single import Pose, quaternion_of
+from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.urdf import Geometry, Inertial, Joint, Link, Mesh, Visual
 from linkwright.urdf.model import Collision
 from linkwright.xmltree import Element
 
 LENGTH_TOLERANCE = 1e-6
-"""Metres; lengths that differ by no more are the same."""
+"""The difference in metres up to which lengths are equal."""
 ROTATION_TOLERANCE = 1e-6
-"""Radians; rotations, and directions of axes, with no more between them are the same."""
+"""The angle in radians up to which rotations, and directions of axes, are equal."""
 RELATIVE_TOLERANCE = 1e-6
-"""All other numbers are the same when they differ by no more than this part of the greater one."""
+"""The difference up to which other numbers are equal, as a fraction of the larger magnitude."""
 
 Normalize = Callable[[str], str]
 
@@ -31,7 +31,7 @@ class Fact:
         numbers: the numbers of the property, in SI units.
         unit: the unit of the numbers.
         rotation: the quaternion (x, y, z, w) of the numbers, if they are roll, pitch and yaw.
-        direction: whether the numbers are an axis, whose length does not matter.
+        is_direction: whether the numbers are an axis, whose length does not matter.
         element: the element with the property or, for a default, the nearest enclosing element.
         attribute: the name of the element's attribute with the property.
     """
@@ -42,29 +42,29 @@ class Fact:
     element: Element | None
     attribute: str
     rotation: tuple[float, ...] = ()
-    direction: bool = False
+    is_direction: bool = False
 
-    def equals(self, other: Fact, here: Normalize, there: Normalize) -> bool:
+    def equals(self, other: Fact, normalize: Normalize, normalize_other: Normalize) -> bool:
         """Return whether a property is equal in two descriptions, within the tolerances.
 
         Args:
             other: the property of the other description.
-            here: the function that makes texts of this description comparable.
-            there: the function that makes texts of the other description comparable.
+            normalize: the function that makes texts of this description comparable.
+            normalize_other: the function that makes texts of the other description comparable.
         """
-        if here(self.words) != there(other.words) or len(self.numbers) != len(other.numbers):
+        if normalize(self.words) != normalize_other(other.words) or len(self.numbers) != len(other.numbers):
             return False
         if self.rotation:
             return _angle(self.rotation, other.rotation) <= ROTATION_TOLERANCE
-        if self.direction:
-            return _distance(_unit(self.numbers), _unit(other.numbers)) <= ROTATION_TOLERANCE
-        return all(map(self._near, self.numbers, other.numbers))
+        if self.is_direction:
+            return _distance(_unit_vector(self.numbers), _unit_vector(other.numbers)) <= ROTATION_TOLERANCE
+        return all(map(self._is_close, self.numbers, other.numbers))
 
-    def _near(self, ours: float, theirs: float) -> bool:
-        if ours == theirs:
+    def _is_close(self, value: float, other_value: float) -> bool:
+        if value == other_value:
             return True
-        least = LENGTH_TOLERANCE if self.unit == "m" else 0.0
-        return abs(ours - theirs) <= max(least, RELATIVE_TOLERANCE * max(abs(ours), abs(theirs)))
+        min_tolerance = LENGTH_TOLERANCE if self.unit == "m" else 0.0
+        return abs(value - other_value) <= max(min_tolerance, RELATIVE_TOLERANCE * max(abs(value), abs(other_value)))
 
     @property
     def text(self) -> str:
@@ -74,7 +74,7 @@ class Fact:
 
 @dataclass(slots=True)
 class Block:
-    """Properties that are added or removed together, such as those of an ``<inertial>``.
+    """Properties that are added or removed together, such as the properties of an ``<inertial>``.
 
     Attributes:
         name: the tag; empty for the properties that every joint has.
@@ -93,10 +93,10 @@ class Block:
         """All facts in one line, with their units."""
         return ", ".join(" ".join(filter(None, (name, fact.text, fact.unit))) for name, fact in self.facts.items())
 
-    def equals(self, other: Block, here: Normalize, there: Normalize) -> bool:
+    def equals(self, other: Block, normalize: Normalize, normalize_other: Normalize) -> bool:
         """Return whether all facts of two blocks are equal."""
         return self.facts.keys() == other.facts.keys() and all(
-            fact.equals(other.facts[name], here, there) for name, fact in self.facts.items()
+            fact.equals(other.facts[name], normalize, normalize_other) for name, fact in self.facts.items()
         )
 
     def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
@@ -109,77 +109,77 @@ class Block:
         if value:
             self.facts[name] = Fact(value, (), "", element, attribute)
 
-    def origin(self, pose: Pose, around: Element | None) -> None:
+    def origin(self, pose: Pose, parent_element: Element | None) -> None:
         """Add the position and rotation of a frame relative to its parent frame."""
-        element = nearest(around, "origin")
+        element = nearest(parent_element, "origin")
         attribute = "rpy" if pose.quaternion is None else "quat_xyzw"
         self.facts["origin xyz"] = Fact("", pose.xyz, "m", element, "xyz")
-        self.facts["origin rpy"] = Fact("", pose.rpy, "rad", element, attribute, quaternion_of(pose))
+        self.facts["origin rpy"] = Fact("", pose.rpy, "rad", element, attribute, pose_quaternion(pose))
 
 
 def nearest(element: Element | None, *tags: str) -> Element | None:
     """Return the descendant at the end of a path of tags, or the last one that exists."""
     for tag in tags:
-        inner = None if element is None else element.first(tag)
-        if inner is None:
+        child = None if element is None else element.first(tag)
+        if child is None:
             break
-        element = inner
+        element = child
     return element
 
 
-def blocks_of_link(link: Link) -> list[Block]:
-    """Return the properties of a link, except those of its shapes."""
-    return [] if link.inertial is None else [_inertial(link.inertial)]
+def link_blocks(link: Link) -> list[Block]:
+    """Return the properties of a link, except the properties of its shapes."""
+    return [] if link.inertial is None else [_inertial_block(link.inertial)]
 
 
-def visuals_of(link: Link) -> list[Block]:
+def visual_blocks(link: Link) -> list[Block]:
     """Return the properties of each ``<visual>`` of a link."""
-    return [_visual(visual) for visual in link.visuals]
+    return [_visual_block(visual) for visual in link.visuals]
 
 
-def collisions_of(link: Link) -> list[Block]:
+def collision_blocks(link: Link) -> list[Block]:
     """Return the properties of each ``<collision>`` of a link."""
-    return [_shape("collision", collision) for collision in link.collisions]
+    return [_shape_block("collision", collision) for collision in link.collisions]
 
 
-def blocks_of_joint(joint: Joint) -> list[Block]:
+def joint_blocks(joint: Joint) -> list[Block]:
     """Return the properties of a joint, one block for each element with properties."""
     element = joint.element
-    own = Block("", element)
-    own.words("type", joint.type, element, "type")
-    own.words("parent", joint.parent, nearest(element, "parent"), "link")
-    own.words("child", joint.child, nearest(element, "child"), "link")
-    own.origin(joint.origin, element)
+    own_block = Block("", element)
+    own_block.words("type", joint.type, element, "type")
+    own_block.words("parent", joint.parent, nearest(element, "parent"), "link")
+    own_block.words("child", joint.child, nearest(element, "child"), "link")
+    own_block.origin(joint.origin, element)
     if joint.type not in ("fixed", "floating"):
-        own.facts["axis"] = Fact("", joint.axis, "", nearest(element, "axis"), "xyz", direction=True)
+        own_block.facts["axis"] = Fact("", joint.axis, "", nearest(element, "axis"), "xyz", is_direction=True)
     unit = "m" if joint.type == "prismatic" else "rad"
     force = "N" if joint.type == "prismatic" else "N m"
-    per = {"lower": unit, "upper": unit, "effort": force, "velocity": f"{unit}/s"}
-    per |= {"acceleration": f"{unit}/s2", "deceleration": f"{unit}/s2", "jerk": f"{unit}/s3"}
-    per |= {"multiplier": "", "offset": unit, "soft_lower_limit": unit, "soft_upper_limit": unit}
-    per |= {"k_position": "", "k_velocity": "", "rising": unit, "falling": unit}
-    per |= {"damping": f"{force} s/{unit}", "friction": force}
-    found = [own]
-    for tag, part in (
+    units = {"lower": unit, "upper": unit, "effort": force, "velocity": f"{unit}/s"}
+    units |= {"acceleration": f"{unit}/s2", "deceleration": f"{unit}/s2", "jerk": f"{unit}/s3"}
+    units |= {"multiplier": "", "offset": unit, "soft_lower_limit": unit, "soft_upper_limit": unit}
+    units |= {"k_position": "", "k_velocity": "", "rising": unit, "falling": unit}
+    units |= {"damping": f"{force} s/{unit}", "friction": force}
+    blocks = [own_block]
+    for tag, value in (
         ("limit", joint.limit),
         ("mimic", joint.mimic),
         ("safety_controller", joint.safety),
         ("dynamics", joint.dynamics),
         ("calibration", joint.calibration),
     ):
-        if part is None:
+        if value is None:
             continue
-        inner = nearest(element, tag)
-        block = Block(tag, inner)
+        child = nearest(element, tag)
+        block = Block(tag, child)
         if joint.mimic is not None and tag == "mimic":
-            block.words("joint", joint.mimic.joint, inner, "joint")
-        for name in per:
-            block.number(name, getattr(part, name, None), per[name], inner, name)
-        found.append(block)
-    return found
+            block.words("joint", joint.mimic.joint, child, "joint")
+        for name in units:
+            block.number(name, getattr(value, name, None), units[name], child, name)
+        blocks.append(block)
+    return blocks
 
 
-def _inertial(inertial: Inertial) -> Block:
+def _inertial_block(inertial: Inertial) -> Block:
     block = Block("inertial", inertial.element)
     block.number("mass", inertial.mass, "kg", nearest(inertial.element, "mass"), "value")
     block.origin(inertial.origin, inertial.element)
@@ -189,29 +189,29 @@ def _inertial(inertial: Inertial) -> Block:
     return block
 
 
-def _visual(visual: Visual) -> Block:
-    block = _shape("visual", visual)
+def _visual_block(visual: Visual) -> Block:
+    block = _shape_block("visual", visual)
     element, material = nearest(visual.element, "material"), visual.material
     block.words("material", visual.material_name, element, "name")
     if material is not None and material.rgba is not None:
-        where = nearest(material.element, "color")
-        block.facts["color rgba"] = Fact("", material.rgba, "", where or element, "rgba")
+        child = nearest(material.element, "color")
+        block.facts["color rgba"] = Fact("", material.rgba, "", child or element, "rgba")
     if material is not None and material.texture:
-        where = nearest(material.element, "texture")
-        block.words("texture", material.texture, where or element, "filename")
+        child = nearest(material.element, "texture")
+        block.words("texture", material.texture, child or element, "filename")
     return block
 
 
-def _shape(tag: str, shape: Visual | Collision) -> Block:
+def _shape_block(tag: str, shape: Visual | Collision) -> Block:
     block = Block(tag, shape.element, label=shape.name)
     block.origin(shape.origin, shape.element)
-    block.facts["geometry"] = _geometry(shape.geometry, shape.element)
+    block.facts["geometry"] = _geometry_fact(shape.geometry, shape.element)
     return block
 
 
-def _geometry(geometry: Geometry, around: Element | None) -> Fact:
+def _geometry_fact(geometry: Geometry, shape_element: Element | None) -> Fact:
     kind = type(geometry).__name__.lower()
-    element = nearest(around, "geometry", kind)
+    element = nearest(shape_element, "geometry", kind)
     if isinstance(geometry, Mesh):
         scale = () if geometry.scale == (1.0, 1.0, 1.0) else geometry.scale
         return Fact(" ".join([kind, geometry.filename, *(["scale"] if scale else [])]), scale, "", element, "filename")
@@ -222,44 +222,46 @@ def _geometry(geometry: Geometry, around: Element | None) -> Fact:
     return Fact(f"{kind} radius, length", (geometry.radius, geometry.length), "m", element, "radius")
 
 
-def pairs_of(
-    old: Sequence[Block], new: Sequence[Block], same: Callable[[Block, Block], bool]
+def match_blocks(
+    old: Sequence[Block], new: Sequence[Block], is_same: Callable[[Block, Block], bool]
 ) -> list[tuple[int | None, int | None]]:
     """Match visuals or collisions: first equal ones, then by name, then by order.
 
     Returns:
         Pairs of an index in `old` and an index in `new`. An entry without a match is paired with None.
     """
-    left, right = list(range(len(old))), list(range(len(new)))
-    found: list[tuple[int | None, int | None]] = []
+    old_indexes, new_indexes = list(range(len(old))), list(range(len(new)))
+    pairs: list[tuple[int | None, int | None]] = []
 
     def pair(matches: Callable[[int, int], bool]) -> None:
-        for before in tuple(left):
-            after = next((value for value in right if matches(before, value)), None)
-            if after is not None:
-                left.remove(before)
-                right.remove(after)
-                found.append((before, after))
+        for old_index in tuple(old_indexes):
+            new_index = next((candidate for candidate in new_indexes if matches(old_index, candidate)), None)
+            if new_index is not None:
+                old_indexes.remove(old_index)
+                new_indexes.remove(new_index)
+                pairs.append((old_index, new_index))
 
-    pair(lambda before, after: same(old[before], new[after]))
+    pair(lambda before, after: is_same(old[before], new[after]))
     pair(lambda before, after: old[before].label != "" and old[before].label == new[after].label)
-    pair(lambda _before, _after: True)
+    pair(lambda _old_index, _new_index: True)
     return [
-        *sorted(found, key=lambda item: item[1] or 0),
-        *((value, None) for value in left),
-        *((None, value) for value in right),
+        *sorted(pairs, key=lambda item: item[1] or 0),
+        *((index, None) for index in old_indexes),
+        *((None, value) for value in new_indexes),
     ]
 
 
-def _angle(ours: Sequence[float], theirs: Sequence[float]) -> float:
+def _angle(rotation: Sequence[float], other_rotation: Sequence[float]) -> float:
     """Return the angle between two rotations in radians, accurate even if it is small."""
-    return 2.0 * min(_distance(ours, theirs), _distance(ours, [-their for their in theirs]))
+    return 2.0 * min(
+        _distance(rotation, other_rotation), _distance(rotation, [-component for component in other_rotation])
+    )
 
 
-def _unit(vector: Sequence[float]) -> tuple[float, ...]:
+def _unit_vector(vector: Sequence[float]) -> tuple[float, ...]:
     length = sqrt(sum(value * value for value in vector))
     return tuple(value / length for value in vector) if length > 0.0 else tuple(vector)
 
 
-def _distance(ours: Iterable[float], theirs: Iterable[float]) -> float:
-    return sqrt(sum((a - b) ** 2 for a, b in zip(ours, theirs, strict=True)))
+def _distance(vector: Iterable[float], other_vector: Iterable[float]) -> float:
+    return sqrt(sum((a - b) ** 2 for a, b in zip(vector, other_vector, strict=True)))

@@ -38,39 +38,39 @@ def match(
         old: the old robot.
         new: the new robot.
         same_link: a function that returns whether two links are equal except for their names.
-        same_joint: a function that returns whether two joints are equal except for their names and those of their
-            links.
+        same_joint: a function that returns whether two joints are equal except for their own names and the names of
+            their links.
     """
     links = {name: name for name in old.links if name in new.links}
     joints = {name: name for name in old.joints if name in new.joints}
-    taken = set(joints)
+    matched_joints = set(joints)
 
-    def renamed(before: str, after: str) -> bool:
+    def renamed(old_name: str, new_name: str) -> bool:
         """Return whether two links match, and record a renamed link as matched."""
-        if links.get(before) == after:
+        if links.get(old_name) == new_name:
             return True
-        if before in new.links or after in old.links or before in links or after in links.values():
+        if old_name in new.links or new_name in old.links or old_name in links or new_name in links.values():
             return False
-        if not same_link(old.links[before], new.links[after]):
+        if not same_link(old.links[old_name], new.links[new_name]):
             return False
-        links[before] = after
+        links[old_name] = new_name
         return True
 
     renamed(old.root, new.root)
-    below_old, below_new = children_of(old), children_of(new)
+    old_children, new_children = children_of(old), children_of(new)
     pending = deque([old.root])
     while pending:
         parent = pending.popleft()
-        rivals = below_new.get(links.get(parent, ""), ())
-        for joint in below_old.get(parent, ()):
+        candidates = new_children.get(links.get(parent, ""), ())
+        for joint in old_children.get(parent, ()):
             if joint.name in new.joints:
                 renamed(joint.child, new.joints[joint.name].child)
             else:
-                for rival in rivals:
-                    free = rival.name not in taken and rival.name not in old.joints
-                    if free and same_joint(joint, rival) and renamed(joint.child, rival.child):
-                        joints[joint.name] = rival.name
-                        taken.add(rival.name)
+                for candidate in candidates:
+                    is_free = candidate.name not in matched_joints and candidate.name not in old.joints
+                    if is_free and same_joint(joint, candidate) and renamed(joint.child, candidate.child):
+                        joints[joint.name] = candidate.name
+                        matched_joints.add(candidate.name)
                         break
             pending.append(joint.child)
     return Matches(links, joints)

@@ -10,7 +10,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.loading.lean_typing import Any
 
 Label = Callable[[str], str]
-"""Returns the name of a file for users."""
+"""A function that returns the name of a file for users."""
 
 
 def as_text(comparison: Comparison, label: Label) -> str:
@@ -20,14 +20,16 @@ def as_text(comparison: Comparison, label: Label) -> str:
         comparison: the differences.
         label: a function that returns the name of a file for users.
     """
-    found = comparison.differences
-    if not found:
+    differences = comparison.differences
+    if not differences:
         return localized(phrase("no differences")) + "\n"
     lines = []
-    for difference in found:
-        places = [_where(place, label) for place in (difference.old_place, difference.new_place) if place is not None]
+    for difference in differences:
+        places = [
+            _location_text(place, label) for place in (difference.old_place, difference.new_place) if place is not None
+        ]
         lines += [localized(sentence(difference)), *(["  " + " -> ".join(places)] if places else [])]
-    lines.append(localized(counted("{count} difference", "{count} differences", len(found))))
+    lines.append(localized(counted("{count} difference", "{count} differences", len(differences))))
     return "\n".join(lines) + "\n"
 
 
@@ -81,16 +83,16 @@ def _span_data(span: Span, label: Label) -> dict[str, Any]:
     return {"file": label(span.file), "line": span.line, "column": span.column}
 
 
-def _where(place: Place, label: Label) -> str:
-    """Return a location as text, with the innermost call or include that led there.
+def _location_text(place: Place, label: Label) -> str:
+    """Return a location as text, with the innermost call or include that produced the element.
 
     Outer calls are only in the data for programs.
     """
-    written = _written(place.span, label)
+    position = _position_text(place.span, label)
     if not place.calls:
-        return written
-    return localized(phrase("{place} called at {call}", place=written, call=_written(place.calls[0], label)))
+        return position
+    return localized(phrase("{place} called at {call}", place=position, call=_position_text(place.calls[0], label)))
 
 
-def _written(span: Span, label: Label) -> str:
+def _position_text(span: Span, label: Label) -> str:
     return f"{label(span.file)}:{span.line}:{span.column}"

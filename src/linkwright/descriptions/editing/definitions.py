@@ -15,11 +15,11 @@ from linkwright.xacro.faults import Fault, Frame, frames
 from linkwright.xacro.macros import parse_parameters
 from linkwright.xacro.tracing.references import references
 from linkwright.xmltree import Document, Element, Overlay
-from linkwright.xmltree.patches import escaped, start_tag_of
+from linkwright.xmltree.patches import escaped, find_start_tag
 from linkwright.xmltree.positions import attribute_value_range
 
 _VALUES = {"xacro:property": ("value", "default"), "xacro:arg": ("default",)}
-_MOST_YAML = 1_000_000
+_MAX_YAML_CHARACTERS = 1_000_000
 
 
 class Definitions:
@@ -29,35 +29,35 @@ class Definitions:
 
     Args:
         documents: the unexpanded XML files of the description.
-        others: the other files, such as YAML files.
-        overlay: texts that replace those of files.
+        other_files: the other files, such as YAML files.
+        overlay: texts that replace the contents of files.
     """
 
-    def __init__(self, documents: Sequence[Document], others: Iterable[Path], overlay: Overlay) -> None:
-        self._named: dict[str, list[Place]] = {}
+    def __init__(self, documents: Sequence[Document], other_files: Iterable[Path], overlay: Overlay) -> None:
+        self._places_by_name: dict[str, list[Place]] = {}
         self._macros: dict[str, Element] = {}
-        self._others, self._overlay = tuple(others), overlay
+        self._other_files, self._overlay = tuple(other_files), overlay
         self._scalars: list[tuple[tuple[str, ...], Place]] | None = None
         for document in documents:
             for element in document.root.walk():
                 self._collect(element)
 
     def of_names(self, text: str, innermost: Frame | None) -> Iterator[Place]:
-        """Yield the texts that may define the names in a text, those of enclosing calls first.
+        """Yield the texts that may define the names in a text, starting with the texts of enclosing calls.
 
         Args:
             text: a text that contains expressions.
             innermost: the macro call in which the text is evaluated.
         """
         for reference in references(text):
-            keys = _keys(reference.path)
+            keys = _constant_keys(reference.path)
             for frame in frames(innermost):
-                place = attribute(frame.site, reference.name) or self._default(frame, reference.name)
-                if place is not None:
-                    yield place
-            yield from self._named.get(reference.name, ())
+                text_range = attribute(frame.site, reference.name) or self._default(frame, reference.name)
+                if text_range is not None:
+                    yield text_range
+            yield from self._places_by_name.get(reference.name, ())
             if keys:
-                yield from self._named.get(keys[-1], ())
+                yield from self._places_by_name.get(keys[-1], ())
                 yield from (place for path, place in self._values() if path[-len(keys) :] == keys)
 
     def given(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
@@ -72,9 +72,9 @@ class Definitions:
             for frame in frames(innermost):
                 default = self._default(frame, reference.name)
                 if default is not None and attribute(frame.site, reference.name) is None:
-                    found = _given(frame.site, reference.name, words(default), index)
-                    if found is not None:
-                        yield found
+                    candidate = _argument_candidate(frame.site, reference.name, words(default), index)
+                    if candidate is not None:
+                        yield candidate
 
     def _collect(self, element: Element) -> None:
         name = element.attributes.get("name")
@@ -83,9 +83,9 @@ class Definitions:
         if element.tag == "xacro:macro":
             self._macros[name] = element
         for key in _VALUES.get(element.tag, ()):
-            place = attribute(element, key)
-            if place is not None:
-                self._named.setdefault(name, []).append(place)
+            text_range = attribute(element, key)
+            if text_range is not None:
+                self._places_by_name.setdefault(name, []).append(text_range)
 
     def _default(self, frame: Frame, name: str) -> Place | None:
         """Return the location of the default of a macro's parameter.
@@ -97,21 +97,23 @@ class Definitions:
         if params is None:
             return None
         try:
-            found = next(
-                (parse_parameter for parse_parameter in parse_parameters(params.text) if parse_parameter.name == name),
+            parameter = next(
+                (candidate for candidate in parse_parameters(params.text) if candidate.name == name),
                 None,
             )
         except Fault:
             return None
-        if found is None or found.default is None or found.forward:
+        if parameter is None or parameter.default is None or parameter.forward:
             return None
-        quoted = found.default[:1] in ("'", '"') and found.default[:1] == found.default[-1:]
-        return params.part(found.default_start + quoted, found.default_start + len(found.default) - quoted)
+        is_quoted = parameter.default[:1] in ("'", '"') and parameter.default[:1] == parameter.default[-1:]
+        return params.part(
+            parameter.default_start + is_quoted, parameter.default_start + len(parameter.default) - is_quoted
+        )
 
     def _values(self) -> list[tuple[tuple[str, ...], Place]]:
-        """Return the locations of all scalars in the YAML files, each with the keys that lead there."""
+        """Return the locations of all scalars in the YAML files, each with its keys from the root."""
         if self._scalars is None:
-            self._scalars = [item for path in self._others for item in _scalars_of(path, self._overlay)]
+            self._scalars = [item for path in self._other_files for item in _file_scalars(path, self._overlay)]
         return self._scalars
 
 
@@ -119,28 +121,30 @@ def attribute(element: Element, name: str) -> Place | None:
     """Return the location of an attribute's value, or None if it is not in a file."""
     if element.source is None:
         return None
-    found = attribute_value_range(element.source.text, element.offset, name)
-    return None if found is None else Place(element.source, *found)
+    value_range = attribute_value_range(element.source.text, element.offset, name)
+    return None if value_range is None else Place(element.source, *value_range)
 
 
-def _given(site: Element, name: str, default: list[Place], index: int | None) -> Candidate | None:
-    tag = start_tag_of(site)
-    at = 0 if len(default) == 1 else index
-    if tag is None or site.source is None or at is None or at >= len(default):
+def _argument_candidate(site: Element, name: str, default: list[Place], index: int | None) -> Candidate | None:
+    tag = find_start_tag(site)
+    value_index = 0 if len(default) == 1 else index
+    if tag is None or site.source is None or value_index is None or value_index >= len(default):
         return None
-    known = literal(default[at])
-    if known is None:
+    current = literal(default[value_index])
+    if current is None:
         return None
 
     def write(number: float, tolerance: float) -> str:
-        texts = [place.text for place in default]
-        texts[at] = known.write(number, tolerance)
+        texts = [text_range.text for text_range in default]
+        texts[value_index] = current.write(number, tolerance)
         return f' {name}="{escaped(" ".join(texts))}"'
 
-    return Candidate(Place(site.source, tag.room, tag.room), known.value, write, known.is_choice)
+    return Candidate(
+        Place(site.source, tag.insertion_offset, tag.insertion_offset), current.value, write, current.is_choice
+    )
 
 
-def _keys(path: str) -> tuple[str, ...]:
+def _constant_keys(path: str) -> tuple[str, ...]:
     """Return the constant keys in an expression.
 
     For ``config['wheel'].radius`` these are ``("wheel", "radius")``.
@@ -161,10 +165,10 @@ def _keys(path: str) -> tuple[str, ...]:
     return tuple(reversed(keys))
 
 
-def _scalars_of(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...], Place]]:
+def _file_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...], Place]]:
     try:
         text = overlay.read(str(path)).text
-        if len(text) > _MOST_YAML:
+        if len(text) > _MAX_YAML_CHARACTERS:
             return
         root = yaml.compose(text, Loader=yaml.SafeLoader)
     except (LinkwrightError, yaml.YAMLError, RecursionError):
@@ -174,9 +178,9 @@ def _scalars_of(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...],
 
 def _walk(node: Any, keys: tuple[str, ...], source: SourceText, depth: int) -> Iterator[tuple[tuple[str, ...], Place]]:
     if isinstance(node, yaml.ScalarNode):
-        quoted = node.style in ("'", '"')
-        if keys and (quoted or node.style is None):
-            end = node.end_mark.index - quoted
+        is_quoted = node.style in ("'", '"')
+        if keys and (is_quoted or node.style is None):
+            end = node.end_mark.index - is_quoted
             yield keys, Place(source, end - len(node.value), end)  # a tag may precede the value
     elif depth < 50 and isinstance(node, yaml.MappingNode):
         for key, value in node.value:

@@ -41,15 +41,15 @@ def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
     """Return the path of an element in a document, or None if the document does not contain it."""
     pending: list[tuple[Element, tuple[int, ...]]] = [(root, ())]
     while pending:
-        found, path = pending.pop()
-        if found is element:
+        current, path = pending.pop()
+        if current is element:
             return path
-        pending.extend((child, (*path, index)) for index, child in enumerate(found.elements()))
+        pending.extend((child, (*path, index)) for index, child in enumerate(current.elements()))
     return None
 
 
 def other_differences(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
-    """Yield the differences other than that of the edited attribute.
+    """Yield the differences, except a difference in the edited attribute.
 
     Args:
         before: the root of the first document.
@@ -63,32 +63,36 @@ def other_differences(before: Element, after: Element, target: Target) -> Iterat
     pending: list[tuple[Element, Element, tuple[Element, ...], tuple[int, ...]]] = [(before, after, (), ())]
     while pending:
         old, new, trail, path = pending.pop()
-        inside_old, inside_new = list(old.elements()), list(new.elements())
+        old_children, new_children = list(old.elements()), list(new.elements())
         if path == target.path:
-            pair = _taken(inside_old, target.tag), _taken(inside_new, target.tag)
+            pair = _take_first(old_children, target.tag), _take_first(new_children, target.tag)
             if _is_changed(*pair, target.attribute):
                 yield trail
         if old.tag != new.tag or old.attributes != new.attributes or _text(old) != _text(new):
             yield trail
             continue
-        for index, (some, other) in enumerate(zip_longest(inside_old, inside_new)):
-            if some is None or other is None:
+        for index, (old_child, new_child) in enumerate(zip_longest(old_children, new_children)):
+            if old_child is None or new_child is None:
                 yield trail
                 break
-            pending.append((some, other, (*trail, some), (*path, _place(old, some, index, path == target.path))))
+            pending.append(
+                (old_child, new_child, (*trail, old_child), (*path, _place(old, old_child, index, path == target.path)))
+            )
 
 
 def described(trail: tuple[Element, ...]) -> str:
     """Return a text that names the element of a path, such as ``joint 'wheel_joint'``."""
-    named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
+    named_elements = [
+        element for element in trail if element.attributes.get("name") or element.attributes.get("reference")
+    ]
     if not trail:
         return term("robot")
-    top = trail[0]
-    name = top.attributes.get("name") or top.attributes.get("reference") or ""
-    inner = next((element.tag for element in trail[1:2] if top.tag == "link"), None)
-    kind = term(top.tag)
-    what = phrase("{kind} '{name}'", kind=kind, name=name) if named and name else kind
-    return what if inner is None else phrase("{what} ({part})", what=what, part=term(inner))
+    outermost = trail[0]
+    name = outermost.attributes.get("name") or outermost.attributes.get("reference") or ""
+    inner_tag = next((element.tag for element in trail[1:2] if outermost.tag == "link"), None)
+    kind = term(outermost.tag)
+    name_text = phrase("{kind} '{name}'", kind=kind, name=name) if named_elements and name else kind
+    return name_text if inner_tag is None else phrase("{what} ({part})", what=name_text, part=term(inner_tag))
 
 
 def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
@@ -96,23 +100,23 @@ def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
 
     In the owner, `index` does not count the removed element, so the child is searched.
     """
-    return next(i for i, each in enumerate(old.elements()) if each is child) if is_owner else index
+    return next(position for position, element in enumerate(old.elements()) if element is child) if is_owner else index
 
 
-def _taken(elements: list[Element], tag: str) -> Element | None:
+def _take_first(elements: list[Element], tag: str) -> Element | None:
     """Remove and return the first element with a tag, or return None if there is none."""
-    found = next((element for element in elements if element.tag == tag), None)
-    if found is not None:
-        elements.remove(found)
-    return found
+    first_match = next((element for element in elements if element.tag == tag), None)
+    if first_match is not None:
+        elements.remove(first_match)
+    return first_match
 
 
 def _is_changed(old: Element | None, new: Element | None, attribute: str) -> bool:
     if new is None:
         return old is not None
-    rest = {name: value for name, value in new.attributes.items() if name != attribute}
-    known = {} if old is None else {name: value for name, value in old.attributes.items() if name != attribute}
-    return rest != known or any(new.elements()) != any(old.elements() if old is not None else ())
+    new_attributes = {name: value for name, value in new.attributes.items() if name != attribute}
+    old_attributes = {} if old is None else {name: value for name, value in old.attributes.items() if name != attribute}
+    return new_attributes != old_attributes or any(new.elements()) != any(old.elements() if old is not None else ())
 
 
 def _text(element: Element) -> str:

@@ -15,10 +15,10 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree.decoding import decoded
 from linkwright.xmltree.reader import read_bytes
 
-_OURS = Path(__file__).resolve().parents[2]
-"""The files in this folder are part of the program, and edits must not write them."""
-_MOST_STEPS = 200
-"""Of undo."""
+_PROGRAM_FOLDER = Path(__file__).resolve().parents[2]
+"""The folder of the program, in which edits must not write files."""
+_MAX_UNDO_STEPS = 200
+"""The maximum number of edits that can be undone."""
 
 
 class Workspace:
@@ -32,8 +32,8 @@ class Workspace:
     """
 
     def __init__(self, main: Path) -> None:
-        real = Path(os.path.realpath(main))
-        self.folder = _workspace_of(real)
+        real_path = Path(os.path.realpath(main))
+        self.folder = _find_workspace(real_path)
 
     def refusal(self, path: str) -> Diagnostic | None:
         """Return the reason why a file must not be written (EDIT106), or None if it may be written.
@@ -42,13 +42,13 @@ class Workspace:
             path: the real path of the file.
         """
         file = Path(path)
-        if file.is_relative_to(_OURS):
+        if file.is_relative_to(_PROGRAM_FOLDER):
             return forbidden_file(path, phrase("it is part of this program"))
         if any((parent / "share" / "ament_index").is_dir() for parent in file.parents):
             return forbidden_file(path, phrase("it is installed, and the next build would undo the change"))
         if not file.is_relative_to(self.folder):
-            why = phrase("it is outside the workspace '{folder}'", folder=str(self.folder))
-            return forbidden_file(path, why)
+            reason = phrase("it is outside the workspace '{folder}'", folder=str(self.folder))
+            return forbidden_file(path, reason)
         if not os.access(path, os.W_OK):
             return forbidden_file(path, phrase("it is read-only"))
         return None
@@ -65,18 +65,18 @@ class EditHistory:
     """The history of written edits, with undo and redo."""
 
     def __init__(self) -> None:
-        self._done: list[Step] = []
-        self._undone: list[Step] = []
+        self._undo_steps: list[Step] = []
+        self._redo_steps: list[Step] = []
 
     @property
     def can_undo(self) -> bool:
         """Whether there is an edit to undo."""
-        return bool(self._done)
+        return bool(self._undo_steps)
 
     @property
     def can_redo(self) -> bool:
         """Whether there is an edit to redo."""
-        return bool(self._undone)
+        return bool(self._redo_steps)
 
     def apply(self, plan: EditPlan) -> list[str]:
         """Write the files of an edit, either all of them or none.
@@ -90,16 +90,16 @@ class EditHistory:
         """
         files: dict[str, tuple[bytes, bytes]] = {}
         for path, text in plan.texts.items():
-            before = _bytes_of(path)
-            known = decoded(before, path)
-            if known.text != plan.before[path]:
+            old_bytes = _read_file(path)
+            current = decoded(old_bytes, path)
+            if current.text != plan.old_texts[path]:
                 raise EditRefusedError(changed_file(path))
-            mark = before[: len(before) - len(known.text.encode(known.encoding))]
-            files[path] = before, mark + text.encode(known.encoding, "xmlcharrefreplace")
+            byte_order_mark = old_bytes[: len(old_bytes) - len(current.text.encode(current.encoding))]
+            files[path] = old_bytes, byte_order_mark + text.encode(current.encoding, "xmlcharrefreplace")
         _write({path: after for path, (_, after) in files.items()}, {path: old for path, (old, _) in files.items()})
         if files:
-            self._done = [*self._done[1 - _MOST_STEPS :], Step(files)]
-            self._undone.clear()
+            self._undo_steps = [*self._undo_steps[1 - _MAX_UNDO_STEPS :], Step(files)]
+            self._redo_steps.clear()
         return list(files)
 
     def undo(self) -> list[str]:
@@ -111,60 +111,60 @@ class EditHistory:
         Raises:
             EditRefusedError: see `apply`.
         """
-        if not self._done:
+        if not self._undo_steps:
             return []
-        step = self._done[-1]
+        step = self._undo_steps[-1]
         _write(
             {path: old for path, (old, _) in step.files.items()}, {path: new for path, (_, new) in step.files.items()}
         )
-        self._undone.append(self._done.pop())
+        self._redo_steps.append(self._undo_steps.pop())
         return list(step.files)
 
     def redo(self) -> list[str]:
         """Redo the last undone edit, and return the paths of the written files."""
-        if not self._undone:
+        if not self._redo_steps:
             return []
-        step = self._undone[-1]
+        step = self._redo_steps[-1]
         _write(
             {path: new for path, (_, new) in step.files.items()}, {path: old for path, (old, _) in step.files.items()}
         )
-        self._done.append(self._undone.pop())
+        self._undo_steps.append(self._redo_steps.pop())
         return list(step.files)
 
 
-def _workspace_of(file: Path) -> Path:
-    found = file.parent
+def _find_workspace(file: Path) -> Path:
+    workspace = file.parent
     for folder in file.parents:
         if (folder / "package.xml").is_file() or (folder / ".git").exists():
-            found = folder
+            workspace = folder
         if folder.name == "src" and folder.parent != folder.parent.parent:
-            found = folder.parent
-    return found
+            workspace = folder.parent
+    return workspace
 
 
-def _write(new: Mapping[str, bytes], known: Mapping[str, bytes]) -> None:
+def _write(new: Mapping[str, bytes], expected: Mapping[str, bytes]) -> None:
     """Write files if their content is still as expected.
 
     If a file cannot be written, the files written before it are restored.
     """
-    for path, content in known.items():
-        if _bytes_of(path) != content:
+    for path, content in expected.items():
+        if _read_file(path) != content:
             raise EditRefusedError(changed_file(path))
-    written: list[str] = []
+    written_paths: list[str] = []
     for path, content in new.items():
         try:
             write_whole_file(path, content)
         except OSError as error:
-            for path in written:
-                write_whole_file(path, known[path])
+            for path in written_paths:
+                write_whole_file(path, expected[path])
             message = phrase(
                 "cannot write '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror or error)
             )
             raise EditRefusedError(Diagnostic("EDIT108", message, hint=phrase("make the file writable"))) from None
-        written.append(path)
+        written_paths.append(path)
 
 
-def _bytes_of(path: str) -> bytes:
+def _read_file(path: str) -> bytes:
     try:
         return read_bytes(path)
     except LinkwrightError as error:

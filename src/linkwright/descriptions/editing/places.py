@@ -5,15 +5,15 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Iterator
 
-from linkwright.descriptions.editing.numbers import in_degrees, part_of_pi, shortest
+from linkwright.descriptions.editing.numbers import degrees_text, pi_fraction, shortest_text
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 
 _WORD = lazy_pattern(r"(?:\$\{[^}]*\}|\$\([^)]*\)|\S)+")
 _ONE_EXPRESSION = lazy_pattern(r"\$\{([^{}]*)\}\Z|(\$\([^()]*\))\Z")
-_OF_PI = frozenset({"pi", "radians", "degrees", "math"})
-_LOOSE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr)
+_ANGLE_NAMES = frozenset({"pi", "radians", "degrees", "math"})
+_LOW_PRECEDENCE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +44,13 @@ class Candidate:
     """A text that may determine a number.
 
     Attributes:
-        place: the range of the text, which an edit replaces.
+        text_range: the range of the text, which an edit replaces.
         value: the current value of the text.
         write: a function that returns the text for another value, given a tolerance.
         is_choice: whether the value is 1 or -1, which may be a factor that selects a side or a direction.
     """
 
-    place: Place
+    text_range: Place
     value: float
     write: Callable[[float, float], str]
     is_choice: bool = False
@@ -58,7 +58,7 @@ class Candidate:
 
 def words(place: Place) -> list[Place]:
     """Return the ranges of the words in a text; an expression counts as one word."""
-    return [place.part(*found.span()) for found in _WORD.finditer(place.text)]
+    return [place.part(*match.span()) for match in _WORD.finditer(place.text)]
 
 
 def literal(place: Place) -> Candidate | None:
@@ -67,7 +67,7 @@ def literal(place: Place) -> Candidate | None:
         value = float(place.text)
     except ValueError:
         return None
-    return Candidate(place, value, shortest, value in (1.0, -1.0))
+    return Candidate(place, value, shortest_text, value in (1.0, -1.0))
 
 
 def added_constants(word: Place) -> Iterator[Candidate]:
@@ -75,17 +75,17 @@ def added_constants(word: Place) -> Iterator[Candidate]:
 
     These are the terms of a sum, also inside ``radians()``.
     """
-    found = _ONE_EXPRESSION.match(word.text)
-    inside = None if found is None else found[1]
-    if inside is None or not inside.isascii():
+    match = _ONE_EXPRESSION.match(word.text)
+    expression = None if match is None else match[1]
+    if expression is None or not expression.isascii():
         return
-    body = inside.strip()
-    inner = word.part(2, len(word.text) - 1)
-    start = len(inside) - len(inside.lstrip())
-    inner = inner.part(start, start + len(body))
-    tree = _tree(body)
+    body = expression.strip()
+    expression_place = word.part(2, len(word.text) - 1)
+    start = len(expression) - len(expression.lstrip())
+    expression_place = expression_place.part(start, start + len(body))
+    tree = _parse(body)
     if tree is not None:
-        yield from _terms(tree, inner)
+        yield from _terms(tree, expression_place)
 
 
 def is_constant(word: Place) -> bool:
@@ -93,9 +93,9 @@ def is_constant(word: Place) -> bool:
 
     A constant expression has no names except pi and the conversions from degrees to radians.
     """
-    found = _ONE_EXPRESSION.match(word.text)
-    tree = _tree(found[1].strip()) if found is not None and found[1] else None
-    return tree is not None and _names(tree) <= _OF_PI
+    match = _ONE_EXPRESSION.match(word.text)
+    tree = _parse(match[1].strip()) if match is not None and match[1] else None
+    return tree is not None and _used_names(tree) <= _ANGLE_NAMES
 
 
 def replacement_candidate(word: Place, value: float) -> Candidate:
@@ -106,13 +106,13 @@ def replacement_candidate(word: Place, value: float) -> Candidate:
 
     def write(number: float, tolerance: float) -> str:
         if "pi" in word.text or "radians" in word.text:
-            part = part_of_pi(number)
-            if part is not None:
-                return f"${{{part}}}"
-            angle = in_degrees(number)
+            fraction = pi_fraction(number)
+            if fraction is not None:
+                return f"${{{fraction}}}"
+            angle = degrees_text(number)
             if angle is not None and angle != "0":
                 return f"${{radians({angle})}}"
-        return shortest(number, tolerance)
+        return shortest_text(number, tolerance)
 
     return Candidate(word, value, write)
 
@@ -122,93 +122,97 @@ def addition_candidate(word: Place, *, is_angle: bool) -> Candidate | None:
 
     The result is None if the word is not a single expression.
     """
-    found = _ONE_EXPRESSION.match(word.text)
-    if found is None:
+    match = _ONE_EXPRESSION.match(word.text)
+    if match is None:
         return None
-    body = (found[1] or found[2]).strip()
-    tree = _tree(body) if found[1] else None
-    if found[1] and tree is None:
+    body = (match[1] or match[2]).strip()
+    tree = _parse(body) if match[1] else None
+    if match[1] and tree is None:
         return None
-    base = f"({body})" if isinstance(tree, _LOOSE) else body
+    base = f"({body})" if isinstance(tree, _LOW_PRECEDENCE) else body
 
     def write(number: float, tolerance: float) -> str:
-        size = shortest(abs(number), tolerance)
-        angle = in_degrees(abs(number)) if is_angle else None
-        if angle is not None and len(angle) + len("radians()") < len(size):
-            size = f"radians({angle})"
-        return word.text if size == "0" else f"${{{base} {'-' if number < 0 else '+'} {size}}}"
+        magnitude = shortest_text(abs(number), tolerance)
+        angle = degrees_text(abs(number)) if is_angle else None
+        if angle is not None and len(angle) + len("radians()") < len(magnitude):
+            magnitude = f"radians({angle})"
+        return word.text if magnitude == "0" else f"${{{base} {'-' if number < 0 else '+'} {magnitude}}}"
 
     return Candidate(word, 0.0, write)
 
 
-def _tree(body: str) -> ast.expr | None:
+def _parse(body: str) -> ast.expr | None:
     try:
         return ast.parse(body, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
 
 
-def _names(tree: ast.AST) -> set[str]:
+def _used_names(tree: ast.AST) -> set[str]:
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
-def _terms(node: ast.expr, inner: Place) -> Iterator[Candidate]:
-    value = _number(node)
+def _terms(node: ast.expr, expression_place: Place) -> Iterator[Candidate]:
+    value = _literal_value(node)
     if value is not None:
-        yield _candidate(inner, node, value)
+        yield _number_candidate(expression_place, node, value)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)):
-        signed = _signed_term(node, inner)
-        yield from _terms(node.right, inner) if signed is None else (signed,)
-        yield from _terms(node.left, inner)
-    elif isinstance(node, ast.BinOp) and _is_angle_of_degrees(node):
+        signed_candidate = _signed_term(node, expression_place)
+        yield from _terms(node.right, expression_place) if signed_candidate is None else (signed_candidate,)
+        yield from _terms(node.left, expression_place)
+    elif isinstance(node, ast.BinOp) and _converts_degrees(node):
         while isinstance(node, ast.BinOp):
             node = node.left
-        yield from _terms(node, inner)
+        yield from _terms(node, expression_place)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
-        yield from _terms(node.operand, inner)
+        yield from _terms(node.operand, expression_place)
     elif isinstance(node, ast.Call) and len(node.args) == 1 and isinstance(node.func, (ast.Name, ast.Attribute)):
         name = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
         if name == "radians":
-            yield from _terms(node.args[0], inner)
+            yield from _terms(node.args[0], expression_place)
 
 
-def _is_angle_of_degrees(node: ast.expr) -> bool:
+def _converts_degrees(node: ast.expr) -> bool:
     """Return whether an expression converts an angle from degrees, such as ``30*pi/180``."""
-    return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(part) == 180 for part in ast.walk(node))
+    return (
+        _used_names(node) <= _ANGLE_NAMES
+        and "pi" in _used_names(node)
+        and any(_literal_value(child) == 180 for child in ast.walk(node))
+    )
 
 
-def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
+def _signed_term(node: ast.BinOp, expression_place: Place) -> Candidate | None:
     """Return a candidate for the last number of a sum, including its sign, which may change.
 
     The result is None if the last term is not a number, or is in brackets.
     """
-    value = _number(node.right)
+    value = _literal_value(node.right)
     if value is None:
         return None
-    end, text = node.right.end_col_offset or 0, inner.text
-    before = text[: node.right.col_offset].rstrip()
+    end, text = node.right.end_col_offset or 0, expression_place.text
+    text_before = text[: node.right.col_offset].rstrip()
     sign = "+" if isinstance(node.op, ast.Add) else "-"
-    if not before.endswith(sign):
+    if not text_before.endswith(sign):
         return None
-    blanks = text[len(before) : node.right.col_offset]
-    term = inner.part(len(before) - 1, end)
+    blanks = text[len(text_before) : node.right.col_offset]
+    term = expression_place.part(len(text_before) - 1, end)
 
     def write(number: float, tolerance: float) -> str:
-        return f"{'-' if number < 0 else '+'}{blanks}{shortest(abs(number), tolerance)}"
+        return f"{'-' if number < 0 else '+'}{blanks}{shortest_text(abs(number), tolerance)}"
 
     return Candidate(term, value if sign == "+" else -value, write)
 
 
-def _number(node: ast.AST) -> float | None:
+def _literal_value(node: ast.AST) -> float | None:
     """Return the value of a literal number with its sign, or None for any other node."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
-        value = _number(node.operand)
+        value = _literal_value(node.operand)
         return None if value is None else -value
     if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
         return float(node.value)
     return None
 
 
-def _candidate(inner: Place, node: ast.expr, value: float) -> Candidate:
-    place = inner.part(node.col_offset, node.end_col_offset or node.col_offset)
-    return Candidate(place, value, shortest, value in (1.0, -1.0))
+def _number_candidate(expression_place: Place, node: ast.expr, value: float) -> Candidate:
+    text_range = expression_place.part(node.col_offset, node.end_col_offset or node.col_offset)
+    return Candidate(text_range, value, shortest_text, value in (1.0, -1.0))

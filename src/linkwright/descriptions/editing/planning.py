@@ -14,7 +14,7 @@ from math import isfinite
 from linkwright.descriptions.editing.definitions import attribute
 from linkwright.descriptions.editing.difference import Target, described, other_differences, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
-from linkwright.descriptions.editing.numbers import EXACT, numbers_of, same, shortest
+from linkwright.descriptions.editing.numbers import EXACT, parse_numbers, same, shortest_text
 from linkwright.descriptions.editing.places import Candidate, Place, literal, words
 from linkwright.descriptions.editing.proposals import proposals
 from linkwright.descriptions.editing.refusals import Attempt, refusal
@@ -26,18 +26,18 @@ from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 from linkwright.xacro.faults import Frame
 from linkwright.xmltree import Document, Element, Overlay, parse
-from linkwright.xmltree.patches import inserted, start_tag_of
+from linkwright.xmltree.patches import find_start_tag, insertion
 
 Allowed = Callable[[str], "Diagnostic | None"]
-"""Why a file may not be written, by its real path; None where it may."""
+"""A function that returns the reason why a file must not be written, given its real path, or None."""
 
-_MOST_TRIALS = 60
-_LEAST_SLOPE = 1e-6
+_MAX_TRIALS = 60
+_MIN_SLOPE = 1e-6
 _PLAIN_SLOPES = (1.0, 2.0, 0.5, 0.25)
-"""For a slope other than these, 1 and -1 are factors that select a side, not lengths."""
-_LARGEST = 1e6
-"""Metres."""
-_FEWEST = {"origin": [0.0, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}
+"""With any other slope, the values 1 and -1 are factors that select a side, not lengths."""
+_MAX_VALUE = 1e6
+"""The largest number that an edit may request, in m or rad."""
+_DEFAULT_VALUES = {"origin": [0.0, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}
 """The defaults of attributes that are not written."""
 
 
@@ -47,13 +47,13 @@ class EditPlan:
 
     Attributes:
         texts: the new text of each changed file without a byte order mark, by real path; empty if nothing changes.
-        before: the old texts of the same files, by real path.
-        also: the names of other parts that the edit changes, if the request allows this.
+        old_texts: the old texts of the same files, by real path.
+        side_effects: the names of other parts that the edit changes, if the request allows this.
     """
 
     texts: dict[str, str]
-    before: dict[str, str]
-    also: tuple[str, ...] = ()
+    old_texts: dict[str, str]
+    side_effects: tuple[str, ...] = ()
 
 
 def plan_edit(description: Description, request: EditRequest, allowed: Allowed = lambda _: None) -> EditPlan:
@@ -68,12 +68,12 @@ def plan_edit(description: Description, request: EditRequest, allowed: Allowed =
         EditRefusedError: if there is no such edit, with one of the diagnostics EDIT101 to EDIT106.
     """
     planner = _Planner(description, request, allowed)
-    for name, wanted in planner.wanted():
-        planner.set(name, wanted)
+    for name, requested in planner.wanted():
+        planner.set(name, requested)
     return planner.plan()
 
 
-class _Found(NamedTuple):
+class _EditedDescription(NamedTuple):
     """An edited description with the requested number, and the names of other changed parts."""
 
     snapshot: Snapshot
@@ -83,7 +83,7 @@ class _Found(NamedTuple):
 class _Planner:
     """The planner of one edit, attribute by attribute and number by number.
 
-    `_now` is the description with the edits so far.
+    `_current` is the description with the edits so far.
     """
 
     def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
@@ -101,8 +101,8 @@ class _Planner:
     def wanted(self) -> Iterator[tuple[str, list[float]]]:
         """Yield the name of each attribute to edit, with its requested numbers."""
         request = self._request
-        for given in (request.xyz, request.rpy):
-            if given is not None and not all(isfinite(value) and abs(value) <= _LARGEST for value in given):
+        for numbers in (request.xyz, request.rpy):
+            if numbers is not None and not all(isfinite(value) and abs(value) <= _MAX_VALUE for value in numbers):
                 raise EditRefusedError(
                     Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
                 )
@@ -118,26 +118,32 @@ class _Planner:
         elif request.rpy is not None:
             yield "rpy", list(request.rpy)
 
-    def set(self, name: str, wanted: list[float]) -> None:
+    def set(self, name: str, requested: list[float]) -> None:
         """Plan the edits that give an attribute the requested numbers."""
-        present = self._values(name)
-        changed = [i for i, (old, new) in enumerate(zip(present, wanted, strict=True)) if not same(old, new)]
-        if not changed:
+        current_numbers = self._values(name)
+        changed_indexes = [
+            i for i, (old, new) in enumerate(zip(current_numbers, requested, strict=True)) if not same(old, new)
+        ]
+        if not changed_indexes:
             return
         target = Target(self._path, self._request.tag, name)
         element = target.element(self._now.root)
         if element is None or name not in element.attributes:
-            self._add(target, wanted)
+            self._add(target, requested)
             return
-        place = self._written(element, name)
-        parts = words(place)
-        if len(parts) == len(wanted) and all(literal(parts[i]) for i in changed) and len(changed) > 1:
-            together = self._edit_together(target, place, parts, {i: wanted[i] for i in changed})
-            if together is not None:
-                self._now = together
+        text_range = self._attribute_place(element, name)
+        value_words = words(text_range)
+        if (
+            len(value_words) == len(requested)
+            and all(literal(value_words[i]) for i in changed_indexes)
+            and len(changed_indexes) > 1
+        ):
+            combined = self._edit_together(target, text_range, value_words, {i: requested[i] for i in changed_indexes})
+            if combined is not None:
+                self._now = combined
                 return
-        for i in changed:
-            self._set_one(target, i, wanted[i])
+        for i in changed_indexes:
+            self._set_one(target, i, requested[i])
 
     def plan(self) -> EditPlan:
         """Return the plan of all edits."""
@@ -147,73 +153,75 @@ class _Planner:
 
     # one number
 
-    def _set_one(self, target: Target, index: int, wanted: float) -> None:
+    def _set_one(self, target: Target, index: int, requested: float) -> None:
         element = target.element(self._now.root)
         assert element is not None, "it has the attribute"
-        place = self._written(element, target.attribute)
-        present = self._values(target.attribute)
+        text_range = self._attribute_place(element, target.attribute)
+        current_numbers = self._values(target.attribute)
         frame = element.origin if isinstance(element.origin, Frame) else None
         attempts: list[Attempt] = []
-        offered = proposals(
-            place, index, frame, self._now.definitions, present=present, is_angle=target.attribute == "rpy"
+        candidates = proposals(
+            text_range, index, frame, self._now.definitions, present=current_numbers, is_angle=target.attribute == "rpy"
         )
-        best: _Found | None = None
-        least = (0, False)
-        for candidate in islice(offered, _MOST_TRIALS):
-            found = self._try_candidate(candidate, target, index, wanted, attempts)
-            if found is None:
+        best_edit: _EditedDescription | None = None
+        best_rank = (0, False)
+        for candidate in islice(candidates, _MAX_TRIALS):
+            edited = self._try_candidate(candidate, target, index, requested, attempts)
+            if edited is None:
                 continue
-            if not found.also:
-                best = found
+            if not edited.also:
+                best_edit = edited
                 break
-            reach = len(found.also), candidate.is_choice
-            if best is None or reach < least:
-                best, least = found, reach
-        if best is not None:
-            self._now = best.snapshot
-            self._also_changed.update(dict.fromkeys(best.also))
+            rank = len(edited.also), candidate.is_choice
+            if best_edit is None or rank < best_rank:
+                best_edit, best_rank = edited, rank
+        if best_edit is not None:
+            self._now = best_edit.snapshot
+            self._also_changed.update(dict.fromkeys(best_edit.also))
             return
-        raise EditRefusedError(refusal(place, index, attempts))
+        raise EditRefusedError(refusal(text_range, index, attempts))
 
     def _try_candidate(
-        self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
-    ) -> _Found | None:
+        self, candidate: Candidate, target: Target, index: int, requested: float, attempts: list[Attempt]
+    ) -> _EditedDescription | None:
         """Return the description edited through a candidate, or None if the edit is not suitable.
 
         The reason for a failure is appended to `attempts`.
         """
-        why_not = self._allowed(os.path.realpath(candidate.place.source.name))
-        if why_not is not None:
-            attempts.append(Attempt(candidate.place, forbidden=why_not))
+        refusal_reason = self._allowed(os.path.realpath(candidate.text_range.source.name))
+        if refusal_reason is not None:
+            attempts.append(Attempt(candidate.text_range, forbidden=refusal_reason))
             return None
-        present = self._values(target.attribute)[index]
-        guess, tolerance = candidate.value + wanted - present, EXACT
+        current = self._values(target.attribute)[index]
+        guess, tolerance = candidate.value + requested - current, EXACT
         for _ in range(2):
-            guess = float(shortest(guess, tolerance))
-            trial = self._try_text(candidate.place, candidate.write(guess, tolerance))
-            values = None if trial is None else self._values_in(trial, target)
+            guess = float(shortest_text(guess, tolerance))
+            trial = self._try_text(candidate.text_range, candidate.write(guess, tolerance))
+            values = None if trial is None else self._numbers_in(trial, target)
             if trial is None or values is None:
-                attempts.append(Attempt(candidate.place, error=True))
+                attempts.append(Attempt(candidate.text_range, fails_to_expand=True))
                 return None
-            change = values[index] - present
+            change = values[index] - current
             slope = change / (guess - candidate.value) if guess != candidate.value else 0.0
-            if abs(slope) < _LEAST_SLOPE:
+            if abs(slope) < _MIN_SLOPE:
                 return None  # the text does not affect the requested number
-            if candidate.is_choice and not any(same(abs(slope), plain) for plain in _PLAIN_SLOPES):
-                attempts.append(Attempt(candidate.place, choice=True))
+            if candidate.is_choice and not any(same(abs(slope), plain_slope) for plain_slope in _PLAIN_SLOPES):
+                attempts.append(Attempt(candidate.text_range, is_choice=True))
                 return None
-            also = self._side_effects(trial, target, index, values)
-            if also and not self._request.together:
-                attempts.append(Attempt(candidate.place, also=also, doubtful=candidate.is_choice))
+            side_effects = self._side_effects(trial, target, index, values)
+            if side_effects and not self._request.together:
+                attempts.append(
+                    Attempt(candidate.text_range, side_effects=side_effects, may_be_choice=candidate.is_choice)
+                )
                 return None
-            if same(values[index], wanted):
-                return _Found(trial, also)
-            guess, tolerance = candidate.value + (wanted - present) / slope, EXACT / abs(slope) / 2
-        attempts.append(Attempt(candidate.place))
+            if same(values[index], requested):
+                return _EditedDescription(trial, side_effects)
+            guess, tolerance = candidate.value + (requested - current) / slope, EXACT / abs(slope) / 2
+        attempts.append(Attempt(candidate.text_range))
         return None
 
     def _edit_together(
-        self, target: Target, place: Place, parts: list[Place], new: dict[int, float]
+        self, target: Target, place: Place, value_words: list[Place], new_numbers: dict[int, float]
     ) -> Snapshot | None:
         """Return the description after one edit of several literal numbers in an attribute.
 
@@ -221,18 +229,20 @@ class _Planner:
         """
         if self._allowed(os.path.realpath(place.source.name)) is not None:
             return None
-        text, at = "", place.start
-        for i, part in enumerate(parts):
-            text += place.source.text[at : part.start] + (shortest(new[i]) if i in new else part.text)
-            at = part.end
-        text += place.source.text[at : place.end]
+        text, offset = "", place.start
+        for i, value_word in enumerate(value_words):
+            text += place.source.text[offset : value_word.start] + (
+                shortest_text(new_numbers[i]) if i in new_numbers else value_word.text
+            )
+            offset = value_word.end
+        text += place.source.text[offset : place.end]
         trial = self._try_text(place, text)
-        values = None if trial is None else self._values_in(trial, target)
+        values = None if trial is None else self._numbers_in(trial, target)
         if trial is None or values is None:
             return None
-        wanted = [new.get(i, value) for i, value in enumerate(self._values(target.attribute))]
-        exact = all(map(same, values, wanted)) and not self._differences(trial, target)
-        return trial if exact else None
+        requested = [new_numbers.get(i, value) for i, value in enumerate(self._values(target.attribute))]
+        is_exact = all(map(same, values, requested)) and not self._differences(trial, target)
+        return trial if is_exact else None
 
     def _try_text(self, place: Place, text: str) -> Snapshot | None:
         try:
@@ -242,87 +252,98 @@ class _Planner:
 
     def _side_effects(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
         """Return the names of the other parts that a trial edit changes."""
-        found = self._differences(trial, target)
-        present = self._values(target.attribute)
-        if any(values[i] != present[i] for i in range(len(values)) if i != index):
-            found.append(phrase("another number of the same attribute"))
-        return tuple(dict.fromkeys(found))
+        changed_parts = self._differences(trial, target)
+        current_numbers = self._values(target.attribute)
+        if any(values[i] != current_numbers[i] for i in range(len(values)) if i != index):
+            changed_parts.append(phrase("another number of the same attribute"))
+        return tuple(dict.fromkeys(changed_parts))
 
     def _differences(self, trial: Snapshot, target: Target) -> list[str]:
         return [described(trail) for trail in other_differences(self._now.root, trial.root, target)]
 
     # missing attributes
 
-    def _add(self, target: Target, wanted: list[float]) -> None:
+    def _add(self, target: Target, requested: list[float]) -> None:
         """Plan the addition of a missing attribute or element."""
         element = target.element(self._now.root)
-        place, text = self._new_text(target, element, " ".join(map(shortest, wanted)))
-        why_not = self._allowed(os.path.realpath(place.source.name))
-        if why_not is not None:
-            raise EditRefusedError(why_not)
-        trial = self._try_text(place, text)
-        values = None if trial is None else self._values_in(trial, target)
-        also = () if trial is None else tuple(dict.fromkeys(self._differences(trial, target)))
-        if also and self._request.together:
-            self._also_changed.update(dict.fromkeys(also))
-            also = ()
-        if trial is None or values is None or not all(map(same, values, wanted)) or also:
-            raise EditRefusedError(refusal(place, None, [Attempt(place, also=also, error=not also)], tag=target.tag))
+        text_range, text = self._insertion(target, element, " ".join(map(shortest_text, requested)))
+        refusal_reason = self._allowed(os.path.realpath(text_range.source.name))
+        if refusal_reason is not None:
+            raise EditRefusedError(refusal_reason)
+        trial = self._try_text(text_range, text)
+        values = None if trial is None else self._numbers_in(trial, target)
+        side_effects = () if trial is None else tuple(dict.fromkeys(self._differences(trial, target)))
+        if side_effects and self._request.together:
+            self._also_changed.update(dict.fromkeys(side_effects))
+            side_effects = ()
+        if trial is None or values is None or not all(map(same, values, requested)) or side_effects:
+            raise EditRefusedError(
+                refusal(
+                    text_range,
+                    None,
+                    [Attempt(text_range, side_effects=side_effects, fails_to_expand=not side_effects)],
+                    tag=target.tag,
+                )
+            )
         self._now = trial
 
-    def _new_text(self, target: Target, element: Element | None, text: str) -> tuple[Place, str]:
+    def _insertion(self, target: Target, element: Element | None, text: str) -> tuple[Place, str]:
         if element is not None:
-            written = self._source_element(element)
-            tag = start_tag_of(written)
-            if tag is not None and written.source is not None:
-                return Place(written.source, tag.room, tag.room), f' {target.attribute}="{text}"'
-            raise EditRefusedError(_not_written(element))
+            source_element = self._source_element(element)
+            tag = find_start_tag(source_element)
+            if tag is not None and source_element.source is not None:
+                return Place(
+                    source_element.source, tag.insertion_offset, tag.insertion_offset
+                ), f' {target.attribute}="{text}"'
+            raise EditRefusedError(_not_written_finding(element))
         owner = target.owner(self._now.root)
         assert owner is not None, "it was found before"
-        written = self._source_element(owner)
-        new = Element(target.tag, {target.attribute: text})
-        after = None
+        source_element = self._source_element(owner)
+        new_element = Element(target.tag, {target.attribute: text})
+        previous = None
         if target.tag == "axis":
-            after = next((element for tag in ("child", "parent", "origin") for element in written.elements(tag)), None)
-        edit = inserted(written, [new], after=after, first=after is None)
-        if edit is None or written.source is None:
-            raise EditRefusedError(_not_written(owner))
-        return Place(written.source, edit.start, edit.end), edit.text
+            previous = next(
+                (element for tag in ("child", "parent", "origin") for element in source_element.elements(tag)), None
+            )
+        edit = insertion(source_element, [new_element], after=previous, first=previous is None)
+        if edit is None or source_element.source is None:
+            raise EditRefusedError(_not_written_finding(owner))
+        return Place(source_element.source, edit.start, edit.end), edit.text
 
     def _source_element(self, element: Element) -> Element:
         """Return the unexpanded element in the file for an element of the expansion."""
         if element.source is None:
-            raise EditRefusedError(_not_written(element))
+            raise EditRefusedError(_not_written_finding(element))
         document: Document = parse(element.source.text, element.source.name)
-        found = next((child for child in document.root.walk() if child.offset == element.offset), None)
-        if found is None:
-            raise EditRefusedError(_not_written(element))
-        return found
+        source_element = next((child for child in document.root.walk() if child.offset == element.offset), None)
+        if source_element is None:
+            raise EditRefusedError(_not_written_finding(element))
+        return source_element
 
     # current values
 
     def _values(self, name: str) -> list[float]:
         """Return the current numbers of an attribute."""
-        found = self._values_in(self._now, Target(self._path, self._request.tag, name))
-        if found is None:
+        numbers = self._numbers_in(self._now, Target(self._path, self._request.tag, name))
+        if numbers is None:
             message = phrase("'{name}' of <{tag}> has a value that is not a number", name=name, tag=self._request.tag)
             raise EditRefusedError(Diagnostic("EDIT102", message, self._owner.span(), source=self._owner.source))
-        return found
+        return numbers
 
-    def _values_in(self, snapshot: Snapshot, target: Target) -> list[float] | None:
+    def _numbers_in(self, snapshot: Snapshot, target: Target) -> list[float] | None:
         element = target.element(snapshot.root)
         if element is None or target.attribute not in element.attributes:
             if target.owner(snapshot.root) is None:
                 return None
-            missing = [0.0, 0.0, 0.0] if target.attribute == "rpy" else _FEWEST[target.tag]
-            return list(missing)
-        return numbers_of(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
+            defaults = [0.0, 0.0, 0.0] if target.attribute == "rpy" else _DEFAULT_VALUES[target.tag]
+            return list(defaults)
+        return parse_numbers(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
 
-    def _written(self, element: Element, name: str) -> Place:
+    def _attribute_place(self, element: Element, name: str) -> Place:
         """Return the range of an attribute's text, on its element or in an ``<xacro:attribute>``."""
-        place = attribute(element, name)
-        if place is not None:
-            return place
+        text_range = attribute(element, name)
+        if text_range is not None:
+            return text_range
         provenance = self._now.description.provenance(element) if self._now is self._first else None
         origin = (
             next((attribute for attribute in provenance.attributes if attribute.name == name), None)
@@ -330,11 +351,11 @@ class _Planner:
             else None
         )
         if origin is None or origin.span is None or element.source is None or origin.span.file != element.source.name:
-            raise EditRefusedError(_not_written(element))
+            raise EditRefusedError(_not_written_finding(element))
         source, span = element.source, origin.span
         return Place(source, source.offset(span.line, span.column), source.offset(span.end_line, span.end_column))
 
 
-def _not_written(element: Element) -> Diagnostic:
+def _not_written_finding(element: Element) -> Diagnostic:
     message = phrase("<{tag}> is not written as a separate element in a file", tag=element.tag)
     return Diagnostic("EDIT103", message, element.span(), source=element.source)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.descriptions.editing.definitions import Definitions
-from linkwright.descriptions.editing.numbers import shortest
+from linkwright.descriptions.editing.numbers import shortest_text
 from linkwright.descriptions.editing.places import (
     Candidate,
     Place,
@@ -18,7 +18,7 @@ from linkwright.descriptions.editing.places import (
 )
 from linkwright.xacro.faults import Frame
 
-_DEEPEST = 8
+_MAX_DEPTH = 8
 
 
 def proposals(
@@ -40,61 +40,62 @@ def proposals(
         present: the current numbers of the attribute.
         is_angle: whether the numbers are angles.
     """
-    reached = list(_reached(place, index, frame, definitions))
-    for word in reached:
+    determining_words = list(_determining_words(place, index, frame, definitions))
+    for word in determining_words:
         yield from _numbers_in(word, present[index])
-    for word in reached:
+    for word in determining_words:
         yield from definitions.given(word.text, index, frame)
-    for word in reached:
-        found = addition_candidate(word, is_angle=is_angle)
-        if found is not None:
-            yield found
-    own = words(place)
-    if len(own) == len(present):
-        yield replacement_candidate(own[index], present[index])
-    elif len(own) == 1:
-        yield _whole(place, index, present)
+    for word in determining_words:
+        candidate = addition_candidate(word, is_angle=is_angle)
+        if candidate is not None:
+            yield candidate
+    attribute_words = words(place)
+    if len(attribute_words) == len(present):
+        yield replacement_candidate(attribute_words[index], present[index])
+    elif len(attribute_words) == 1:
+        yield _whole_candidate(place, index, present)
 
 
-def _reached(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
+def _determining_words(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
     """Yield the ranges of the words that determine a number.
 
     These are the word in the attribute itself, then the words in the definitions of its names, recursively.
     """
-    seen: set[tuple[str, int]] = set()
+    visited: set[tuple[str, int]] = set()
     pending: list[tuple[Place, int]] = [(place, 0)]
     while pending:
         text, depth = pending.pop(0)
-        if (text.source.name, text.start) in seen:
+        if (text.source.name, text.start) in visited:
             continue
-        seen.add((text.source.name, text.start))
-        found = words(text)
-        if len(found) > 1:
-            found = found[index : index + 1] if len(found) in (3, 4) else []
-        for word in found:
+        visited.add((text.source.name, text.start))
+        text_words = words(text)
+        if len(text_words) > 1:
+            text_words = text_words[index : index + 1] if len(text_words) in (3, 4) else []
+        for word in text_words:
             yield word
-            if "$" in word.text and depth < _DEEPEST:
-                pending.extend((of_name, depth + 1) for of_name in definitions.of_names(word.text, frame))
+            if "$" in word.text and depth < _MAX_DEPTH:
+                pending.extend((definition, depth + 1) for definition in definitions.of_names(word.text, frame))
 
 
 def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
     """Yield candidates for the literal numbers in a word."""
-    known = literal(word)
-    if known is not None:
-        yield known
+    literal_number = literal(word)
+    if literal_number is not None:
+        yield literal_number
         return
-    found = list(added_constants(word))
-    if is_constant(word) and (not found or ("pi" in word.text and "180" not in word.text)):
-        found = [replacement_candidate(word, value)]
-    yield from found
+    candidates = list(added_constants(word))
+    if is_constant(word) and (not candidates or ("pi" in word.text and "180" not in word.text)):
+        candidates = [replacement_candidate(word, value)]
+    yield from candidates
 
 
-def _whole(place: Place, index: int, present: Sequence[float]) -> Candidate:
+def _whole_candidate(place: Place, index: int, present: Sequence[float]) -> Candidate:
     """Return a candidate that replaces a single expression with all numbers of the attribute."""
 
     def write(number: float, tolerance: float) -> str:
         return " ".join(
-            shortest(number, tolerance) if i == index else shortest(each, 0.0) for i, each in enumerate(present)
+            shortest_text(number, tolerance) if i == index else shortest_text(current_number, 0.0)
+            for i, current_number in enumerate(present)
         )
 
     return Candidate(place, present[index], write)

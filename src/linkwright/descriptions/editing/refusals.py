@@ -8,7 +8,7 @@ from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import Diagnostic, Note, display_path, joined, phrase
 from linkwright.loading.lean_dataclasses import dataclass
 
-_MOST_NAMED = 6
+_MAX_NAMES = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,20 +16,20 @@ class Attempt:
     """A candidate whose edit failed.
 
     Attributes:
-        place: the range of the candidate's text.
-        also: the names of the other parts that the edit would change.
+        text_range: the range of the candidate's text.
+        side_effects: the names of the other parts that the edit would change.
         forbidden: the reason why the file must not be written, or None.
-        choice: whether the text is a factor that selects a side.
-        doubtful: whether the text may be such a factor.
-        error: whether the description could not be expanded with the edit.
+        is_choice: whether the text is a factor that selects a side.
+        may_be_choice: whether the text may be such a factor.
+        fails_to_expand: whether the description could not be expanded with the edit.
     """
 
-    place: Place
-    also: tuple[str, ...] = ()
+    text_range: Place
+    side_effects: tuple[str, ...] = ()
     forbidden: Diagnostic | None = None
-    choice: bool = False
-    doubtful: bool = False
-    error: bool = False
+    is_choice: bool = False
+    may_be_choice: bool = False
+    fails_to_expand: bool = False
 
 
 def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
@@ -41,54 +41,60 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
         attempts: the failed candidates, in the order in which they were tried.
         tag: the tag of the element that would be added.
     """
-    written = " ".join(place.text.split())
-    noted = {
-        attempt.place.span: attempt
+    text = " ".join(place.text.split())
+    attempts_by_span = {
+        attempt.text_range.span: attempt
         for attempt in attempts
-        if attempt.place != place and (attempt.also or attempt.choice)
+        if attempt.text_range != place and (attempt.side_effects or attempt.is_choice)
     }
-    notes = tuple(map(_note, noted.values()))[:_MOST_NAMED]
-    also = min(
-        (attempt for attempt in attempts if attempt.also),
-        key=lambda attempt: (len(attempt.also), attempt.doubtful),
+    notes = tuple(map(_attempt_note, attempts_by_span.values()))[:_MAX_NAMES]
+    best_attempt = min(
+        (attempt for attempt in attempts if attempt.side_effects),
+        key=lambda attempt: (len(attempt.side_effects), attempt.may_be_choice),
         default=None,
     )
     forbidden = next((attempt.forbidden for attempt in attempts if attempt.forbidden is not None), None)
-    if also is not None:
-        what = _named(also.also)
+    if best_attempt is not None:
+        names_text = _joined_names(best_attempt.side_effects)
         hint = phrase(
             "add a parameter or property for this part to the macro or expression here, or change the "
             "text for all of these parts"
         )
         if index is None:
-            message = phrase("an <{tag}> written here would also change {what}", tag=tag, what=what)
+            message = phrase("an <{tag}> written here would also change {what}", tag=tag, what=names_text)
         else:
-            message = phrase("another number in '{written}' would also change {what}", written=written, what=what)
+            message = phrase("another number in '{written}' would also change {what}", written=text, what=names_text)
         return Diagnostic("EDIT104", message, place.span, notes=notes, hint=hint, source=place.source)
     if forbidden is not None:
         return forbidden
-    message = phrase("no number gives '{written}' the requested value", written=written)
-    hint = phrase("write a number, or a sum with one, in place of the expression")
+    message = phrase("no number gives '{written}' the requested value", written=text)
+    hint = phrase("write a number, or a sum that contains a number, in place of the expression")
     return Diagnostic("EDIT105", message, place.span, notes=notes, hint=hint, source=place.source)
 
 
-def _note(attempt: Attempt) -> Note:
-    text = " ".join(attempt.place.text.split())
-    if attempt.choice:
-        return Note(phrase("'{text}' selects the side and is not changed", text=text), attempt.place.span)
-    return Note(phrase("'{text}' also produces {what}", text=text, what=_named(attempt.also)), attempt.place.span)
+def _attempt_note(attempt: Attempt) -> Note:
+    text = " ".join(attempt.text_range.text.split())
+    if attempt.is_choice:
+        return Note(
+            phrase(("'{text}' is a factor that selects a side, so it is not changed"), text=text),
+            attempt.text_range.span,
+        )
+    return Note(
+        phrase(("'{text}' also determines {what}"), text=text, what=_joined_names(attempt.side_effects)),
+        attempt.text_range.span,
+    )
 
 
-def _named(also: Sequence[str]) -> object:
-    named = list(also[:_MOST_NAMED])
-    if len(also) > len(named):
-        named.append(str(phrase("{count} more", count=len(also) - len(named))))
-    return joined(named)
+def _joined_names(names: Sequence[str]) -> object:
+    shown_names = list(names[:_MAX_NAMES])
+    if len(names) > len(shown_names):
+        shown_names.append(str(phrase("{count} more", count=len(names) - len(shown_names))))
+    return joined(shown_names)
 
 
-def forbidden_file(path: str, why: object) -> Diagnostic:
+def forbidden_file(path: str, reason: object) -> Diagnostic:
     """Return the finding that a file must not be written."""
-    message = phrase("'{path}' is not written: {why}", path=display_path(path), why=why)
+    message = phrase("'{path}' is not written: {why}", path=display_path(path), why=reason)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)
 

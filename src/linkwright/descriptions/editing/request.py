@@ -53,5 +53,5 @@ class EditRequest:
             return None
         if self.part == "inertial":
             return link.inertial.element if link.inertial is not None else None
-        parts = link.visuals if self.part == "visual" else link.collisions
-        return parts[self.index].element if 0 <= self.index < len(parts) else None
+        shapes = link.visuals if self.part == "visual" else link.collisions
+        return shapes[self.index].element if 0 <= self.index < len(shapes) else None

@@ -22,7 +22,7 @@ from linkwright.xmltree.reader import read_bytes
 if TYPE_CHECKING:
     from linkwright.xacro import Expansion
 
-_YAML = (".yaml", ".yml")
+_YAML_SUFFIXES = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -62,14 +62,14 @@ class Snapshot:
             return Definitions((), (), Overlay())
         overlay = Overlay(self.texts)
         documents: list[Document] = []
-        others: list[Path] = []
+        other_files: list[Path] = []
         for path in self.files:
-            if path.suffix in _YAML:
-                others.append(path)
+            if path.suffix in _YAML_SUFFIXES:
+                other_files.append(path)
             else:
                 with suppress(LinkwrightError):  # an optional file may not exist
                     documents.append(read_document(str(path), overlay))
-        return Definitions(documents, others, overlay)
+        return Definitions(documents, other_files, overlay)
 
     def with_text(self, place: Place, text: str) -> Snapshot:
         """Return a snapshot in which a text replaces one range of a file.
@@ -77,9 +77,9 @@ class Snapshot:
         Raises:
             LinkwrightError: if the description can no longer be expanded.
         """
-        whole = place.source.text
-        changed = whole[: place.start] + text + whole[place.end :]
-        texts = {**self.texts, os.path.realpath(place.source.name): changed}
+        source_text = place.source.text
+        changed_text = source_text[: place.start] + text + source_text[place.end :]
+        texts = {**self.texts, os.path.realpath(place.source.name): changed_text}
         return self.with_texts(texts)
 
     def with_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:
@@ -97,8 +97,8 @@ class Snapshot:
 
         inputs = expansion.inputs
         assert inputs is not None, "it was expanded from a file"
-        again = expand(name, inputs.arguments, packages=inputs.packages, text=text, overlay=overlay)
-        return Snapshot(self.description, texts, again.document, again.dependencies, again)
+        new_expansion = expand(name, inputs.arguments, packages=inputs.packages, text=text, overlay=overlay)
+        return Snapshot(self.description, texts, new_expansion.document, new_expansion.dependencies, new_expansion)
 
 
 def read_again(description: Description) -> Description:

@@ -1,4 +1,4 @@
-"""Formats in which people and programs read diagnostics."""
+"""Formats of diagnostics, for people and for programs."""
 
 from linkwright.diagnostics.formats.choice import FORMATS, format_diagnostics
 

@@ -10,20 +10,20 @@ from linkwright.diagnostics.translation import translated
 from linkwright.loading.lean_typing import cast
 
 FORMATS = ("text", "concise", "json", "sarif", "github")
-"""``text`` for people, ``concise`` a line each, ``json`` and ``sarif`` for programs, ``github`` for its workflows."""
+"""``text`` for people, ``concise`` with one line each, ``json`` and ``sarif`` for programs, ``github`` for its jobs."""
 
 _Formatter = Callable[[Iterable[Diagnostic]], str]
 
 
 def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
-    """Format diagnostics as text that ends with a newline.
+    """Return diagnostics as text, which ends with a newline.
 
-    In the formats with one line for each diagnostic, the result is empty if there are none. The texts are in English
-    unless another language was requested by name (`--lang`).
+    If a format has one line per diagnostic, the text is empty without diagnostics. Messages are in English unless
+    another language was requested by name (`--lang`).
 
     Args:
-        diagnostics: the diagnostics in the order in which they are to be shown.
-        form: a key of `FORMATS` except ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
+        diagnostics: the diagnostics, in the order in which they are shown.
+        form: an item of `FORMATS` except ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
     """
     if form not in FORMATS or form == "text":
         raise ValueError(f"no format '{form}'")

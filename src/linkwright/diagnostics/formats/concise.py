@@ -1,6 +1,6 @@
-"""One line for each diagnostic: ``FILE:LINE:COLUMN: CODE message``.
+"""Write one line per diagnostic: ``FILE:LINE:COLUMN: SEVERITY[CODE] message (hint)``.
 
-Editors and ``grep`` expect this format.
+Editors and ``grep`` expect lines that begin in this way.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from linkwright.diagnostics.render import display_path, printable
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Format diagnostics, one per line."""
+    """Return diagnostics as text, one per line."""
     return "".join(f"{_line(diagnostic)}\n" for diagnostic in diagnostics)
 
 
 def _line(diagnostic: Diagnostic) -> str:
     span = diagnostic.span
-    place = ""
+    position = ""
     if span is not None:
         file = span.file if span.file.startswith("<") else display_path(span.file)
-        place = f"{file}:{span.line}:{span.column}: "
+        position = f"{file}:{span.line}:{span.column}: "
     message = " ".join(diagnostic.message.split())
     hint = f" ({' '.join(diagnostic.hint.split())})" if diagnostic.hint else ""
-    return printable(f"{place}{diagnostic.severity.value}[{diagnostic.code}] {message}{hint}")
+    return printable(f"{position}{diagnostic.severity.value}[{diagnostic.code}] {message}{hint}")

@@ -1,4 +1,4 @@
-"""Workflow commands of GitHub Actions.
+"""Write diagnostics as workflow commands of GitHub Actions.
 
 GitHub shows each diagnostic next to its line in the pull request.
 """
@@ -14,7 +14,7 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Format diagnostics as workflow commands, one for each."""
+    """Return diagnostics as text, one workflow command per line."""
     return "".join(f"{_command(diagnostic)}\n" for diagnostic in diagnostics)
 
 
@@ -29,19 +29,19 @@ def _command(diagnostic: Diagnostic) -> str:
             properties["col"] = str(span.column)
             properties["endColumn"] = str(max(span.column, span.end_column - 1))
     properties["title"] = diagnostic.code
-    written = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
+    property_text = ",".join(f"{name}={_escape_property(value)}" for name, value in properties.items())
     text: str = diagnostic.message
     for note in diagnostic.notes:
-        place = f" ({display_path(note.span.file)}:{note.span.line}:{note.span.column})" if note.span else ""
-        text += f"\nnote: {note.message}{place}"
+        position = f" ({display_path(note.span.file)}:{note.span.line}:{note.span.column})" if note.span else ""
+        text += f"\nnote: {note.message}{position}"
     if diagnostic.hint:
         text += f"\nhint: {diagnostic.hint}"
-    return f"::{_COMMANDS[diagnostic.severity]} {written}::{_data(text)}"
+    return f"::{_COMMANDS[diagnostic.severity]} {property_text}::{_escape_data(text)}"
 
 
-def _data(text: str) -> str:
+def _escape_data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
+def _escape_property(text: str) -> str:
+    return _escape_data(text).replace(":", "%3A").replace(",", "%2C")

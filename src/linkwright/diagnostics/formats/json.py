@@ -1,6 +1,6 @@
-"""JSON: an object with a list ``diagnostics``.
+"""Write diagnostics as JSON: an object with a list ``diagnostics``.
 
-Positions count from 1, and missing ones are null.
+Lines and columns count from 1; a missing position is null.
 """
 
 from __future__ import annotations
@@ -13,6 +13,6 @@ from linkwright.diagnostics.render import to_data
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Format diagnostics as one JSON object."""
+    """Return diagnostics as the text of one JSON object."""
     data = {"diagnostics": [to_data(diagnostic) for diagnostic in diagnostics]}
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

@@ -1,4 +1,4 @@
-"""SARIF 2.1.0 (OASIS), which code scanning services read."""
+"""Write diagnostics as SARIF 2.1.0 (OASIS), which code scanning services read."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from linkwright.loading.lean_typing import Any
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
-_ROOT = "ROOT"
+_ROOT_ID = "ROOT"
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Format diagnostics as a SARIF log of one run.
+    """Return diagnostics as the text of a SARIF log with one run.
 
     Files below the current folder get relative names.
     """
-    found = list(diagnostics)
-    codes = sorted({diagnostic.code for diagnostic in found})
+    diagnostic_list = list(diagnostics)
+    codes = sorted({diagnostic.code for diagnostic in diagnostic_list})
     log = {
         "$schema": _SCHEMA,
         "version": "2.1.0",
@@ -34,59 +34,61 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
                     "driver": {
                         "name": "linkwright",
                         "version": __version__,
-                        "rules": [_rule(code, found) for code in codes],
+                        "rules": [_rule(code, diagnostic_list) for code in codes],
                     }
                 },
-                "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
+                "originalUriBaseIds": {_ROOT_ID: {"uri": Path.cwd().as_uri() + "/"}},
                 "columnKind": "unicodeCodePoints",
-                "results": [_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in found],
+                "results": [_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in diagnostic_list],
             }
         ],
     }
     return json.dumps(log, indent=2, ensure_ascii=False) + "\n"
 
 
-def _rule(code: str, found: Iterable[Diagnostic]) -> dict[str, Any]:
-    """Return the SARIF rule for a code with the messages found.
+def _rule(code: str, diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
+    """Return the SARIF rule for a code, with the templates of its messages.
 
-    A message's ID is its English template.
+    The ID of a message is its English template.
     """
-    messages = {diagnostic.message: as_phrase(diagnostic.message) for diagnostic in found if diagnostic.code == code}
-    templates = {message.chosen_template: {"text": _numbered(message)[0]} for message in messages.values()}
+    messages = {
+        diagnostic.message: as_phrase(diagnostic.message) for diagnostic in diagnostics if diagnostic.code == code
+    }
+    templates = {message.chosen_template: {"text": _number_placeholders(message)[0]} for message in messages.values()}
     return {"id": code, "messageStrings": templates}
 
 
 def _message(diagnostic: Diagnostic) -> dict[str, Any]:
-    """Return a message as SARIF (SARIF 2.1.0, 3.11).
+    """Return the message of a diagnostic for SARIF (SARIF 2.1.0, 3.11).
 
-    It has the text, and the template and arguments for grouping or translation.
+    It contains the text, and the template's ID and the arguments for grouping or translation.
     """
     message = as_phrase(diagnostic.message)
     hint = f". Hint: {diagnostic.hint}" if diagnostic.hint else ""
     result: dict[str, Any] = {"text": message + hint, "id": message.chosen_template}
-    arguments = _numbered(message)[1]
+    arguments = _number_placeholders(message)[1]
     return {**result, "arguments": arguments} if arguments else result
 
 
-def _numbered(message: Phrase) -> tuple[str, list[str]]:
-    """Return a message's template with numbered placeholders, and their values in order.
+def _number_placeholders(message: Phrase) -> tuple[str, list[str]]:
+    """Return the template of a message with numbered placeholders, and their values in order.
 
     SARIF uses numbers in place of names.
     """
     template = message.chosen_template
     if not message.arguments:
-        return _without_placeholders(template), []
+        return _escape_braces(template), []
     text = ""
     arguments: list[str] = []
-    for literal, name, form, _ in Formatter().parse(template):
-        text += _without_placeholders(literal)
+    for literal, name, format_spec, _ in Formatter().parse(template):
+        text += _escape_braces(literal)
         if name is not None:
             text += f"{{{len(arguments)}}}"
-            arguments.append(format(message.arguments[name], form or ""))
+            arguments.append(format(message.arguments[name], format_spec or ""))
     return text, arguments
 
 
-def _without_placeholders(text: str) -> str:
+def _escape_braces(text: str) -> str:
     return text.replace("{", "{{").replace("}", "}}")
 
 
@@ -129,4 +131,4 @@ def _artifact(file: str) -> dict[str, str]:
         return {"uri": Path(file).absolute().as_uri()}
     from urllib.parse import quote
 
-    return {"uri": quote(relative.replace(os.sep, "/")), "uriBaseId": _ROOT}
+    return {"uri": quote(relative.replace(os.sep, "/")), "uriBaseId": _ROOT_ID}

@@ -1,8 +1,8 @@
-"""Diagnostics in the user's language.
+"""Translate diagnostics to the user's language.
 
-The package chooses the language, and has the catalogues of texts. Messages are written in English where they are
-reported. A catalogue maps the English templates of each code to another language; a template that is missing from it
-stays English. Codes, places and the user's own words never change.
+The package chooses the language, and contains the catalogues of texts. Messages are written in English where they are
+reported. A catalogue maps their English templates to another language; a template that is not in it stays English.
+Codes, positions and names from the user's input never change.
 """
 
 from linkwright.diagnostics.translation.translate import (

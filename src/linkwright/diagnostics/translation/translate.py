@@ -1,4 +1,4 @@
-"""Translation of diagnostics: the catalogues, and the requested language."""
+"""The catalogues of translations, and the choice of the language."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 ENGLISH, CHINESE = "en", "zh"
 TAGS = {ENGLISH: "en", CHINESE: "zh-CN"}
-"""The languages of messages, each with its tag in web pages: English, and Chinese in simplified characters."""
+"""The languages of messages, each with its tag in web pages: English and simplified Chinese."""
 
 LANGUAGES = tuple(TAGS)
 
-_VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
-"""The first that is set decides; the order of the last three is that of POSIX."""
+_LANGUAGE_VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
+"""The environment variables for the language; the first that is set decides. The order of the last three is POSIX's."""
 
 _asked: str | None = None
 
 
 def set_language(code: str | None) -> None:
-    """Set the language, one of `LANGUAGES`, for the rest of the process.
+    """Set the language of messages, one of `LANGUAGES`, for the rest of the process.
 
-    None selects the environment's language.
+    None selects the language of the environment.
     """
     global _asked  # noqa: PLW0603 - the language is one for the whole process, as the locale is
     if code is not None and code not in LANGUAGES:
@@ -38,7 +38,7 @@ def set_language(code: str | None) -> None:
 
 
 def asked_language() -> str | None:
-    """Return the language that was set, or None.
+    """Return the language that was set with `set_language`, or None.
 
     Output for programs is in English unless a language was set.
     """
@@ -46,10 +46,10 @@ def asked_language() -> str | None:
 
 
 def language() -> str:
-    """Return the language of output for people, one of `LANGUAGES`."""
+    """Return the language of messages for people, one of `LANGUAGES`."""
     if _asked is not None:
         return _asked
-    for name in _VARIABLES:
+    for name in _LANGUAGE_VARIABLES:
         value = os.environ.get(name)
         if value:
             return language_of(value) or ENGLISH
@@ -57,10 +57,10 @@ def language() -> str:
 
 
 def language_of(locale: str) -> str | None:
-    """Return the language of a locale such as ``zh_CN.UTF-8``.
+    """Return the language of messages for a locale such as ``zh_CN.UTF-8``.
 
-    The result is None if there are no messages in this language. Any Chinese locale selects simplified characters,
-    because there are no others.
+    It is None if there are no messages in the locale's language. Any Chinese locale selects simplified Chinese, because
+    there is no other catalogue for Chinese.
     """
     name = locale.strip().replace("-", "_").partition(".")[0].partition("_")[0].casefold()
     return name if name in LANGUAGES else None
@@ -68,9 +68,9 @@ def language_of(locale: str) -> str | None:
 
 @cache
 def wording(language: str) -> NullTranslations:
-    """Return the catalogue of a language, which is read once.
+    """Return the catalogue of a language; it is read only once.
 
-    It is empty in a checkout without a compiled catalogue.
+    It is empty if there is no compiled catalogue, as in a fresh checkout.
     """
     from gettext import GNUTranslations, NullTranslations  # imported here, because English does not need it
 
@@ -85,42 +85,43 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 
 
 def labels(lang: str | None = None) -> Mapping[str, str]:
-    """Return the labels of severities, notes and hints, and the colon after them.
+    """Return the labels for severities, notes and hints, and the colon that follows them.
 
-    The default is the user's language.
+    They are in a language of `LANGUAGES`; None for the user's.
     """
     lang = language() if lang is None else lang
     return {label: label if lang == "en" else term(label).translated_text(wording(lang)) for label in _LABELS}
 
 
 def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False) -> Iterable[Diagnostic]:
-    """Return the diagnostics in the reader's language.
+    """Return diagnostics in the language of their reader.
 
     Args:
         diagnostics: the diagnostics in English, as they are created.
-        for_programs: whether a program reads them, which gets English unless another language was requested by name.
+        for_programs: whether a program reads them. A program gets English unless another language was requested by
+            name.
     """
     lang = (asked_language() or "en") if for_programs else language()
     return diagnostics if lang == "en" else [translate(diagnostic, lang) for diagnostic in diagnostics]
 
 
 def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
-    """Return the diagnostic with its texts in a language of `LANGUAGES`.
+    """Return a diagnostic with its texts in a language of `LANGUAGES`.
 
-    Unknown texts stay English.
+    Texts without a translation stay English.
     """
     if lang == "en":
         return diagnostic
-    words = wording(lang)
+    catalogue = wording(lang)
     return diagnostic.with_changes(
-        message=_translated(diagnostic.message, words),
-        notes=tuple(Note(_translated(note.message, words), note.span) for note in diagnostic.notes),
-        hint=_translated(diagnostic.hint, words) if diagnostic.hint else diagnostic.hint,
+        message=_translate_text(diagnostic.message, catalogue),
+        notes=tuple(Note(_translate_text(note.message, catalogue), note.span) for note in diagnostic.notes),
+        hint=_translate_text(diagnostic.hint, catalogue) if diagnostic.hint else diagnostic.hint,
     )
 
 
 def localized(text: str, lang: str | None = None) -> str:
-    """Return a text in a language of `LANGUAGES`, by default the user's.
+    """Return a text in a language of `LANGUAGES`; None for the user's.
 
     A plain string is returned unchanged.
     """
@@ -129,9 +130,9 @@ def localized(text: str, lang: str | None = None) -> str:
 
 
 def translate_phrase(text: Phrase, lang: str) -> str:
-    """Return a phrase in a language of `LANGUAGES`, regardless of its current language."""
+    """Return the text of a phrase in a language of `LANGUAGES`, whatever language it is in."""
     return text.translated_text(wording(lang))
 
 
-def _translated(text: Phrase, words: Wording) -> Phrase:
+def _translate_text(text: Phrase, words: Wording) -> Phrase:
     return text.translated(words) if isinstance(text, Phrase) else text

@@ -128,7 +128,7 @@ class ActionClient(ActionEndpoint):
         self._goal_client = client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
         self._cancel_client = client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
         self._result_client = client(impl.GetResultService, "get_result", result_service_qos_profile)
-        self._feedback = node.create_subscription(
+        self._feedback_subscription = node.create_subscription(
             impl.FeedbackMessage,
             self._full_name("feedback"),
             self._on_feedback,
@@ -150,7 +150,7 @@ class ActionClient(ActionEndpoint):
         """Return whether an action server with all its services and topics is available."""
         clients = (self._goal_client, self._cancel_client, self._result_client)
         return all(client.service_is_ready() for client in clients) and all(
-            subscription.get_publisher_count() for subscription in (self._feedback, self._status)
+            subscription.get_publisher_count() for subscription in (self._feedback_subscription, self._status)
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
@@ -202,11 +202,11 @@ class ActionClient(ActionEndpoint):
         key = bytes(request.goal_id.uuid)
         if feedback_callback is not None:
             self._feedback_callbacks[key] = feedback_callback
-        handed: Future[ClientGoalHandle] = Future()
-        answer = self._goal_client.call_async(request)
-        handed.source = self._goal_client
-        answer.add_waiter(partial(self._on_goal_response, answer, request.goal_id, handed))
-        return handed
+        handle_future: Future[ClientGoalHandle] = Future()
+        response_future = self._goal_client.call_async(request)
+        handle_future.source = self._goal_client
+        response_future.add_waiter(partial(self._on_goal_response, response_future, request.goal_id, handle_future))
+        return handle_future
 
     def cancel(self, goal: ClientGoalHandle) -> Future[Any]:
         """Request cancellation of a goal; see `ClientGoalHandle.cancel_goal_async`.
@@ -228,11 +228,11 @@ class ActionClient(ActionEndpoint):
         _check_handle(goal)
         request = self._action_type.Impl.GetResultService.Request()
         request.goal_id = goal.goal_id
-        handed: Future[Any] = Future()
-        answer = self._result_client.call_async(request)
-        handed.source = self._result_client
-        answer.add_waiter(partial(self._on_result, answer, bytes(goal.goal_id.uuid), handed))
-        return handed
+        result_future: Future[Any] = Future()
+        response_future = self._result_client.call_async(request)
+        result_future.source = self._result_client
+        response_future.add_waiter(partial(self._on_result, response_future, bytes(goal.goal_id.uuid), result_future))
+        return result_future
 
     def destroy(self) -> None:
         """Remove the client from the graph. A second call does nothing.
@@ -243,33 +243,35 @@ class ActionClient(ActionEndpoint):
             return
         self._destroyed = True
         clients = (self._goal_client, self._cancel_client, self._result_client)
-        for part in (*clients, self._feedback, self._status):
-            part.destroy()
+        for endpoint in (*clients, self._feedback_subscription, self._status):
+            endpoint.destroy()
         self._handle.remove_cleanup(self.destroy)
 
-    def _on_goal_response(self, answer: Future[Any], goal_id: Any, handed: Future[ClientGoalHandle]) -> None:
-        if answer.cancelled():
-            handed.cancel()
+    def _on_goal_response(
+        self, response_future: Future[Any], goal_id: Any, handle_future: Future[ClientGoalHandle]
+    ) -> None:
+        if response_future.cancelled():
+            handle_future.cancel()
             return
-        handle = ClientGoalHandle(self, goal_id, answer.result())
+        handle = ClientGoalHandle(self, goal_id, response_future.result())
         key = bytes(goal_id.uuid)
         if handle.accepted:
             self._goal_handles[key] = weakref.ref(handle)
         else:
             self._feedback_callbacks.pop(key, None)
-        handed.hand_over(handle, self._handle.dispatcher)
+        handle_future.hand_over(handle, self._handle.dispatcher)
 
-    def _on_result(self, answer: Future[Any], key: bytes, handed: Future[Any]) -> None:
-        if answer.cancelled():
-            handed.cancel()
+    def _on_result(self, response_future: Future[Any], key: bytes, result_future: Future[Any]) -> None:
+        if response_future.cancelled():
+            result_future.cancel()
             return
         callback = self._feedback_callbacks.get(key)
         if callback is not None and not iscoroutinefunction(callback):
             # Feedback that was published before the goal ended must be delivered before its result.
-            while (call := self._feedback.take()) is not None:
+            while (call := self._feedback_subscription.take()) is not None:
                 call()
         self._feedback_callbacks.pop(key, None)
-        handed.hand_over(answer.result(), self._handle.dispatcher)
+        result_future.hand_over(response_future.result(), self._handle.dispatcher)
 
     def _on_feedback(self, message: Any) -> Any:
         callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))

@@ -53,7 +53,7 @@ ACTIVE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCEL
 CANCELABLE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING})
 """The states in which a goal can be asked to be canceled."""
 
-_NEXT = {
+_TRANSITIONS = {
     (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
     (GoalStatus.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
     (GoalStatus.EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
@@ -105,7 +105,7 @@ class ServerGoalHandle:
         self.goal_info = goal_info
         self.ended_ns: int | None = None
         self.result: Future[Any] = Future()
-        """The response to clients that ask for the result."""
+        """The future response to the clients that request the result."""
 
     def __eq__(self, other: object) -> bool:
         return bytes(self.goal_id.uuid) == bytes(other.goal_id.uuid) if isinstance(other, ServerGoalHandle) else False
@@ -149,9 +149,9 @@ class ServerGoalHandle:
         Raises:
             TypeError: `feedback` is not a feedback message of the action.
         """
-        kind = self._server.action_type
-        if not isinstance(feedback, kind.Feedback):
-            raise TypeError(f"Expected {kind.Feedback}, got {type(feedback)}")
+        action_type = self._server.action_type
+        if not isinstance(feedback, action_type.Feedback):
+            raise TypeError(f"Expected {action_type.Feedback}, got {type(feedback)}")
         if not self._destroyed:
             self._server.publish_feedback(self.goal_id, feedback)
 
@@ -185,13 +185,13 @@ class ServerGoalHandle:
         with self._lock:
             if self._destroyed:
                 return
-            following = _NEXT.get((self._status, event))
-            if following is None:
+            new_status = _TRANSITIONS.get((self._status, event))
+            if new_status is None:
                 raise RuntimeError(
                     "Failed to update goal state: goal_handle attempted invalid transition from state "
                     f"{self._status.name} with event {event.name}"
                 )
-            self._status = following
+            self._status = new_status
         self._server.state_changed(self)
 
     def destroy(self) -> None:

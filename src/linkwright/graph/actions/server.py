@@ -110,20 +110,20 @@ class ActionServer(ActionEndpoint):
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._goal_info = get_message("action_msgs/msg/GoalInfo")
         self._goal_status = get_message("action_msgs/msg/GoalStatus")
-        self._expiry: Timer | None = None
+        self._expiry_timer: Timer | None = None
         self._executions = self._handle.add(_Executions(self._handle))
         impl = self._action_type.Impl
         self._services = [
             node.create_service(
-                kind, self._full_name(name), answer, qos_profile=qos, callback_group=group, replying=True
+                service_type, self._full_name(name), callback, qos_profile=qos, callback_group=group, replying=True
             )
-            for kind, name, answer, qos, group in (
+            for service_type, name, callback, qos, group in (
                 (impl.SendGoalService, "send_goal", self._on_goal, goal_service_qos_profile, callback_group),
                 (impl.CancelGoalService, "cancel_goal", self._on_cancel, cancel_service_qos_profile, callback_group),
                 (impl.GetResultService, "get_result", self._on_result, result_service_qos_profile, FREE_GROUP),
             )
         ]
-        self._feedback = node.create_publisher(
+        self._feedback_publisher = node.create_publisher(
             impl.FeedbackMessage, self._full_name("feedback"), feedback_pub_qos_profile
         )
         self._status = node.create_publisher(impl.GoalStatusMessage, self._full_name("status"), status_pub_qos_profile)
@@ -163,10 +163,10 @@ class ActionServer(ActionEndpoint):
             self._goal_handles.clear()
         for goal in goals:
             goal.retire()
-        for part in (*self._services, self._feedback, self._status, self._executions):
-            part.destroy()
-        if self._expiry is not None:
-            self._expiry.destroy()
+        for entity in (*self._services, self._feedback_publisher, self._status, self._executions):
+            entity.destroy()
+        if self._expiry_timer is not None:
+            self._expiry_timer.destroy()
         self._handle.remove_cleanup(self.destroy)
 
     # --- called by goal handles --------------------------------------------------------------------------------------
@@ -182,7 +182,7 @@ class ActionServer(ActionEndpoint):
             message = self._action_type.Impl.FeedbackMessage()
             message.goal_id = goal_id
             message.feedback = feedback
-            self._feedback.publish(message)
+            self._feedback_publisher.publish(message)
 
     def state_changed(self, goal: ServerGoalHandle) -> None:
         """Publish the states of all goals; if the goal ended, start the timeout of its result."""
@@ -205,10 +205,10 @@ class ActionServer(ActionEndpoint):
         response = self._action_type.Impl.SendGoalService.Response()
         goal = None
         if uuid not in self._goal_handles:
-            answer = await await_result(self._goal_callback(request.goal))
-            if not isinstance(answer, GoalResponse):
+            decision = await await_result(self._goal_callback(request.goal))
+            if not isinstance(decision, GoalResponse):
                 logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
-            elif answer is GoalResponse.ACCEPT:
+            elif decision is GoalResponse.ACCEPT:
                 goal = self._accept(request)
                 response.accepted = True
                 response.stamp = goal.goal_info.stamp
@@ -234,8 +234,8 @@ class ActionServer(ActionEndpoint):
         response.return_code, goals = self._goals_to_cancel(request.goal_info)
         canceling = []
         for goal in goals:
-            answer = await await_result(self._cancel_callback(goal))
-            if answer is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE:
+            decision = await await_result(self._cancel_callback(goal))
+            if decision is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE:
                 goal.update(GoalEvent.CANCEL_GOAL)
                 canceling.append(goal.goal_info)
         if goals and not canceling:
@@ -244,7 +244,7 @@ class ActionServer(ActionEndpoint):
         reply(response)
 
     def _goals_to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
-        """Return the preliminary return code of a cancel request, and the cancelable goals selected.
+        """Return the preliminary return code of a cancel request, and the goals that it may cancel.
 
         As in rcl_action's ``process_cancel_request``:
 
@@ -258,18 +258,18 @@ class ActionServer(ActionEndpoint):
         stamp_ns = info.stamp.sec * NANOSECONDS_PER_SECOND + info.stamp.nanosec
         with self._lock:
             goals = list(self._goal_handles.values())
-            chosen = self._goal_handles.get(uuid)
+            requested_goal = self._goal_handles.get(uuid)
         if has_id and not stamp_ns:
-            if chosen is None:
+            if requested_goal is None:
                 return ERROR_UNKNOWN_GOAL_ID, []
-            if GoalStatus(chosen.status) not in CANCELABLE:
+            if GoalStatus(requested_goal.status) not in CANCELABLE:
                 return ERROR_GOAL_TERMINATED, []
-            return ERROR_NONE, [chosen]
+            return ERROR_NONE, [requested_goal]
         return ERROR_NONE, [
             goal
             for goal in goals
             if GoalStatus(goal.status) in CANCELABLE
-            and (goal is chosen or not stamp_ns or Time.from_msg(goal.goal_info.stamp).nanoseconds <= stamp_ns)
+            and (goal is requested_goal or not stamp_ns or Time.from_msg(goal.goal_info.stamp).nanoseconds <= stamp_ns)
         ]
 
     def _on_result(self, request: Any, reply: Callable[[Any], None]) -> None:
@@ -290,7 +290,7 @@ class ActionServer(ActionEndpoint):
             result = await await_result(callback(goal))
         except Exception as error:  # noqa: BLE001  # the client of the goal must learn that it failed
             self._executions.report(error)
-        kind = self._action_type.Result
+        result_class = self._action_type.Result
         if self._destroyed:
             return
         if goal.is_active:
@@ -302,13 +302,13 @@ class ActionServer(ActionEndpoint):
             self._handle.logger.warning(
                 f"the execute callback of action '{self._action_name}' returned no result: an empty one is sent"
             )
-        if result is not None and not isinstance(result, kind):
+        if result is not None and not isinstance(result, result_class):
             self._handle.logger.error(
-                f"the execute callback of action '{self._action_name}' gave {type(result)}, not {kind}: "
+                f"the execute callback of action '{self._action_name}' gave {type(result)}, not {result_class}: "
                 "an empty result is sent"
             )
             result = None
-        goal.set_result(kind() if result is None else result)
+        goal.set_result(result_class() if result is None else result)
 
     def _publish_status(self) -> None:
         if self._destroyed:
@@ -331,29 +331,29 @@ class ActionServer(ActionEndpoint):
         with self._lock:
             if self._result_timeout_ns < 0 or self._destroyed:
                 return
-            if self._expiry is None:
-                self._expiry = self._node.create_timer(0.0, self._expire, FREE_GROUP, autostart=False)
-            if self._expiry.is_canceled():
-                self._expiry.timer_period_ns = self._result_timeout_ns
-                self._expiry.reset()
+            if self._expiry_timer is None:
+                self._expiry_timer = self._node.create_timer(0.0, self._expire, FREE_GROUP, autostart=False)
+            if self._expiry_timer.is_canceled():
+                self._expiry_timer.timer_period_ns = self._result_timeout_ns
+                self._expiry_timer.reset()
 
     def _expire(self) -> None:
-        assert self._expiry is not None
-        self._expiry.cancel()
+        assert self._expiry_timer is not None
+        self._expiry_timer.cancel()
         now_ns = self._node.get_clock().now_ns()
         with self._lock:
-            ends = {
+            expiry_times = {
                 uuid: goal.ended_ns + self._result_timeout_ns
                 for uuid, goal in self._goal_handles.items()
                 if goal.ended_ns is not None
             }
-            for uuid, end_ns in ends.items():
-                if end_ns <= now_ns:
+            for uuid, expiry_ns in expiry_times.items():
+                if expiry_ns <= now_ns:
                     self._goal_handles.pop(uuid).retire()
-            later = [end_ns for end_ns in ends.values() if end_ns > now_ns]
-        if later:
-            self._expiry.timer_period_ns = min(later) - now_ns
-            self._expiry.reset()
+            later_expiry_times = [end_ns for end_ns in expiry_times.values() if end_ns > now_ns]
+        if later_expiry_times:
+            self._expiry_timer.timer_period_ns = min(later_expiry_times) - now_ns
+            self._expiry_timer.reset()
 
 
 class _Executions(Entity):

@@ -86,19 +86,19 @@ def parse(arguments: Sequence[str]) -> RosArguments:
             mistake in a parameter file.
     """
     ros = RosArguments()
-    inside = False
-    waiting = iter(arguments)
-    for argument in waiting:
+    in_ros_arguments = False
+    remaining = iter(arguments)
+    for argument in remaining:
         if argument == BEGIN:
-            inside = True
-        elif not inside:
+            in_ros_arguments = True
+        elif not in_ros_arguments:
             ros.others.append(argument)
         elif argument == END:
-            inside = False
+            in_ros_arguments = False
         elif argument in _FLAGS:
             setattr(ros, *_FLAGS[argument])
         elif argument in _OPTIONS:
-            value = next(waiting, None)
+            value = next(remaining, None)
             if value is None or value in (BEGIN, END):
                 raise _error(
                     phrase("ROS argument '{argument}' needs a value", argument=argument),
@@ -106,22 +106,22 @@ def parse(arguments: Sequence[str]) -> RosArguments:
                 )
             _OPTIONS[argument](ros, value)
         else:
-            raise _unknown(argument)
+            raise _unknown_argument_error(argument)
     return ros
 
 
 def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
     """Return the arguments of a command line that are not ROS arguments."""
-    others: list[str] = []
-    inside = False
+    other_arguments: list[str] = []
+    in_ros_arguments = False
     for argument in arguments:
         if argument == BEGIN:
-            inside = True
-        elif inside:
-            inside = argument != END
+            in_ros_arguments = True
+        elif in_ros_arguments:
+            in_ros_arguments = argument != END
         else:
-            others.append(argument)
-    return others
+            other_arguments.append(argument)
+    return other_arguments
 
 
 def _read_remapping(ros: RosArguments, rule: str) -> None:
@@ -151,13 +151,13 @@ def _read_parameter_file(ros: RosArguments, path: str) -> None:
 
 
 def _read_log_level(ros: RosArguments, rule: str) -> None:
-    name, separator, word = rule.rpartition(":=")
-    level = level_from_name(word)
+    name, separator, level_name = rule.rpartition(":=")
+    level = level_from_name(level_name)
     if level is None or (separator and not name):
         levels = [log_level.name.lower() for log_level in LogLevel]
         raise _error(
-            phrase("unknown log level '{word}'", word=word),
-            did_you_mean(word.lower(), levels) or phrase("the levels are {levels}", levels=joined(levels)),
+            phrase("unknown log level '{word}'", word=level_name),
+            did_you_mean(level_name.lower(), levels) or phrase("the levels are {levels}", levels=joined(levels)),
         )
     if separator:
         ros.log_levels[name] = level
@@ -203,20 +203,20 @@ _FORMS = {
     "--enclave": "/ENCLAVE",
 }
 _FLAGS = {
-    f"--{word}-{what}-logs": (f"{what.replace('-', '_')}_logs", word == "enable")
-    for word in ("enable", "disable")
-    for what in ("rosout", "stdout", "external-lib")
+    f"--{verb}-{destination}-logs": (f"{destination.replace('-', '_')}_logs", verb == "enable")
+    for verb in ("enable", "disable")
+    for destination in ("rosout", "stdout", "external-lib")
 }
 
 
-def _split_assignment(rule: str, what: Phrase, form: Phrase) -> tuple[str, str]:
-    left, separator, right = rule.partition(":=")
-    if not separator or not left:
-        raise _error(phrase("'{rule}' is not {what}", rule=rule, what=what), phrase("write {form}", form=form))
-    return left, right
+def _split_assignment(rule: str, description: Phrase, form: Phrase) -> tuple[str, str]:
+    name, separator, value = rule.partition(":=")
+    if not separator or not name:
+        raise _error(phrase("'{rule}' is not {what}", rule=rule, what=description), phrase("write {form}", form=form))
+    return name, value
 
 
-def _unknown(argument: str) -> LinkwrightError:
+def _unknown_argument_error(argument: str) -> LinkwrightError:
     hint = did_you_mean(argument, (*_OPTIONS, *_FLAGS))
     if hint is None and ":=" in argument:
         option = "-r" if argument.startswith("__") else "-p"

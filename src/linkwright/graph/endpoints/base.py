@@ -107,10 +107,10 @@ def check_for_type_support(interface: Any) -> None:
     if isinstance(getattr(interface, "TYPE_NAME", None), str):
         return
     module = sys.modules.get(getattr(interface, "__module__", ""))
-    place = getattr(module, "__file__", None)
-    where = f", from {place}," if place else ""
+    module_file = getattr(module, "__file__", None)
+    origin = f", from {module_file}," if module_file else ""
     raise AttributeError(
-        f"{interface!r}{where} is not an interface class that this rclpy can use. This might be a ROS 1 message type, "
+        f"{interface!r}{origin} is not an interface class that this rclpy can use. This might be a ROS 1 message type, "
         "or one built for a real ROS 2, which does not go together with Linkwright's rclpy"
     )
 
@@ -269,9 +269,9 @@ class TopicEndpoint(Endpoint, Generic[M]):
 
     def set_outside_count(self, count: int) -> None:
         """Set the number of matching endpoints in other processes. Called by the transport."""
-        before, self._outside_count = self._outside_count, count
-        if self.events is not None and count != before:
-            self.events.matched(count - before)
+        previous_count, self._outside_count = self._outside_count, count
+        if self.events is not None and count != previous_count:
+            self.events.matched(count - previous_count)
 
 
 class ServiceEndpoint(Endpoint):
@@ -294,19 +294,21 @@ class ServiceEndpoint(Endpoint):
         """The class of the service."""
         return self.interface
 
-    def check_message(self, message: Any, half: str) -> None:
+    def check_message(self, message: Any, message_kind: str) -> None:
         """Check that a request or a response can be sent.
 
         Args:
             message: the request or response.
-            half: ``Request`` or ``Response``.
+            message_kind: ``Request`` or ``Response``.
 
         Raises:
             TypeError: the message is not of the service's type, or the endpoint is raw and the message is not bytes.
         """
-        wanted = bytes if self.raw else getattr(self.srv_type, half)
-        if not isinstance(message, wanted):
-            raise TypeError(f"Expected {wanted}, got {type(message)}: the {half.lower()} of '{self.name}'")
+        expected_type = bytes if self.raw else getattr(self.srv_type, message_kind)
+        if not isinstance(message, expected_type):
+            raise TypeError(
+                f"Expected {expected_type}, got {type(message)}: the {message_kind.lower()} of '{self.name}'"
+            )
 
 
 class Presence(Endpoint):

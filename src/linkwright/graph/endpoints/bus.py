@@ -96,17 +96,17 @@ class Transport(Protocol):
         Actions are represented by the services and topics that they consist of.
         """
 
-    def watch(self, changed: Callable[[], None]) -> None:
+    def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for changes of nodes and endpoints outside.
 
-        The transport may call `changed` from any thread.
+        The transport may call `callback` from any thread.
         """
 
-    def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
+    def watch_lost(self, callback: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers of other processes.
 
-        The transport may call `lost` from any thread. A publisher is lost when its process was killed or crashed, or
-        when the publisher has been silent for longer than its lease. This method is first called when a
+        The transport may call `callback` from any thread. A publisher is lost when its process was killed or crashed,
+        or when the publisher has been silent for longer than its lease. This method is first called when a
         subscription requests such notifications (`Subscription.watch_lost`).
         """
 
@@ -127,11 +127,11 @@ class _Directory(Generic[E]):
         self._by_name.setdefault(endpoint.name, {})[endpoint] = None
 
     def remove(self, endpoint: E) -> bool:
-        of_name = self._by_name.get(endpoint.name, {})
-        if endpoint not in of_name:
+        endpoints = self._by_name.get(endpoint.name, {})
+        if endpoint not in endpoints:
             return False
-        del of_name[endpoint]
-        if not of_name:
+        del endpoints[endpoint]
+        if not endpoints:
             del self._by_name[endpoint.name]
         return True
 
@@ -139,7 +139,7 @@ class _Directory(Generic[E]):
         return tuple(self._by_name.get(name, ()))
 
     def __iter__(self) -> Iterator[E]:
-        return (endpoint for of_name in tuple(self._by_name.values()) for endpoint in tuple(of_name))
+        return (endpoint for endpoints in tuple(self._by_name.values()) for endpoint in tuple(endpoints))
 
 
 class Bus:
@@ -178,9 +178,12 @@ class Bus:
 
         They stay unconnected if their types differ and another subscription of the same node has the publisher's type.
         """
-        kind = publisher.type_name
-        others = () if subscription.type_name == kind else self._subscriptions.of(subscription.name)
-        if not any(other.node is subscription.node and other.type_name == kind for other in others):
+        type_name = publisher.type_name
+        other_subscriptions = () if subscription.type_name == type_name else self._subscriptions.of(subscription.name)
+        if not any(
+            other_subscription.node is subscription.node and other_subscription.type_name == type_name
+            for other_subscription in other_subscriptions
+        ):
             match(publisher, subscription)
 
     def remove(self, endpoint: Endpoint) -> None:
@@ -276,22 +279,25 @@ def describe_mismatch(
     publisher: str, offered: QoSProfile, subscription: str, requested: QoSProfile, policies: list[QoSPolicyKind]
 ) -> str:
     """Return a text with the offered and requested values of the incompatible policies."""
-    return f"'{publisher}' offers {_terms(offered, policies)}, '{subscription}' requests {_terms(requested, policies)}"
+    return (
+        f"'{publisher}' offers {_format_policies(offered, policies)}, '{subscription}' requests "
+        f"{_format_policies(requested, policies)}"
+    )
 
 
-def _terms(qos: QoSProfile, policies: list[QoSPolicyKind]) -> str:
+def _format_policies(qos: QoSProfile, policies: list[QoSPolicyKind]) -> str:
     return ", ".join(_format_policy(qos, policy) for policy in policies)
 
 
 def _format_policy(qos: QoSProfile, policy: QoSPolicyKind) -> str:
     if policy is QoSPolicyKind.RELIABILITY:
-        return _words(qos.reliability.name)
+        return _plain_name(qos.reliability.name)
     if policy is QoSPolicyKind.DURABILITY:
-        return _words(qos.durability.name)
+        return _plain_name(qos.durability.name)
     if policy is QoSPolicyKind.DEADLINE:
         return f"a deadline of {qos.deadline}"
-    return f"{_words(qos.liveliness.name)} liveliness with a lease of {qos.liveliness_lease_duration}"
+    return f"{_plain_name(qos.liveliness.name)} liveliness with a lease of {qos.liveliness_lease_duration}"
 
 
-def _words(name: str) -> str:
+def _plain_name(name: str) -> str:
     return name.lower().replace("_", " ")

@@ -1,4 +1,4 @@
-"""Revocation of the last command when its publisher is lost, to stop a drive, for example."""
+"""Revocation of the last command when its publisher is lost, for example to stop a drive."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Commander:
 
         The callback of `subscription` must come from `tracking_callback` or call `note_publisher`.
         """
-        subscription.watch_lost(self._lost)
+        subscription.watch_lost(self._on_lost)
 
     def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
         self.note_publisher(info)
@@ -53,7 +53,7 @@ class Commander:
             self._drivers.note_command(message, info)
         callback(message)
 
-    def _lost(self, publisher: EndpointInfo) -> None:
+    def _on_lost(self, publisher: EndpointInfo) -> None:
         if publisher.gid == self._gid:
             self._gid = None
             self._revoke(publisher)

@@ -35,10 +35,10 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
-_WORDS = frozenset({"AND", "OR", "NOT", "BETWEEN", "LIKE", "MATCH", "TRUE", "FALSE"})
-_WILD = {"%": ".*", "*": ".*", "_": ".", "?": "."}
+_KEYWORDS = frozenset({"AND", "OR", "NOT", "BETWEEN", "LIKE", "MATCH", "TRUE", "FALSE"})
+_WILDCARDS = {"%": ".*", "*": ".*", "_": ".", "?": "."}
 _MAX_PARAMETERS = 100
-_PART = re.compile(r"(\w+)|\[(\d+)\]")
+_PATH_STEP = re.compile(r"(\w+)|\[(\d+)\]")
 
 
 class ContentFilterError(ValueError):
@@ -87,7 +87,7 @@ class _Token:
     @property
     def word(self) -> str:
         """The keyword in upper case; empty for any other token."""
-        return self.text.upper() if self.kind == "name" and self.text.upper() in _WORDS else ""
+        return self.text.upper() if self.kind == "name" and self.text.upper() in _KEYWORDS else ""
 
 
 _END = _Token("end", "")
@@ -100,23 +100,23 @@ class _Parser:
         self._text = options.filter_expression
         self._parameters = options.expression_parameters
         self._class = message_class
-        self._tokens = self._divided()
+        self._tokens = self._tokenize()
 
     def parse(self) -> Condition:
-        condition = self._any_of()
+        condition = self._disjunction()
         if self._tokens[0] is not _END:
             raise self._error(f"'{self._tokens[0].text}' is one too many")
         return condition
 
-    def _divided(self) -> list[_Token]:
+    def _tokenize(self) -> list[_Token]:
         tokens: list[_Token] = []
-        at = 0
-        while self._text[at:].strip():
-            match = _TOKEN.match(self._text, at)
+        index = 0
+        while self._text[index:].strip():
+            match = _TOKEN.match(self._text, index)
             if match is None or match.lastgroup is None:
-                raise self._error(f"'{self._text[at:].strip()[:10]}' cannot be understood")
+                raise self._error(f"'{self._text[index:].strip()[:10]}' cannot be understood")
             tokens.append(_Token(match.lastgroup, match[match.lastgroup]))
-            at = match.end()
+            index = match.end()
         return [*tokens, _END]
 
     def _error(self, problem: str) -> ContentFilterError:
@@ -125,80 +125,82 @@ class _Parser:
     def _next(self) -> _Token:
         return self._tokens.pop(0) if self._tokens[0] is not _END else _END
 
-    def _took(self, word: str) -> bool:
+    def _accept(self, symbol: str) -> bool:
         token = self._tokens[0]
-        if word in (token.word, token.text if token.kind == "sign" else None):
+        if symbol in (token.word, token.text if token.kind == "sign" else None):
             self._next()
             return True
         return False
 
-    def _expect(self, word: str) -> None:
-        if not self._took(word):
-            raise self._error(f"'{word}' is missing before '{self._tokens[0].text or 'its end'}'")
+    def _expect(self, symbol: str) -> None:
+        if not self._accept(symbol):
+            raise self._error(f"'{symbol}' is missing before '{self._tokens[0].text or 'its end'}'")
 
     # --- the grammar ---------------------------------------------------------------------------------------------
 
-    def _any_of(self) -> Condition:
-        conditions = [self._all_of()]
-        while self._took("OR"):
-            conditions.append(self._all_of())
+    def _disjunction(self) -> Condition:
+        conditions = [self._conjunction()]
+        while self._accept("OR"):
+            conditions.append(self._conjunction())
         return (
             conditions[0]
             if len(conditions) == 1
             else lambda message: any(condition(message) for condition in conditions)
         )
 
-    def _all_of(self) -> Condition:
-        conditions = [self._one()]
-        while self._took("AND"):
-            conditions.append(self._one())
+    def _conjunction(self) -> Condition:
+        conditions = [self._negation()]
+        while self._accept("AND"):
+            conditions.append(self._negation())
         return (
             conditions[0]
             if len(conditions) == 1
             else lambda message: all(condition(message) for condition in conditions)
         )
 
-    def _one(self) -> Condition:
-        if self._took("NOT"):
-            condition = self._one()
+    def _negation(self) -> Condition:
+        if self._accept("NOT"):
+            condition = self._negation()
             return lambda message: not condition(message)
-        if self._took("("):
-            condition = self._any_of()
+        if self._accept("("):
+            condition = self._disjunction()
             self._expect(")")
             return condition
         return self._predicate()
 
     def _predicate(self) -> Condition:
-        left = self._value()
-        if self._took("NOT"):
+        operand = self._value()
+        if self._accept("NOT"):
             self._expect("BETWEEN")
-            between = self._between(left)
+            between = self._between(operand)
             return lambda message: not between(message)
-        if self._took("BETWEEN"):
-            return self._between(left)
+        if self._accept("BETWEEN"):
+            return self._between(operand)
         token = self._next()
         if token.word in ("LIKE", "MATCH"):
-            return self._like(left, regular=token.word == "MATCH")
+            return self._like(operand, regular=token.word == "MATCH")
         relation = _RELATIONS.get(token.text)
         if relation is None:
             raise self._error(f"a comparison is missing before '{token.text or 'its end'}'")
-        return _compared(left, relation, self._value())
+        return _comparison(operand, relation, self._value())
 
     def _between(self, value: _Value) -> Condition:
-        low = _compared(value, operator.ge, self._value())
+        low = _comparison(value, operator.ge, self._value())
         self._expect("AND")
-        high = _compared(value, operator.le, self._value())
+        high = _comparison(value, operator.le, self._value())
         return lambda message: low(message) and high(message)
 
     def _like(self, value: _Value, *, regular: bool) -> Condition:
         pattern = str(self._value()(None))
         try:
-            wanted = re.compile(
-                pattern if regular else "".join(_WILD.get(character, re.escape(character)) for character in pattern)
+            regex = re.compile(
+                pattern
+                if regular
+                else "".join(_WILDCARDS.get(character, re.escape(character)) for character in pattern)
             )
         except re.error as error:
             raise self._error(f"'{pattern}' is not a regular expression: {error}") from error
-        return lambda message: isinstance(text := value(message), str) and wanted.fullmatch(text) is not None
+        return lambda message: isinstance(text := value(message), str) and regex.fullmatch(text) is not None
 
     def _value(self) -> _Value:
         token = self._next()
@@ -214,32 +216,32 @@ class _Parser:
         raise self._error(f"a field or value is missing before '{token.text or 'its end'}'")
 
     def _field(self, path: str) -> _Value:
-        steps: list[str | int] = [int(index) if index else name for name, index in _PART.findall(path)]
+        steps: list[str | int] = [int(index) if index else name for name, index in _PATH_STEP.findall(path)]
         try:
-            _reached(self._class(), steps)
+            _field_value(self._class(), steps)
         except AttributeError:
             raise self._error(
                 phrase("{type_name} has no field '{path}'", type_name=self._class.TYPE_NAME, path=path)
             ) from None
         except (IndexError, TypeError):
             pass  # An array element: a received message may have a longer sequence.
-        return lambda message: _reached(message, steps)
+        return lambda message: _field_value(message, steps)
 
 
-def _reached(message: Any, steps: Sequence[str | int]) -> Any:
+def _field_value(message: Any, steps: Sequence[str | int]) -> Any:
     value = message
     for step in steps:
         value = value[step] if isinstance(step, int) else getattr(value, step)
     return value[0] if isinstance(value, bytes) and len(value) == 1 else value
 
 
-def _compared(left: _Value, relation: Callable[[Any, Any], Any], right: _Value) -> Condition:
+def _comparison(get_left: _Value, relation: Callable[[Any, Any], Any], get_right: _Value) -> Condition:
     def holds(message: Any) -> bool:
         try:
-            one, other = left(message), right(message)
-            if isinstance(one, str) != isinstance(other, str):  # One of them is a parameter.
-                one, other = str(one), str(other)
-            return bool(relation(one, other))
+            left_value, right_value = get_left(message), get_right(message)
+            if isinstance(left_value, str) != isinstance(right_value, str):  # One of them is a parameter.
+                left_value, right_value = str(left_value), str(right_value)
+            return bool(relation(left_value, right_value))
         except (IndexError, TypeError):  # The sequence is too short, or the values cannot be compared.
             return False
 

@@ -14,9 +14,12 @@ from linkwright.graph.time.clock import Clock
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _GAP_S = 2.5
-"""A dispute is over after this long without a takeover: of two that send once a second each takes over twice in it."""
+"""A dispute ends after this many seconds without a takeover.
+
+If two publishers each send once a second, each of them takes over twice in this time.
+"""
 _QUIET_S = 10.0
-"""A dispute of the same parties is reported again after this long without one."""
+"""After this many seconds without a takeover, a dispute of the same parties is reported again."""
 
 
 class Dispute:
@@ -38,9 +41,9 @@ class Dispute:
     def __init__(self, lasting_s: float = 3.0, times: int = 3) -> None:
         self._lasting_s = lasting_s
         self._times = times
-        self._last: tuple[Hashable, object, float] | None = None
-        self._since = self._taken_over = float("-inf")
-        self._took: Counter[Hashable] = Counter()
+        self._last_command: tuple[Hashable, object, float] | None = None
+        self._start_s = self._last_takeover_s = float("-inf")
+        self._takeovers: Counter[Hashable] = Counter()
         self.parties: frozenset[Hashable] = frozenset()
 
     def note_command(self, publisher: Hashable, command: object, now_s: float) -> bool:
@@ -54,20 +57,20 @@ class Dispute:
         Returns:
             Whether a dispute begins, or gains a new party.
         """
-        before, self._last = self._last, (publisher, command, now_s)
-        if before is None or before[0] == publisher or before[1] == command:
+        previous, self._last_command = self._last_command, (publisher, command, now_s)
+        if previous is None or previous[0] == publisher or previous[1] == command:
             return False
-        gap = now_s - self._taken_over
-        if not 0.0 <= gap <= _GAP_S:
-            self._since = before[2] if 0.0 <= now_s - before[2] <= _GAP_S else now_s
-            self._took = Counter([before[0]])
-            if not 0.0 <= gap <= _QUIET_S:
+        gap_s = now_s - self._last_takeover_s
+        if not 0.0 <= gap_s <= _GAP_S:
+            self._start_s = previous[2] if 0.0 <= now_s - previous[2] <= _GAP_S else now_s
+            self._takeovers = Counter([previous[0]])
+            if not 0.0 <= gap_s <= _QUIET_S:
                 self.parties = frozenset()
-        self._taken_over = now_s
-        self._took[publisher] += 1
-        if now_s - self._since < self._lasting_s:
+        self._last_takeover_s = now_s
+        self._takeovers[publisher] += 1
+        if now_s - self._start_s < self._lasting_s:
             return False
-        parties = frozenset(party for party, times in self._took.items() if times >= self._times)
+        parties = frozenset(party for party, count in self._takeovers.items() if count >= self._times)
         if len(parties) < 2 or parties <= self.parties:
             return False
         self.parties = parties
@@ -129,14 +132,14 @@ class DriverWatch:
 
     def _warn(self) -> None:
         """Warn of the dispute, provided that the nodes of at least two parties are known."""
-        publishers = publishers_of(self._graph, self._dispute.parties)
-        drivers = drivers_of(self._graph, publishers)
+        publishers = find_publishers(self._graph, self._dispute.parties)
+        drivers = find_drivers(self._graph, publishers)
         if len(drivers) > 1:
             topics = sorted({publisher.name for publisher in publishers})
             warning = phrase(
-                "two nodes drive the robot: {drivers} send commands on {topics}, and the robot jerks because "
-                "it follows each message in turn. Stop one of them, remap its topic (-r {topic}:=...), or "
-                "let twist_mux choose by priority",
+                "several nodes drive the robot: {drivers} send commands on {topics}, and the robot jerks "
+                "because it follows each message in turn. Stop all but one of them, remap their topics (-r "
+                "{topic}:=...), or let twist_mux choose by priority",
                 drivers=quoted_names(drivers),
                 topics=quoted_names(topics),
                 topic=topics[0],
@@ -144,18 +147,18 @@ class DriverWatch:
             self._logger.warning(warning)
 
 
-def publishers_of(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[EndpointInfo]:
+def find_publishers(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[EndpointInfo]:
     """Return the publishers with the given GIDs."""
     return [
         endpoint for endpoint in graph.endpoints() if endpoint.kind is EndpointKind.PUBLISHER and endpoint.gid in gids
     ]
 
 
-def drivers_of(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
+def find_drivers(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
     """Return the sorted full names of the nodes that own the publishers.
 
     A name that two nodes share occurs twice. Publishers whose node has not been discovered are left out.
     """
-    publishing = Counter(publisher.node.full_name for publisher in publishers if publisher.node is not None)
-    present = Counter(identity.full_name for identity in graph.identities())
-    return sorted((publishing & (present | Counter(set(publishing)))).elements())
+    publisher_counts = Counter(publisher.node.full_name for publisher in publishers if publisher.node is not None)
+    node_counts = Counter(identity.full_name for identity in graph.identities())
+    return sorted((publisher_counts & (node_counts | Counter(set(publisher_counts)))).elements())

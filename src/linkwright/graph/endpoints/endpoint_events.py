@@ -30,16 +30,16 @@ from linkwright.graph.qos.profile import LivelinessPolicy, QoSPolicyKind
 from linkwright.graph.time.clock import Alarm
 
 
-class _Watch:
+class _Watchdog:
     """A watchdog that calls a function each time a time limit passes without a sign of life.
 
     The first sign of life starts the watchdog.
     """
 
-    def __init__(self, owner: EndpointEvents, limit: int, missed: Callable[[], None]) -> None:
+    def __init__(self, owner: EndpointEvents, limit: int, on_missed: Callable[[], None]) -> None:
         self._owner = owner
         self._limit_ns = limit
-        self._missed = missed
+        self._on_missed = on_missed
         self._last_ns: int | None = None
         self._alarm: Alarm | None = None
         self._lock = threading.Lock()
@@ -76,7 +76,7 @@ class _Watch:
                 self._last_ns = now_ns
             self._arm()
         if is_missed:
-            self._missed()
+            self._on_missed()
 
 
 class EndpointEvents(Entity):
@@ -90,9 +90,9 @@ class EndpointEvents(Entity):
         self._callbacks = callbacks
         self._waiting: deque[Callable[[], object]] = deque()
         self._totals: dict[str, int] = {}
-        self._current = 0
-        self._watches: list[_Watch] = []
-        self._deadline: _Watch | None = None
+        self._match_count = 0
+        self._watchdogs: list[_Watchdog] = []
+        self._deadline: _Watchdog | None = None
         deadline_ns = limit_ns(endpoint.qos_profile.deadline)
         if deadline_ns is not None and callbacks.deadline is not None:
             self._deadline = self._watch(deadline_ns, self._on_deadline_missed)
@@ -104,9 +104,9 @@ class EndpointEvents(Entity):
 
     def matched(self, change: int) -> None:
         """Count a change in the number of matching endpoints, and notify the callback."""
-        self._current += change
+        self._match_count += change
         total = self._count("matched", max(change, 0))
-        self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
+        self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._match_count, change))
 
     def report_incompatible(self, policy: str) -> bool:
         """Count an endpoint with incompatible QoS, and queue the callback for it, if there is one.
@@ -134,27 +134,27 @@ class EndpointEvents(Entity):
 
     def retire(self) -> None:
         """Stop calling callbacks, and drop the queued events."""
-        for watch in self._watches:
-            watch.stop()
+        for watchdog in self._watchdogs:
+            watchdog.stop()
         super().retire()
         self._waiting.clear()
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the callbacks and monitors the time limits."""
-        for watch in self._watches:
-            watch.stop()
+        for watchdog in self._watchdogs:
+            watchdog.stop()
         super().set_dispatcher(dispatcher)
-        for watch in self._watches:
-            watch.resume()
+        for watchdog in self._watchdogs:
+            watchdog.resume()
 
-    def _count(self, what: str, change: int) -> int:
-        self._totals[what] = total = self._totals.get(what, 0) + change
+    def _count(self, event: str, change: int) -> int:
+        self._totals[event] = total = self._totals.get(event, 0) + change
         return total
 
-    def _watch(self, limit: int, missed: Callable[[], None]) -> _Watch:
-        watch = _Watch(self, limit, missed)
-        self._watches.append(watch)
-        return watch
+    def _watch(self, limit: int, on_missed: Callable[[], None]) -> _Watchdog:
+        watchdog = _Watchdog(self, limit, on_missed)
+        self._watchdogs.append(watchdog)
+        return watchdog
 
     def _on_deadline_missed(self) -> None:
         self._notify(self._callbacks.deadline, self._deadline_info(self._count("deadline", 1), 1))
@@ -174,8 +174,8 @@ class SubscriptionEvents(EndpointEvents):
         super().__init__(subscription, callbacks)
         self._message_lost = callbacks.message_lost
         self._alive = 0
-        self._not_alive = 0
-        self._outside = (0, 0)
+        self._not_alive_count = 0
+        self._outside_counts = (0, 0)
 
     def received(self) -> None:
         """Record the arrival of a message, from this process or another."""
@@ -188,16 +188,16 @@ class SubscriptionEvents(EndpointEvents):
 
     def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
         """Set the numbers of alive and not alive publishers in other processes."""
-        (alive_before, not_alive_before), self._outside = self._outside, (alive, not_alive)
-        self.liveliness(alive - alive_before, not_alive - not_alive_before)
+        (previous_alive, previous_not_alive), self._outside_counts = self._outside_counts, (alive, not_alive)
+        self.liveliness(alive - previous_alive, not_alive - previous_not_alive)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
         """Update the numbers of publishers that are alive and not alive, and notify the callback."""
         if not alive_change and not not_alive_change:
             return
         self._alive += alive_change
-        self._not_alive += not_alive_change
-        info = QoSLivelinessChangedInfo(self._alive, self._not_alive, alive_change, not_alive_change)
+        self._not_alive_count += not_alive_change
+        info = QoSLivelinessChangedInfo(self._alive, self._not_alive_count, alive_change, not_alive_change)
         self._notify(self._callbacks.liveliness, info)
 
 
@@ -220,17 +220,17 @@ class PublisherEvents(EndpointEvents):
     ) -> None:
         super().__init__(publisher, callbacks)
         self._liveliness_changed = liveliness_changed
-        self._lease: _Watch | None = None
+        self._lease_watchdog: _Watchdog | None = None
         self._is_alive = True
         qos = publisher.qos_profile
         lease_ns = limit_ns(qos.liveliness_lease_duration)
         if qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC and lease_ns is not None:
-            self._lease = self._watch(lease_ns, self._on_liveliness_lost)
+            self._lease_watchdog = self._watch(lease_ns, self._on_liveliness_lost)
 
     @property
     def wants_messages(self) -> bool:
         """Whether `published` must be called for every message."""
-        return bool(self._watches)
+        return bool(self._watchdogs)
 
     def published(self) -> None:
         """Record that a message was published."""
@@ -240,8 +240,8 @@ class PublisherEvents(EndpointEvents):
 
     def assert_liveliness(self) -> None:
         """Record that the publisher asserted its liveliness."""
-        if self._lease is not None:
-            self._lease.restart()
+        if self._lease_watchdog is not None:
+            self._lease_watchdog.restart()
             if not self._is_alive:
                 self._is_alive = True
                 self._liveliness_changed(1)
@@ -252,8 +252,8 @@ class PublisherEvents(EndpointEvents):
         Setting a dispatcher counts as a sign of life.
         """
         super().set_dispatcher(dispatcher)
-        if self._lease is not None:
-            self._lease.restart()
+        if self._lease_watchdog is not None:
+            self._lease_watchdog.restart()
 
     def _on_liveliness_lost(self) -> None:
         if self._is_alive:

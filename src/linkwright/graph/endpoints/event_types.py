@@ -74,7 +74,7 @@ class QoSLivelinessChangedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSMatchedInfo(EventCount):
-    """The number of endpoints that have matched in total, and of those that match currently."""
+    """The number of endpoints that have matched so far, and the number that match now."""
 
     current_count: int
     current_count_change: int
@@ -180,7 +180,11 @@ class SubscriptionEventCallbacks(EndpointEventCallbacks):
 
 
 def _handlers(
-    *wanted: tuple[QoSPublisherEventType | QoSSubscriptionEventType, EventCallback | None],
+    *candidates: tuple[QoSPublisherEventType | QoSSubscriptionEventType, EventCallback | None],
     logged: QoSPublisherEventType | QoSSubscriptionEventType | None,
 ) -> list[EventHandler]:
-    return [EventHandler(kind, callback) for kind, callback in wanted if callback is not None or kind is logged]
+    return [
+        EventHandler(event_type, callback)
+        for event_type, callback in candidates
+        if callback is not None or event_type is logged
+    ]

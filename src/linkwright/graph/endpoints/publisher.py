@@ -56,21 +56,23 @@ class Publisher(TopicEndpoint[M]):
         self.assert_outside: Callable[[], None] | None = None
         """Asserts the publisher's liveliness in other processes; set by the transport."""
         self.lifespan_ns = limit_ns(qos_profile.lifespan)
-        self._acknowledged: Callable[[float | None], bool] | None = None
-        self._accepted: Any = None
-        self._matched: dict[Subscription[Any], Callable[[Any], None]] = {}
+        self._wait_until_acknowledged: Callable[[float | None], bool] | None = None
+        self._accepted_type: Any = None
+        self._receivers_by_subscription: dict[Subscription[Any], Callable[[Any], None]] = {}
         self._receivers: tuple[Callable[[Any], None], ...] = ()
         self._lock = threading.RLock()
-        keeps = qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        self._kept: deque[tuple[int, Any]] | None = deque(maxlen=qos_profile.queue_length) if keeps else None
-        self._held: deque[Any] | None = None
-        self._sent: Callable[[float | None], bool] = lambda _: True
-        self._copies = node.copies_messages
-        self._is_plain = not keeps and not self._copies
+        is_transient_local = qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self._late_joiner_messages: deque[tuple[int, Any]] | None = (
+            deque(maxlen=qos_profile.queue_length) if is_transient_local else None
+        )
+        self._held_messages: deque[Any] | None = None
+        self._wait_until_sent: Callable[[float | None], bool] = lambda _: True
+        self._copies_messages = node.copies_messages
+        self._is_plain = not is_transient_local and not self._copies_messages
         if event_callbacks is not None:
             from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # few use events
 
-            self.events = PublisherEvents(self, event_callbacks, self._liveliness_changed)
+            self.events = PublisherEvents(self, event_callbacks, self._on_liveliness_change)
             self._is_plain = self._is_plain and not self.events.wants_messages
 
     def publish(self, msg: M | bytes) -> None:
@@ -85,7 +87,7 @@ class Publisher(TopicEndpoint[M]):
             TypeError: the message is not of the publisher's type.
             InvalidHandleError: the publisher was destroyed.
         """
-        if type(msg) is not self._accepted:
+        if type(msg) is not self._accepted_type:
             self._check(msg)
         if self._is_plain:
             for receive in self._receivers:
@@ -105,7 +107,7 @@ class Publisher(TopicEndpoint[M]):
 
     def get_subscription_count(self) -> int:
         """Return the number of matching subscriptions, inside the process and outside."""
-        return len(self._matched) + self._outside_count
+        return len(self._receivers_by_subscription) + self._outside_count
 
     def assert_liveliness(self) -> None:
         """Assert that the publisher is alive, as the liveliness policy MANUAL_BY_TOPIC requires.
@@ -131,9 +133,9 @@ class Publisher(TopicEndpoint[M]):
             Whether all have acknowledged; False after the timeout.
         """
         seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
-        if self._held and not self._sent(seconds):
+        if self._held_messages and not self._wait_until_sent(seconds):
             return False
-        return self._acknowledged is None or self._acknowledged(seconds)
+        return self._wait_until_acknowledged is None or self._wait_until_acknowledged(seconds)
 
     # --- for the bus and the transport ----------------------------------------------------------------------------
 
@@ -144,22 +146,22 @@ class Publisher(TopicEndpoint[M]):
         """
         receive = subscription.receiver(self, self.lifespan_ns)
         with self._lock:
-            if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            if self._late_joiner_messages and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
                 for message in self._unexpired_messages():
                     receive(message)
-            self._matched[subscription] = receive
-            self._receivers = tuple(self._matched.values())
-        subscription.connected(self)
+            self._receivers_by_subscription[subscription] = receive
+            self._receivers = tuple(self._receivers_by_subscription.values())
+        subscription.add_publisher(self)
         if self.events is not None:
             self.events.matched(1)
 
     def disconnect(self, subscription: Subscription[Any]) -> None:
         """Disconnect a subscription of this process."""
         with self._lock:
-            if self._matched.pop(subscription, None) is None:
+            if self._receivers_by_subscription.pop(subscription, None) is None:
                 return
-            self._receivers = tuple(self._matched.values())
-        subscription.disconnected(self)
+            self._receivers = tuple(self._receivers_by_subscription.values())
+        subscription.remove_publisher(self)
         if self.events is not None:
             self.events.matched(-1)
 
@@ -174,35 +176,35 @@ class Publisher(TopicEndpoint[M]):
         if self.events is not None:
             self.node.remove(self.events)
         super().retire()
-        self._accepted = None
-        for subscription in tuple(self._matched):
+        self._accepted_type = None
+        for subscription in tuple(self._receivers_by_subscription):
             self.disconnect(subscription)
         self.outside = None
 
     def local_subscriptions(self) -> tuple[Subscription[Any], ...]:
         """Return the subscriptions of this process that are connected to the publisher."""
-        return tuple(self._matched)
+        return tuple(self._receivers_by_subscription)
 
-    def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
+    def hold_for_outside(self, wait_until_sent: Callable[[float | None], bool]) -> None:
         """Hold messages until `set_outside` is called. The transport calls both, in this order.
 
         Under ROS 2 a subscription that has been discovered receives every message of a publisher, from the first. Here
         the transport creates the writer in its own thread, a moment after the publisher, so earlier messages are held.
 
         Args:
-            sent: waits until `set_outside` was called, for at most the given seconds (None for no limit); returns
-                whether it was called.
+            wait_until_sent: waits until `set_outside` was called, for at most the given seconds (None for no limit);
+                returns whether it was called.
         """
         with self._lock:
-            if self._kept is None and self.outside is None:
-                self._sent = sent
-                self._held = deque(maxlen=self.qos_profile.queue_length)
-                self.outside = self._held.append
+            if self._late_joiner_messages is None and self.outside is None:
+                self._wait_until_sent = wait_until_sent
+                self._held_messages = deque(maxlen=self.qos_profile.queue_length)
+                self.outside = self._held_messages.append
 
     def set_outside(
         self,
         send: Callable[[Any], None] | None,
-        acknowledged: Callable[[float | None], bool] | None = None,
+        wait_until_acknowledged: Callable[[float | None], bool] | None = None,
     ) -> None:
         """Set or clear the function that sends messages to other processes. Called by the transport.
 
@@ -211,26 +213,31 @@ class Publisher(TopicEndpoint[M]):
         Args:
             send: called in the publishing thread with each message, or its CDR bytes if those were published; None
                 to send nothing.
-            acknowledged: waits until all readers have acknowledged, for at most the given seconds (None for no limit);
-                returns whether they have.
+            wait_until_acknowledged: waits until all readers have acknowledged, for at most the given seconds (None for
+                no limit); returns whether they have.
         """
         with self._lock:
-            held, self._held = self._held, None
-            if send is not None and (self.outside is None or held is not None):
-                for message in self._unexpired_messages() if held is None else held:
-                    what = f"sending the messages of topic '{self.name}'"
-                    run_logged(self.node.logger, what, partial(send, message))  # `publish` has returned: just log
+            held_messages, self._held_messages = self._held_messages, None
+            if send is not None and (self.outside is None or held_messages is not None):
+                for message in self._unexpired_messages() if held_messages is None else held_messages:
+                    operation = f"sending the messages of topic '{self.name}'"
+                    run_logged(self.node.logger, operation, partial(send, message))  # `publish` has returned: just log
             self.outside = send
-            self._acknowledged = acknowledged if send is not None else None
+            self._wait_until_acknowledged = wait_until_acknowledged if send is not None else None
 
     def _publish_complete(self, message: Any) -> None:
-        if self._copies and type(message) is not bytes:
-            if not self._receivers and self._kept is None and self.outside is None and self.events is None:
+        if self._copies_messages and type(message) is not bytes:
+            if (
+                not self._receivers
+                and self._late_joiner_messages is None
+                and self.outside is None
+                and self.events is None
+            ):
                 return
             message = bytes(message) if isinstance(message, bytearray) else serialize(message)
         with self._lock:
-            if self._kept is not None:
-                self._kept.append((self.node.timebase.steady_ns(), message))
+            if self._late_joiner_messages is not None:
+                self._late_joiner_messages.append((self.node.timebase.steady_ns(), message))
             if self.events is not None:
                 self.events.published()
             for receive in self._receivers:
@@ -238,7 +245,7 @@ class Publisher(TopicEndpoint[M]):
             if self.outside is not None:
                 self.outside(message)
 
-    def _liveliness_changed(self, change: int) -> None:
+    def _on_liveliness_change(self, change: int) -> None:
         self.is_alive = change > 0
         for subscription in self.local_subscriptions():
             if subscription.events is not None:
@@ -246,20 +253,20 @@ class Publisher(TopicEndpoint[M]):
 
     def _unexpired_messages(self) -> list[Any]:
         """Remove expired messages from those stored for late joiners, and return the remaining ones."""
-        if not self._kept:
+        if not self._late_joiner_messages:
             return []
         if self.lifespan_ns is not None:
             oldest_ns = self.node.timebase.steady_ns() - self.lifespan_ns
-            while self._kept and self._kept[0][0] < oldest_ns:
-                self._kept.popleft()
-        return [message for _, message in self._kept]
+            while self._late_joiner_messages and self._late_joiner_messages[0][0] < oldest_ns:
+                self._late_joiner_messages.popleft()
+        return [message for _, message in self._late_joiner_messages]
 
     def _check(self, message: Any) -> None:
         self.check_alive()
         if isinstance(message, (bytes, bytearray)):
             return
         if isinstance(message, self.msg_type) or getattr(message, "TYPE_NAME", None) == self.type_name:
-            self._accepted = type(message)
+            self._accepted_type = type(message)
             return
         raise TypeError(
             f"Expected {self.msg_type}, got {type(message)}: topic '{self.name}' carries {self.type_name}, "

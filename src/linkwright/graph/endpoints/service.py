@@ -26,7 +26,7 @@ from linkwright.graph.time.clock import Clock
 from linkwright.messages import deserialize, get_message, serialize
 
 EVENT_TOPIC_SUFFIX = "/_service_event"
-"""The suffix that makes the name of a service the name of its event topic."""
+"""The suffix that is appended to a service's name to get the name of its event topic."""
 
 
 class ServiceIntrospectionState(IntEnum):
@@ -166,7 +166,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     kind = EndpointKind.SERVICE
 
     _waiting: deque[tuple[Request, Reply, RequestId]] = _NO_REQUESTS
-    """The queue of requests. A service gets its own with its first request: an empty one takes 700 bytes, and each node
+    """The queue of requests. It is created with the first request, because an empty queue takes 700 bytes and each node
     has six parameter services, which are rarely called."""
 
     def __init__(
@@ -214,8 +214,8 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Returns None if the queue is empty.
         """
-        waiting = self._take_from(self._waiting)
-        return None if waiting is None else partial(self._answer, *waiting)
+        entry = self._take_from(self._waiting)
+        return None if entry is None else partial(self._answer, *entry)
 
     def send_response(self, response: Response, header: Reply) -> None:
         """Send a response.
@@ -275,12 +275,12 @@ def deep_copy(message: M) -> M:
 class OutsideService(Protocol):
     """A service server in another process, as seen by a client."""
 
-    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
+    def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Send a request.
 
         Args:
             request: the request.
-            answer: called with the response, from any thread, at most once.
+            on_response: called with the response, from any thread, at most once.
             number: the request's sequence number, unique within the client.
 
         Returns:
@@ -319,7 +319,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._lock = threading.RLock()
         self._unsent: deque[tuple[Future[Response], Request]] = deque(maxlen=qos_profile.queue_length)
         self._pending: dict[Future[Response], Callable[[], None]] = {}
-        self._endings: deque[Callable[[], None]] = deque()
+        self._completions: deque[Callable[[], None]] = deque()
 
     @property
     def what(self) -> str:
@@ -362,7 +362,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             request = deep_copy(request)
         future: Future[Response] = Future()
         future.source = self
-        self._pending[future] = _do_nothing
+        self._pending[future] = _ignore_cancellation
         if not self._send(future, request):
             with self._lock:
                 self._unsent.append((future, request))
@@ -400,35 +400,35 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     def remove_pending_request(self, future: Future[Any]) -> None:
         """Cancel a request: its future will not receive a response."""
         with self._lock:
-            forget = self._pending.pop(future, None)
+            cancel = self._pending.pop(future, None)
             self._unsent = deque(
                 (unsent for unsent in self._unsent if unsent[0] is not future), maxlen=self._unsent.maxlen
             )
-        if forget is not None:
-            forget()
+        if cancel is not None:
+            cancel()
 
     # --- called by dispatchers ---------------------------------------------------------------------------------------
 
     def has_work(self) -> bool:
         """Return whether responses are queued."""
-        return bool(self._endings)
+        return bool(self._completions)
 
     def take(self) -> Callable[[], object] | None:
         """Remove the oldest response from the queue and return the call that completes its future.
 
         Returns None if the queue is empty.
         """
-        return self._take_from(self._endings)
+        return self._take_from(self._completions)
 
     def retire(self) -> None:
         """Remove the client from the graph, and cancel all requests."""
         with self._lock:
             pending, self._pending = self._pending, {}
             self._unsent.clear()
-        for forget in pending.values():
-            forget()
+        for cancel in pending.values():
+            cancel()
         super().retire()
-        self._endings.clear()
+        self._completions.clear()
         self._server = None
         self.outside = None
         self.end_introspection()
@@ -469,24 +469,24 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         if server is None and outside is None:
             return False
         request_id = RequestId(self.gid, next(self._numbers))
-        answer = partial(self._receive, future, request_id)
+        on_response = partial(self._receive, future, request_id)
         if self.service_events is not None:
             self.service_events.publish_event(EventType.REQUEST_SENT, request_id, request=request)
         if server is not None:
-            server.receive(request, answer, request_id)
+            server.receive(request, on_response, request_id)
         elif outside is not None:
-            forget = outside.send(request, answer, request_id.number)
+            cancel = outside.send(request, on_response, request_id.number)
             if future in self._pending:
-                self._pending[future] = forget
+                self._pending[future] = cancel
         return True
 
     def _receive(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
         self._end(future, partial(self._hand_over, future, request_id, response))
 
-    def _end(self, future: Future[Response], end: Callable[[], None]) -> None:
-        """Queue the function `end`, which completes a future, unless the request was cancelled."""
+    def _end(self, future: Future[Response], complete: Callable[[], None]) -> None:
+        """Queue the function `complete`, which completes a future, unless the request was cancelled."""
         if self._pending.pop(future, None) is not None:
-            self._endings.append(end)
+            self._completions.append(complete)
             self.announce()
 
     def _hand_over(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
@@ -495,5 +495,5 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         future.hand_over(response, self.dispatcher)
 
 
-def _do_nothing() -> None:
+def _ignore_cancellation() -> None:
     """Do nothing: a request to a service of this process cannot be cancelled."""

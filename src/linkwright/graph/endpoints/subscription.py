@@ -77,7 +77,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self.malformed = 0
         """How many messages could not be deserialized."""
         self._waiting: deque[Any] = deque(maxlen=qos_profile.queue_length)
-        self._as_it_is: type | None = None
+        self._plain_type: type | None = None
         self._wants_info = False
         self.callback = callback
         self.event_callbacks = event_callbacks
@@ -89,8 +89,8 @@ class Subscription(TopicEndpoint[M], Entity):
         self._publishers: dict[TopicEndpoint[Any], None] = {}
         self._filter: ContentFilter | None = None
         self._on_lost: Callable[[EndpointInfo], object] | None = None
-        self._lost: deque[EndpointInfo] = deque()
-        self._together = False
+        self._lost_publishers: deque[EndpointInfo] = deque()
+        self._is_batched = False
 
     @property
     def what(self) -> str:
@@ -118,7 +118,7 @@ class Subscription(TopicEndpoint[M], Entity):
                 "message) or two (to get message and message info)"
             )
         self._callback = callback
-        self._as_it_is = None
+        self._plain_type = None
 
     @property
     def _callback_type(self) -> Enum:
@@ -161,13 +161,13 @@ class Subscription(TopicEndpoint[M], Entity):
         options = ContentFilterOptions(filter_expression, list(expression_parameters))
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
-    def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
+    def watch_lost(self, callback: Callable[[EndpointInfo], object]) -> None:
         """Register a callback for lost publishers of other processes.
 
         The callback runs in the same way as the subscription's callback. A publisher is lost when its process was
         killed, crashed or is out of reach. Messages of the lost publisher are delivered first.
         """
-        self._on_lost = lost
+        self._on_lost = callback
         self.node.graph.watch_lost()
 
     def queue_lost_publisher(self, publisher: EndpointInfo) -> None:
@@ -176,18 +176,17 @@ class Subscription(TopicEndpoint[M], Entity):
         The graph calls this, from any thread.
         """
         if self._on_lost is not None:
-            self._lost.append(publisher)
+            self._lost_publishers.append(publisher)
             self.announce()
 
     def deliver_in_batches(self) -> None:
         """Pass all queued messages to the callback in a single dispatched call, from now on.
 
-        The callback is still called once per message. Batches are meant for short callbacks with many messages, such as
-        those
-        of tf: with one message per dispatched call, a loop that has other work would lag behind by the length of the
-        queue.
+        The callback is still called once per message. Batches are meant for short callbacks that receive many messages,
+        such as transforms: with one message per dispatched call, a loop that has other work would lag behind by the
+        length of the queue.
         """
-        self._together = True
+        self._is_batched = True
 
     def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
         """Set how many matching publishers in other processes are alive, and how many are not.
@@ -209,8 +208,8 @@ class Subscription(TopicEndpoint[M], Entity):
             message: the message, or its CDR bytes, which are deserialized just before the callback is called.
             info: the message's metadata; required for messages of other processes.
         """
-        intake = self.node.message_filter
-        if intake is None or intake(self, message):
+        message_filter = self.node.message_filter
+        if message_filter is None or message_filter(self, message):
             self.enqueue(message, info)
 
     def enqueue(self, message: M | bytes | QueuedMessage, info: MessageInfo | None = None) -> None:
@@ -248,14 +247,14 @@ class Subscription(TopicEndpoint[M], Entity):
 
         return receive
 
-    def connected(self, publisher: TopicEndpoint[Any]) -> None:
+    def add_publisher(self, publisher: TopicEndpoint[Any]) -> None:
         """Record that a publisher of this process was connected. Called by the publisher."""
         self._publishers[publisher] = None
         if self.events is not None:
             self.events.matched(1)
             self.events.liveliness(int(publisher.is_alive), int(not publisher.is_alive))
 
-    def disconnected(self, publisher: TopicEndpoint[Any]) -> None:
+    def remove_publisher(self, publisher: TopicEndpoint[Any]) -> None:
         """Record that a publisher of this process was disconnected. Called by the publisher."""
         if self._publishers.pop(publisher, self) is None and self.events is not None:
             self.events.matched(-1)
@@ -263,7 +262,7 @@ class Subscription(TopicEndpoint[M], Entity):
 
     def has_work(self) -> bool:
         """Return whether messages or notifications of lost publishers are queued."""
-        return bool(self._waiting or self._lost)
+        return bool(self._waiting or self._lost_publishers)
 
     def take(self) -> Callable[[], object] | None:
         """Remove the oldest message from the queue and return the call of its callback.
@@ -272,15 +271,17 @@ class Subscription(TopicEndpoint[M], Entity):
         call.
         """
         self._announced = False
-        waiting = self._waiting
+        queue = self._waiting
         try:
-            message = waiting.popleft()
+            message = queue.popleft()
         except IndexError:
             return self._take_lost_publisher()
-        more = [waiting.popleft() for _ in range(len(waiting))] if self._together else ()
-        if waiting or self._lost:
+        further_messages = [queue.popleft() for _ in range(len(queue))] if self._is_batched else ()
+        if queue or self._lost_publishers:
             self.announce()
-        return partial(self._call_for_each, [message, *more]) if more else self._call_for(message)
+        return (
+            partial(self._call_for_each, [message, *further_messages]) if further_messages else self._call_for(message)
+        )
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the callbacks."""
@@ -291,7 +292,7 @@ class Subscription(TopicEndpoint[M], Entity):
     def discard(self) -> None:
         """Drop the queued messages."""
         self._waiting.clear()
-        self._lost.clear()
+        self._lost_publishers.clear()
 
     def retire(self) -> None:
         """Stop calling callbacks, and drop the queued messages."""
@@ -301,7 +302,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self.events.retire()
 
     def _take_lost_publisher(self) -> Callable[[], object] | None:
-        publisher = self._take_from(self._lost)
+        publisher = self._take_from(self._lost_publishers)
         return None if publisher is None or self._on_lost is None else partial(self._on_lost, publisher)
 
     def _call_for_each(self, items: list[Any]) -> None:
@@ -311,7 +312,7 @@ class Subscription(TopicEndpoint[M], Entity):
                 call()
 
     def _call_for(self, item: Any) -> Callable[[], object] | None:
-        if type(item) is self._as_it_is:
+        if type(item) is self._plain_type:
             return partial(self._callback, item)
         return self._prepare_call(item)
 
@@ -323,23 +324,23 @@ class Subscription(TopicEndpoint[M], Entity):
         if type(item) is bytes and not self._wants_info and not self.raw:
             message = self._read(item)
             return None if message is None else partial(self._callback, message)
-        detailed = item if type(item) is QueuedMessage else QueuedMessage(item)
-        if detailed.expires_ns is not None and self.node.timebase.steady_ns() > detailed.expires_ns:
+        queued_message = item if type(item) is QueuedMessage else QueuedMessage(item)
+        if queued_message.expires_ns is not None and self.node.timebase.steady_ns() > queued_message.expires_ns:
             return None
-        message = detailed.message
+        message = queued_message.message
         if self.raw:
-            message = self._as_bytes(message)
+            message = self._serialize(message)
         elif isinstance(message, (bytes, bytearray, memoryview)):
             message = self._read(message)
             if message is None:
                 return None
         elif item is message and not self._wants_info:
-            self._as_it_is = type(message)
+            self._plain_type = type(message)
         if self._wants_info:
-            return partial(self._callback, message, detailed.info or MessageInfo(time.time_ns(), time.time_ns()))
+            return partial(self._callback, message, queued_message.info or MessageInfo(time.time_ns(), time.time_ns()))
         return partial(self._callback, message)
 
-    def _as_bytes(self, message: Any) -> bytes:
+    def _serialize(self, message: Any) -> bytes:
         if isinstance(message, bytes):
             return message
         return serialize(message)
@@ -349,13 +350,13 @@ class Subscription(TopicEndpoint[M], Entity):
 
         A message that cannot be decoded is accepted here; the error is reported later.
         """
-        inner = message.message if type(message) is QueuedMessage else message
-        if isinstance(inner, (bytes, bytearray, memoryview)):
+        payload = message.message if type(message) is QueuedMessage else message
+        if isinstance(payload, (bytes, bytearray, memoryview)):
             try:
-                inner = deserialize(inner, self.msg_type)
+                payload = deserialize(payload, self.msg_type)
             except LinkwrightError:
                 return True
-        return content_filter.accepts(inner)
+        return content_filter.accepts(payload)
 
     def _read(self, data: bytes | bytearray | memoryview) -> Any:
         """Decode a message. If that fails, log the error once and return None."""

@@ -184,8 +184,8 @@ class Executor:
             if deadline_ns is None:
                 self.spin_once_until_future_complete(future)
                 continue
-            left_sec = max(deadline_ns - time.monotonic_ns(), 0) / NANOSECONDS_PER_SECOND
-            self.spin_once_until_future_complete(future, left_sec)
+            remaining_sec = max(deadline_ns - time.monotonic_ns(), 0) / NANOSECONDS_PER_SECOND
+            self.spin_once_until_future_complete(future, remaining_sec)
             if time.monotonic_ns() >= deadline_ns:
                 return
 
@@ -275,21 +275,21 @@ class Executor:
 
         See `wait_for_ready_callbacks`.
         """
-        wanted = None if nodes is None else {node.handle for node in nodes}
+        requested_handles = None if nodes is None else {node.handle for node in nodes}
         while True:
             deadline_ns = deadline_after(timeout_sec)
-            set_aside: list[Any] = []
+            skipped_items: list[Any] = []
             try:
                 item = self._next(deadline_ns, condition, begin=False)
-                while wanted is not None and isinstance(item, Entity) and item.node not in wanted:
-                    set_aside.append(item)
+                while requested_handles is not None and isinstance(item, Entity) and item.node not in requested_handles:
+                    skipped_items.append(item)
                     item = self._next(deadline_ns, condition, begin=False)
             finally:
-                self._work.add_first(set_aside)
+                self._work.add_first(skipped_items)
             if isinstance(item, Task):
                 yield item, None, None
             else:
-                yield self._handler(item), item, self._nodes.get(item.node)
+                yield self._make_task(item), item, self._nodes.get(item.node)
 
     def _next(self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True) -> Any:
         """Wait for the next task, or the next entity that its callback group allows to run.
@@ -329,18 +329,18 @@ class Executor:
         self._block(item)
         return False
 
-    def _postpone(self, answer: Entity) -> bool:
+    def _postpone(self, client: Entity) -> bool:
         """Move a client's response behind the ready work. Return whether the response was moved.
 
         rclpy runs tasks and messages before responses: when a client learns that its goal was accepted, it has already
         received the feedback if the goal was executed in the meantime. A response is postponed a limited number of
         times.
         """
-        if answer.postponed >= _MAX_POSTPONEMENTS or not self._work.has_ready():
-            answer.postponed = 0
+        if client.postponed >= _MAX_POSTPONEMENTS or not self._work.has_ready():
+            client.postponed = 0
             return False
-        answer.postponed += 1
-        self._work.add(answer)
+        client.postponed += 1
+        self._work.add(client)
         return True
 
     def _execute(self, item: Any) -> None:
@@ -360,13 +360,13 @@ class Executor:
                 result = call()
         finally:
             if type(result) is not CoroutineType:
-                self._end(callback_of)
+                self._end_execution(callback_of)
         if type(result) is CoroutineType:
-            task: Task[Any] = Task(result, executor=self, ended=partial(self._end, callback_of))
+            task: Task[Any] = Task(result, executor=self, on_end=partial(self._end_execution, callback_of))
             task()
             _raise_fault(task)
 
-    def _handler(self, entity: Entity) -> Task[Any]:
+    def _make_task(self, entity: Entity) -> Task[Any]:
         begun = False
 
         def run() -> object:
@@ -381,11 +381,11 @@ class Executor:
 
         def ended() -> None:
             if begun:
-                self._end(entity)
+                self._end_execution(entity)
 
-        return Task(run, executor=self, ended=ended)
+        return Task(run, executor=self, on_end=ended)
 
-    def _end(self, entity: Entity) -> None:
+    def _end_execution(self, entity: Entity) -> None:
         if not entity.unblockable:
             entity.callback_group.ending_execution(entity)
         if self._blocked:
@@ -397,12 +397,12 @@ class Executor:
             self._release_blocked()
 
     def _release_blocked(self) -> None:
-        released = []
+        released_entities = []
         while self._blocked:
             with suppress(IndexError):  # another thread took the last entity
-                released.append(self._blocked.popleft())
-        if released:
-            self._work.add_first(released)
+                released_entities.append(self._blocked.popleft())
+        if released_entities:
+            self._work.add_first(released_entities)
 
     def _begin_spinning(self) -> None:
         self._spinners.append(threading.get_ident())
@@ -414,14 +414,16 @@ class Executor:
                 self._spinners_changed.notify_all()
 
     def _wait_for_spinners(self, deadline_ns: int | None) -> bool:
-        own = threading.get_ident()
+        current_thread_id = threading.get_ident()
         with self._spinners_changed:
-            while any(spinner != own for spinner in self._spinners):
+            while any(spinner != current_thread_id for spinner in self._spinners):
                 self._work.wake()
-                left = None if deadline_ns is None else (deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND
-                if left is not None and left <= 0:
+                remaining_s = (
+                    None if deadline_ns is None else (deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND
+                )
+                if remaining_s is not None and remaining_s <= 0:
                     return False
-                self._spinners_changed.wait(left)
+                self._spinners_changed.wait(remaining_s)
         return True
 
 

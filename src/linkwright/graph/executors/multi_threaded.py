@@ -67,12 +67,14 @@ class MultiThreadedExecutor(SpinningExecutor):
             Whether all callbacks, and the threads if waited for, have ended.
         """
         deadline_ns = deadline_after(timeout_sec)
-        ended = super().shutdown(timeout_sec)
+        callbacks_ended = super().shutdown(timeout_sec)
         if not wait_for_threads:
             self._workers.close(0.0)
-            return ended
-        left = None if deadline_ns is None else max(deadline_ns - time.monotonic_ns(), 0) / NANOSECONDS_PER_SECOND
-        return self._workers.close(left) and ended
+            return callbacks_ended
+        remaining_s = (
+            None if deadline_ns is None else max(deadline_ns - time.monotonic_ns(), 0) / NANOSECONDS_PER_SECOND
+        )
+        return self._workers.close(remaining_s) and callbacks_ended
 
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         while not self._workers.has_room and not self._faults:
@@ -127,28 +129,28 @@ class Workers:
     Args:
         limit: the maximum number of threads.
         name: the prefix of the threads' names.
-        freed: called when a job has ended and its thread is free for the next one.
+        on_idle: called when a job has ended and its thread is free for the next one.
     """
 
-    def __init__(self, limit: int, name: str, freed: Callable[[], None]) -> None:
+    def __init__(self, limit: int, name: str, on_idle: Callable[[], None]) -> None:
         self._limit = limit
-        self._freed = freed
+        self._on_idle = on_idle
         self._name = name
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._lock = threading.Lock()
-        self._unfinished = 0
+        self._unfinished_count = 0
 
     @property
     def has_room(self) -> bool:
         """Whether a job that is submitted now would start immediately."""
-        return self._unfinished < self._limit
+        return self._unfinished_count < self._limit
 
     def submit(self, job: Callable[[], None]) -> None:
         """Run a job in a thread of the pool; the job must not raise."""
         with self._lock:
-            self._unfinished += 1
-            if self._unfinished > len(self._threads) and len(self._threads) < self._limit:
+            self._unfinished_count += 1
+            if self._unfinished_count > len(self._threads) and len(self._threads) < self._limit:
                 thread = threading.Thread(target=self._work, name=f"{self._name}-{len(self._threads)}", daemon=True)
                 self._threads.append(thread)
                 thread.start()
@@ -167,10 +169,10 @@ class Workers:
             threads, self._threads = self._threads, []
         for _ in threads:
             self._jobs.put(None)
-        others = [thread for thread in threads if thread is not threading.current_thread()]
-        for thread in others:
+        other_threads = [thread for thread in threads if thread is not threading.current_thread()]
+        for thread in other_threads:
             thread.join(timeout_sec)
-        return not any(thread.is_alive() for thread in others)
+        return not any(thread.is_alive() for thread in other_threads)
 
     def _work(self) -> None:
         while (job := self._jobs.get()) is not None:
@@ -178,5 +180,5 @@ class Workers:
                 job()
             finally:
                 with self._lock:
-                    self._unfinished -= 1
-                self._freed()
+                    self._unfinished_count -= 1
+                self._on_idle()

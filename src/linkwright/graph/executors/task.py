@@ -33,7 +33,7 @@ class Task(Future[T]):
         args: positional arguments for `handler`.
         kwargs: keyword arguments for `handler`.
         executor: the executor that runs the task and its done callbacks.
-        ended: called once when nothing is left to run, whether the task finished, failed or was cancelled.
+        on_end: called once when nothing is left to run, whether the task finished, failed or was cancelled.
     """
 
     def __init__(
@@ -43,11 +43,11 @@ class Task(Future[T]):
         kwargs: Mapping[str, Any] | None = None,
         executor: TaskRunner | None = None,
         *,
-        ended: Callable[[], None] | None = None,
+        on_end: Callable[[], None] | None = None,
     ) -> None:
         super().__init__(executor=executor)
         self._runner = executor
-        self._ended = ended
+        self._on_end = on_end
         self._steps: Coroutine[Any, Any, T] | None = None
         self._function: Callable[..., Any] | None = None
         if callable(handler):
@@ -56,36 +56,36 @@ class Task(Future[T]):
             self._steps = handler
         self._arguments = tuple(args or ())
         self._keywords = dict(kwargs or {})
-        self._turn = threading.Lock()
+        self._run_lock = threading.Lock()
 
     def __call__(self) -> None:
         """Run until the next await, or to the end.
 
         Does nothing while another thread runs the task, or once it has ended.
         """
-        if self.ended() or not self._turn.acquire(blocking=False):
+        if self.ended() or not self._run_lock.acquire(blocking=False):
             return
         try:
             awaited = self._run_step()
         finally:
-            self._turn.release()
+            self._run_lock.release()
         if self._steps is not None:
             self._wait_for(awaited)
 
     def executing(self) -> bool:
         """Return whether a thread is currently running the task."""
-        return self._turn.locked()
+        return self._run_lock.locked()
 
     def cancel(self) -> None:
         """Cancel the task. A coroutine is closed at its current await, unless it is running now."""
         super().cancel()
-        if self.cancelled() and self._turn.acquire(blocking=False):
+        if self.cancelled() and self._run_lock.acquire(blocking=False):
             try:
                 if self._steps is not None:
                     self._steps.close()
                 self._finish()
             finally:
-                self._turn.release()
+                self._run_lock.release()
 
     def __await__(self) -> Generator[Any, None, T | None]:
         if is_stepped_by_executor():
@@ -131,6 +131,6 @@ class Task(Future[T]):
     def _finish(self) -> None:
         self._steps = None
         self._arguments, self._keywords = (), {}
-        ended, self._ended = self._ended, None
-        if ended is not None:
-            ended()
+        on_end, self._on_end = self._on_end, None
+        if on_end is not None:
+            on_end()

@@ -13,8 +13,8 @@ from typing import Any
 
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_LONGEST_WAIT_S = 0.1 if os.name == "nt" else 3600.0
-"""Where a signal does not end a wait by itself (Windows), the wait is cut into pieces."""
+_MAX_WAIT_S = 0.1 if os.name == "nt" else 3600.0
+"""The maximum length of one wait. It is short on Windows, where a signal does not end a wait."""
 
 _MAX_CANCELLED = 64
 
@@ -46,19 +46,18 @@ class WorkQueue:
     A thread that takes from the queue also runs the alarms that are due.
 
     Adding takes no lock while no thread waits, so a message within one thread costs almost nothing. Waiting holds no
-    lock
-    either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, which would leave a ``threading.Condition``
-    with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
+    lock either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, and a ``threading.Condition`` would then
+    release a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
     """
 
     def __init__(self) -> None:
         self._ready: deque[Any] = deque()
         self._alarms: list[ScheduledCall] = []
-        self._numbers = 0
+        self._last_number = 0
         self._cancelled = 0
         self._alarms_lock = threading.RLock()
         self._sleepers: deque[threading.Lock] = deque()
-        self._woken = False
+        self._is_wake_requested = False
 
     def add(self, item: Any) -> None:
         """Add an item at the end."""
@@ -100,7 +99,7 @@ class WorkQueue:
 
     def wake(self) -> None:
         """End the wait of all waiting threads; if no thread is waiting, end the next wait."""
-        self._woken = True
+        self._is_wake_requested = True
         self._wake_sleepers()
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
@@ -109,8 +108,8 @@ class WorkQueue:
         The callback runs in a thread that takes from the queue.
         """
         with self._alarms_lock:
-            self._numbers += 1
-            call = ScheduledCall(self, steady_ns, self._numbers, callback)
+            self._last_number += 1
+            call = ScheduledCall(self, steady_ns, self._last_number, callback)
             heapq.heappush(self._alarms, call)
             is_next = self._alarms[0] is call
         if is_next:
@@ -151,17 +150,17 @@ class WorkQueue:
         sleeper.acquire()
         self._sleepers.append(sleeper)  # before the queue is checked, so that a thread that adds later wakes this one
         try:
-            if self._woken or (self._ready and not until_wake):
+            if self._is_wake_requested or (self._ready and not until_wake):
                 return
             if not until_wake:
                 deadline_ns = self._earliest_wake_ns(deadline_ns)
-            seconds = _LONGEST_WAIT_S
+            seconds = _MAX_WAIT_S
             if deadline_ns is not None:
                 seconds = min((deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND, seconds)
             if seconds > 0:
                 sleeper.acquire(timeout=seconds)
         finally:
-            self._woken = False
+            self._is_wake_requested = False
             with suppress(ValueError):  # already removed by the thread that woke it
                 self._sleepers.remove(sleeper)
 

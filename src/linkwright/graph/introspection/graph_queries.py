@@ -18,7 +18,10 @@ from linkwright.graph.names.rules import NodeIdentity, split
 from linkwright.graph.qos.profile import UNKNOWN_QOS, HistoryPolicy, QoSProfile
 
 OnNamesakes = Callable[[frozenset[str]], object]
-"""Takes the full names of all nodes of ours whose names are shared now; from any thread, one call after another."""
+"""Receives the full names of the nodes of this process whose names other processes use now.
+
+It may be called from any thread, but never by two threads at the same time.
+"""
 
 
 class Namesakes:
@@ -30,28 +33,28 @@ class Namesakes:
 
     def __init__(self, notify: OnNamesakes | None = None) -> None:
         self._notify = notify
-        self._shared: frozenset[str] = frozenset()
+        self._shared_names: frozenset[str] = frozenset()
         self._lock = threading.RLock()
 
-    def review(self, ours: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
+    def review(self, local_nodes: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
         """Compare the node names of this process with those of other processes.
 
         Reports the shared names when they have changed.
         """
-        if not outside and not self._shared:
+        if not outside and not self._shared_names:
             return
         with self._lock:
-            there = {node_identity.full_name for node_identity in outside}
-            before = self._shared
-            self._shared = frozenset(node.identity.full_name for node in ours) & there
-            if self._shared == before:
+            remote_names = {node_identity.full_name for node_identity in outside}
+            previous_names = self._shared_names
+            self._shared_names = frozenset(node.identity.full_name for node in local_nodes) & remote_names
+            if self._shared_names == previous_names:
                 return
             if self._notify is not None:
-                self._notify(self._shared)
+                self._notify(self._shared_names)
                 return
-            for node in ours:
+            for node in local_nodes:
                 name = node.identity.full_name
-                if name in self._shared and name not in before:
+                if name in self._shared_names and name not in previous_names:
                     node.logger.warning(
                         f"Another process has a node of the exact name '{name}' too: this can have unintended side "
                         "effects. If it belongs to another robot or program, give one of them another ROS_DOMAIN_ID"
@@ -127,12 +130,21 @@ class TopicEndpointInfo:
     def of(cls, info: EndpointInfo) -> TopicEndpointInfo:
         """Convert an endpoint's description to the form that rclpy returns."""
         node = info.node or UNKNOWN_NODE
-        kind = (
+        endpoint_type = (
             TopicEndpointTypeEnum.PUBLISHER
             if info.kind is EndpointKind.PUBLISHER
             else TopicEndpointTypeEnum.SUBSCRIPTION
         )
-        return cls(node.name, node.namespace, info.type_name, info.type_hash, kind, list(info.gid), info.qos, info.host)
+        return cls(
+            node.name,
+            node.namespace,
+            info.type_name,
+            info.type_hash,
+            endpoint_type,
+            list(info.gid),
+            info.qos,
+            info.host,
+        )
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
@@ -151,8 +163,8 @@ def action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKi
     """
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
-        action, _, part = endpoint.name.rpartition(_ACTION)
-        if part == "feedback" and endpoint.kind in kinds:
+        action, _, suffix = endpoint.name.rpartition(_ACTION)
+        if suffix == "feedback" and endpoint.kind in kinds:
             types.setdefault(action, set()).add(endpoint.type_name.removesuffix(_FEEDBACK))
     return [(name, sorted(types[name])) for name in sorted(types)]
 
@@ -174,11 +186,11 @@ class GraphQueries:
 
     def identities(self) -> list[NodeIdentity]:
         """Return the nodes of this process, and those discovered so far in other processes."""
-        outside: Sequence[NodeIdentity] = ()
+        remote_nodes: Sequence[NodeIdentity] = ()
         if self._transport is not None:
             self._transport.look_around()
-            outside = self._transport.remote_nodes()
-        return [*(node.identity for node in tuple(self._nodes)), *outside]
+            remote_nodes = self._transport.remote_nodes()
+        return [*(node.identity for node in tuple(self._nodes)), *remote_nodes]
 
     def endpoints(self) -> list[EndpointInfo]:
         """Return the endpoints of this process, and those discovered so far in other processes."""
@@ -301,25 +313,25 @@ class GraphQueries:
         """
         with self._changed:
             self._changed.notify_all()
-        for changed in tuple(self._watchers):
-            run_logged(self._logger, "a callback for changes of the graph", changed)
+        for watcher in tuple(self._watchers):
+            run_logged(self._logger, "a callback for changes of the graph", watcher)
 
-    def watch(self, changed: Callable[[], object]) -> None:
+    def watch(self, callback: Callable[[], object]) -> None:
         """Register a callback for changes of nodes and endpoints.
 
         The callback runs in the thread in which the change happens. Exceptions that the callback raises are logged.
         """
-        self._watchers[changed] = None
+        self._watchers[callback] = None
 
-    def unwatch(self, changed: Callable[[], object]) -> None:
+    def unwatch(self, callback: Callable[[], object]) -> None:
         """Unregister a callback that was registered with `watch`."""
-        self._watchers.pop(changed, None)
+        self._watchers.pop(callback, None)
 
-    def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
+    def wait_until(self, condition: Callable[[], bool], timeout_sec: float | None = None) -> bool:
         """Block the calling thread until a condition of the graph holds.
 
         Args:
-            holds: the condition, checked whenever nodes or endpoints appear or leave.
+            condition: the condition, checked whenever nodes or endpoints appear or leave.
             timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
 
         Returns:
@@ -327,14 +339,14 @@ class GraphQueries:
         """
         deadline = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
         while True:
-            if holds():
+            if condition():
                 return True
-            left = None if deadline is None else deadline - time.monotonic()
-            if self._closed or (left is not None and left <= 0):
+            remaining_s = None if deadline is None else deadline - time.monotonic()
+            if self._closed or (remaining_s is not None and remaining_s <= 0):
                 return False
             with self._changed:
                 # Discovery may report a change between the check and the wait, so each wait must be short.
-                self._changed.wait(_LONGEST_WAIT_S if left is None else min(left, _LONGEST_WAIT_S))
+                self._changed.wait(_MAX_WAIT_S if remaining_s is None else min(remaining_s, _MAX_WAIT_S))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
         """Block the calling thread until a node exists; return whether it exists.
@@ -358,16 +370,16 @@ class GraphQueries:
     def _endpoints_by_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
         return self._matching_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
-    def _matching_endpoints(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
+    def _matching_endpoints(self, is_match: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
         """Return the endpoints that meet a condition, in this process and outside.
 
         Only the matching endpoints are described, because describing an endpoint takes time.
         """
-        own = (endpoint.info() for endpoint in self.bus.endpoints() if are_asked_for(endpoint))
-        return [*own, *(endpoint for endpoint in self.remote_endpoints() if are_asked_for(endpoint))]
+        local_endpoints = (endpoint.info() for endpoint in self.bus.endpoints() if is_match(endpoint))
+        return [*local_endpoints, *(endpoint for endpoint in self.remote_endpoints() if is_match(endpoint))]
 
 
-_LONGEST_WAIT_S = 0.1
+_MAX_WAIT_S = 0.1
 
 
 def _add_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
@@ -379,10 +391,10 @@ def _add_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
     return replace(endpoint, type_hash=type_hash(get_interface(endpoint.type_name)))
 
 
-def _mangle(found: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
+def _mangle(entries: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
     if not no_demangle:
-        return found
-    return [(f"rt{name}", [_wire_type_name(type_name) for type_name in types]) for name, types in found]
+        return entries
+    return [(f"rt{name}", [_wire_type_name(type_name) for type_name in types]) for name, types in entries]
 
 
 def _wire_type_name(type_name: str) -> str:

@@ -15,7 +15,7 @@ from linkwright.graph.names.rules import InvalidNameError, join
 from linkwright.messages import InterfaceNotFoundError, get_message, is_before_iron
 
 PARAMETER = "start_type_description_service"
-"""The parameter that decides whether a node has the service."""
+"""The parameter that decides whether a node has the type description service."""
 
 _TYPE = "type_description_interfaces/srv/GetTypeDescription"
 _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
@@ -48,22 +48,22 @@ class TypeDescriptions:
         if not _HASH.fullmatch(request.type_hash):
             response.failure_reason = "Failed to parse type hash"
             return response
-        found = next((name for name in self._types_in_use() if _is_requested(name, request)), None)
-        if found is None:
+        type_name = next((name for name in self._types_in_use() if _is_requested(name, request)), None)
+        if type_name is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
         from linkwright.messages.definitions.hashing import type_description
         from linkwright.messages.definitions.library import LIBRARY
 
-        described = type_description(LIBRARY.definition(found))
-        nested = described["referenced_type_descriptions"]
+        description = type_description(LIBRARY.definition(type_name))
+        referenced_types = description["referenced_type_descriptions"]
         response.type_description = _interface("TypeDescription")(
-            type_description=_individual(described["type_description"]),
-            referenced_type_descriptions=[_individual(nested_type) for nested_type in nested],
+            type_description=_individual(description["type_description"]),
+            referenced_type_descriptions=[_individual(nested_type) for nested_type in referenced_types],
         )
         if request.include_type_sources:
             response.type_sources = [
-                _source(name) for name in (found, *(nested_type["type_name"] for nested_type in nested))
+                _source(name) for name in (type_name, *(nested_type["type_name"] for nested_type in referenced_types))
             ]
         response.successful = True
         return response
@@ -88,14 +88,14 @@ def _interface(name: str) -> Any:
     return get_message(f"type_description_interfaces/msg/{name}")
 
 
-def _individual(described: Mapping[str, Any]) -> Any:
+def _individual(description: Mapping[str, Any]) -> Any:
     """Convert a type description to an IndividualTypeDescription message.
 
     Default values are left out, because they are not part of the hash.
     """
     field, field_type = _interface("Field"), _interface("FieldType")
-    fields = [field(name=member["name"], type=field_type(**member["type"])) for member in described["fields"]]
-    return _interface("IndividualTypeDescription")(type_name=described["type_name"], fields=fields)
+    fields = [field(name=member["name"], type=field_type(**member["type"])) for member in description["fields"]]
+    return _interface("IndividualTypeDescription")(type_name=description["type_name"], fields=fields)
 
 
 def _source(name: str) -> Any:
@@ -127,12 +127,12 @@ class NodeQueries:
         self.__handle = handle
 
     @staticmethod
-    def _of_graph(question: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
+    def _graph_query(query: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
         """Wrap a graph query as a method of the node; used only in the class body."""
 
-        @wraps(question)
+        @wraps(query)
         def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
-            return question(node.__graph, *args, **kwargs)
+            return query(node.__graph, *args, **kwargs)
 
         return ask
 
@@ -160,17 +160,17 @@ class NodeQueries:
         """Return the full names of the graph's nodes."""
         return [join(namespace, name) for name, namespace in self.__graph.get_node_names_and_namespaces()]
 
-    get_node_names_and_namespaces = _of_graph(GraphQueries.get_node_names_and_namespaces)
-    get_node_names_and_namespaces_with_enclaves = _of_graph(GraphQueries.get_node_names_and_namespaces_with_enclaves)
-    get_topic_names_and_types = _of_graph(GraphQueries.get_topic_names_and_types)
-    get_service_names_and_types = _of_graph(GraphQueries.get_service_names_and_types)
-    get_action_names_and_types = _of_graph(GraphQueries.get_action_names_and_types)
-    get_publisher_names_and_types_by_node = _of_graph(GraphQueries.get_publisher_names_and_types_by_node)
-    get_subscriber_names_and_types_by_node = _of_graph(GraphQueries.get_subscriber_names_and_types_by_node)
-    get_service_names_and_types_by_node = _of_graph(GraphQueries.get_service_names_and_types_by_node)
-    get_client_names_and_types_by_node = _of_graph(GraphQueries.get_client_names_and_types_by_node)
-    wait_for_node = _of_graph(GraphQueries.wait_for_node)
-    del _of_graph  # a user's node may have an attribute of this name
+    get_node_names_and_namespaces = _graph_query(GraphQueries.get_node_names_and_namespaces)
+    get_node_names_and_namespaces_with_enclaves = _graph_query(GraphQueries.get_node_names_and_namespaces_with_enclaves)
+    get_topic_names_and_types = _graph_query(GraphQueries.get_topic_names_and_types)
+    get_service_names_and_types = _graph_query(GraphQueries.get_service_names_and_types)
+    get_action_names_and_types = _graph_query(GraphQueries.get_action_names_and_types)
+    get_publisher_names_and_types_by_node = _graph_query(GraphQueries.get_publisher_names_and_types_by_node)
+    get_subscriber_names_and_types_by_node = _graph_query(GraphQueries.get_subscriber_names_and_types_by_node)
+    get_service_names_and_types_by_node = _graph_query(GraphQueries.get_service_names_and_types_by_node)
+    get_client_names_and_types_by_node = _graph_query(GraphQueries.get_client_names_and_types_by_node)
+    wait_for_node = _graph_query(GraphQueries.wait_for_node)
+    del _graph_query  # a user's node may have an attribute of this name
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic.
@@ -178,32 +178,32 @@ class NodeQueries:
         The name is expanded and remapped unless `no_mangle` is true.
         """
         return self.__graph.get_publishers_info_by_topic(
-            topic_name if no_mangle else _resolved(self.__handle.resolve_topic_name, topic_name)
+            topic_name if no_mangle else _resolve_for_query(self.__handle.resolve_topic_name, topic_name)
         )
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """Return the subscriptions to a topic; see `get_publishers_info_by_topic`."""
-        name = topic_name if no_mangle else _resolved(self.__handle.resolve_topic_name, topic_name)
+        name = topic_name if no_mangle else _resolve_for_query(self.__handle.resolve_topic_name, topic_name)
         return self.__graph.get_subscriptions_info_by_topic(name)
 
     def count_publishers(self, topic_name: str) -> int:
         """Return the number of publishers of a topic, in this process and outside."""
-        return self.__graph.count_publishers(_resolved(self.__handle.resolve_topic_name, topic_name))
+        return self.__graph.count_publishers(_resolve_for_query(self.__handle.resolve_topic_name, topic_name))
 
     def count_subscribers(self, topic_name: str) -> int:
         """Return the number of subscriptions to a topic, in this process and outside."""
-        return self.__graph.count_subscribers(_resolved(self.__handle.resolve_topic_name, topic_name))
+        return self.__graph.count_subscribers(_resolve_for_query(self.__handle.resolve_topic_name, topic_name))
 
     def count_services(self, service_name: str) -> int:
         """Return the number of servers of a service."""
-        return self.__graph.count_services(_resolved(self.__handle.resolve_service_name, service_name))
+        return self.__graph.count_services(_resolve_for_query(self.__handle.resolve_service_name, service_name))
 
     def count_clients(self, service_name: str) -> int:
         """Return the number of clients of a service."""
-        return self.__graph.count_clients(_resolved(self.__handle.resolve_service_name, service_name))
+        return self.__graph.count_clients(_resolve_for_query(self.__handle.resolve_service_name, service_name))
 
 
-def _resolved(resolve: Callable[[str], str], name: str) -> str:
+def _resolve_for_query(resolve: Callable[[str], str], name: str) -> str:
     """Return the absolute name for a query. Errors have rclpy's wording.
 
     Raises:

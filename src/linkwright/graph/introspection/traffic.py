@@ -16,8 +16,8 @@ class Traffic:
         messages_per_second: the message rate.
         bytes_per_second: the bandwidth.
         mean_size: the mean message size, in bytes.
-        least_size: the size of the smallest message, in bytes.
-        most_size: the size of the largest message, in bytes.
+        min_size: the size of the smallest message, in bytes.
+        max_size: the size of the largest message, in bytes.
         count: the number of messages in the statistics.
         age_ns: the age of the oldest message in the statistics, in nanoseconds.
     """
@@ -25,8 +25,8 @@ class Traffic:
     messages_per_second: float
     bytes_per_second: float
     mean_size: float
-    least_size: int
-    most_size: int
+    min_size: int
+    max_size: int
     count: int
     age_ns: int
 
@@ -36,13 +36,13 @@ class TrafficWindow:
 
     Args:
         size: the maximum number of messages.
-        longest_ns: the maximum age of the messages, in nanoseconds; None for no limit. The last two messages are always
+        max_age_ns: the maximum age of the messages, in nanoseconds; None for no limit. The last two messages are always
             kept, so that statistics exist for slow topics, too.
     """
 
-    def __init__(self, size: int, longest_ns: int | None = None) -> None:
+    def __init__(self, size: int, max_age_ns: int | None = None) -> None:
         self._messages: deque[tuple[int, int]] = deque(maxlen=size)
-        self._longest_ns = longest_ns
+        self._max_age_ns = max_age_ns
 
     def add(self, now_ns: int, size: int) -> None:
         """Add a message of `size` bytes that arrived at `now_ns`."""
@@ -56,25 +56,25 @@ class TrafficWindow:
         last message is older than twice the mean interval.
         """
         messages = self._messages
-        if self._longest_ns is not None:
-            while len(messages) > 2 and now_ns - messages[0][0] > self._longest_ns:
+        if self._max_age_ns is not None:
+            while len(messages) > 2 and now_ns - messages[0][0] > self._max_age_ns:
                 messages.popleft()
         if len(messages) < 2:
             return None
-        first, last = messages[0][0], messages[-1][0]
-        if now_ns <= first:
+        first_ns, last_ns = messages[0][0], messages[-1][0]
+        if now_ns <= first_ns:
             messages.clear()
             return None
         sizes = [size for _, size in messages]
-        intervals = len(sizes) - 1
-        silent = now_ns - last > 2 * (last - first) / intervals or last == first
-        span = (now_ns if silent else last) - first
+        interval_count = len(sizes) - 1
+        is_silent = now_ns - last_ns > 2 * (last_ns - first_ns) / interval_count or last_ns == first_ns
+        span_ns = (now_ns if is_silent else last_ns) - first_ns
         return Traffic(
-            messages_per_second=intervals * NANOSECONDS_PER_SECOND / span,
-            bytes_per_second=sum(sizes) * NANOSECONDS_PER_SECOND / (now_ns - first),
+            messages_per_second=interval_count * NANOSECONDS_PER_SECOND / span_ns,
+            bytes_per_second=sum(sizes) * NANOSECONDS_PER_SECOND / (now_ns - first_ns),
             mean_size=sum(sizes) / len(sizes),
-            least_size=min(sizes),
-            most_size=max(sizes),
+            min_size=min(sizes),
+            max_size=max(sizes),
             count=len(sizes),
-            age_ns=now_ns - first,
+            age_ns=now_ns - first_ns,
         )

@@ -45,22 +45,22 @@ class SimpleManagedEntity(ManagedEntity):
     """An entity that is enabled while its node is active."""
 
     def __init__(self) -> None:
-        self._enabled = False
+        self._is_enabled = False
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Enable the entity."""
-        self._enabled = True
+        self._is_enabled = True
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Disable the entity."""
-        self._enabled = False
+        self._is_enabled = False
         return TransitionCallbackReturn.SUCCESS
 
     @property
     def is_activated(self) -> bool:
         """Whether the entity is enabled."""
-        return self._enabled
+        return self._is_enabled
 
     @staticmethod
     def when_enabled(
@@ -74,7 +74,7 @@ class SimpleManagedEntity(ManagedEntity):
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)
             def guarded(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> Any:
-                if self._enabled:
+                if self._is_enabled:
                     return method(self, *args, **kwargs)
                 return None if when_not_enabled is None else when_not_enabled()
 
@@ -92,5 +92,5 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[Any]):
 
     def publish(self, msg: Any) -> None:
         """Publish a message, or drop it while the node is not active."""
-        if self._enabled:
+        if self._is_enabled:
             Publisher.publish(self, msg)

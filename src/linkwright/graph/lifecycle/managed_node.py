@@ -87,10 +87,10 @@ class LifecycleNodeMixin(ManagedEntity):
             ("get_available_transitions", "GetAvailableTransitions", self._on_get_available_transitions),
             ("get_transition_graph", "GetAvailableTransitions", self._on_get_transition_graph),
         ):
-            made = node.create_service(
+            server = node.create_service(
                 _service(type_name), f"{name}/{service}", callback, callback_group=callback_group
             )
-            setattr(self._state_machine, f"service_{service}", made)
+            setattr(self._state_machine, f"service_{service}", server)
 
     @property
     def lifecycle_state(self) -> LifecycleState:
@@ -177,48 +177,48 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def _call_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:
         for entity in tuple(self._managed_entities):
-            verdict = ask(entity)
-            if verdict != TransitionCallbackReturn.SUCCESS:
-                return verdict
+            result = ask(entity)
+            if result != TransitionCallbackReturn.SUCCESS:
+                return result
         return TransitionCallbackReturn.SUCCESS
 
     def _change_by_label(self, label: str) -> TransitionCallbackReturn:
         transition = self._state_machine.by_label(label)
         if transition is None:
-            available = [possible.label for possible in self._state_machine.available()]
+            available = [candidate.label for candidate in self._state_machine.available()]
             raise LifecycleTransitionError(label, self._state_machine.state, available)
-        return self._change(transition)
+        return self._perform(transition)
 
-    def _change(self, transition: Transition) -> TransitionCallbackReturn:
-        """Perform a transition with its callback and its ending.
+    def _perform(self, transition: Transition) -> TransitionCallbackReturn:
+        """Run the callback of a transition, then the transition that its result triggers.
 
         If the callback results in an error, the error processing runs, too.
         """
         initial = self._state_machine.state
         self._enter_state(transition)
-        verdict = self._call(initial)
-        self._end(verdict)
-        if verdict == TransitionCallbackReturn.ERROR:
-            self._end(self._call(initial))
-        return verdict
+        result = self._call(initial)
+        self._end_transition(result)
+        if result == TransitionCallbackReturn.ERROR:
+            self._end_transition(self._call(initial))
+        return result
 
-    def _end(self, verdict: TransitionCallbackReturn) -> None:
-        ending = self._state_machine.by_label(verdict.to_label())
-        assert ending is not None
-        self._enter_state(ending)
+    def _end_transition(self, result: TransitionCallbackReturn) -> None:
+        following_transition = self._state_machine.by_label(result.to_label())
+        assert following_transition is not None
+        self._enter_state(following_transition)
 
     def _call(self, initial: LifecycleState) -> TransitionCallbackReturn:
         node: Any = self
         name = _CALLBACKS[self._state_machine.state]
         try:
-            verdict = getattr(self, name)(initial)
+            result = getattr(self, name)(initial)
         except Exception:  # noqa: BLE001  # a fault of the user's callback is what the error state is for
             node.get_logger().error(f"{name} failed:\n{traceback.format_exc().rstrip()}")
             return TransitionCallbackReturn.ERROR
-        if isinstance(verdict, TransitionCallbackReturn):
-            return verdict
+        if isinstance(result, TransitionCallbackReturn):
+            return result
         node.get_logger().error(
-            f"{name} returned {verdict!r}; it must return TransitionCallbackReturn.SUCCESS, FAILURE or ERROR"
+            f"{name} returned {result!r}; it must return TransitionCallbackReturn.SUCCESS, FAILURE or ERROR"
         )
         return TransitionCallbackReturn.ERROR
 
@@ -240,12 +240,12 @@ class LifecycleNodeMixin(ManagedEntity):
         transition = machine.by_label(requested.label) if requested.label else machine.by_id(requested.id)
         if transition is None or transition.start.state_id >= CONFIGURING.state_id:
             node: Any = self
-            available = [possible.label for possible in machine.available()]
+            available = [candidate.label for candidate in machine.available()]
             error = LifecycleTransitionError(requested.label or requested.id, machine.state, available)
             node.get_logger().warning(str(error))
             response.success = False
             return response
-        response.success = self._change(transition) == TransitionCallbackReturn.SUCCESS
+        response.success = self._perform(transition) == TransitionCallbackReturn.SUCCESS
         return response
 
     def _on_get_state(self, _request: Any, response: Any) -> Any:
@@ -258,7 +258,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
     def _on_get_available_transitions(self, _request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(possible) for possible in self._state_machine.available()]
+        response.available_transitions = [_description(candidate) for candidate in self._state_machine.available()]
         return response
 
     def _on_get_transition_graph(self, _request: Any, response: Any) -> Any:

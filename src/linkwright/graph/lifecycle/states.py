@@ -60,8 +60,8 @@ class Transition(NamedTuple):
 
     Attributes:
         transition_id: the transition's ID.
-        label: the label that triggers the transition: for a transition that ends another one it depends on the result,
-            such as ``transition_success``.
+        label: the label that triggers the transition. For a transition that ends another transition, the label depends
+            on the result, such as ``transition_success``.
         start: the state in which the transition starts.
         goal: the state in which the transition ends.
     """
@@ -76,11 +76,13 @@ def _endings(
     number: int, through: LifecycleState, success: LifecycleState, failure: LifecycleState, error: LifecycleState
 ) -> list[Transition]:
     """Return the transitions for success, failure and error from the transition state `through`."""
-    ends = (("success", success), ("failure", failure), ("error", error))
-    return [Transition(number + place, f"transition_{name}", through, end) for place, (name, end) in enumerate(ends)]
+    end_states = (("success", success), ("failure", failure), ("error", error))
+    return [
+        Transition(number + index, f"transition_{name}", through, end) for index, (name, end) in enumerate(end_states)
+    ]
 
 
-def _asked(
+def _requestable_transition(
     number: int, label: str, start: LifecycleState, through: LifecycleState, goal: LifecycleState
 ) -> list[Transition]:
     """Return a transition that users can request, and its endings.
@@ -94,10 +96,10 @@ def _asked(
 
 
 TRANSITIONS = (
-    *_asked(1, "configure", UNCONFIGURED, CONFIGURING, INACTIVE),
-    *_asked(2, "cleanup", INACTIVE, CLEANINGUP, UNCONFIGURED),
-    *_asked(3, "activate", INACTIVE, ACTIVATING, ACTIVE),
-    *_asked(4, "deactivate", ACTIVE, DEACTIVATING, INACTIVE),
+    *_requestable_transition(1, "configure", UNCONFIGURED, CONFIGURING, INACTIVE),
+    *_requestable_transition(2, "cleanup", INACTIVE, CLEANINGUP, UNCONFIGURED),
+    *_requestable_transition(3, "activate", INACTIVE, ACTIVATING, ACTIVE),
+    *_requestable_transition(4, "deactivate", ACTIVE, DEACTIVATING, INACTIVE),
     Transition(5, "shutdown", UNCONFIGURED, SHUTTINGDOWN),
     Transition(6, "shutdown", INACTIVE, SHUTTINGDOWN),
     Transition(7, "shutdown", ACTIVE, SHUTTINGDOWN),

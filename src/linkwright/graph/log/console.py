@@ -33,28 +33,31 @@ def console_line(record: LogRecord) -> str:
 
     The default format is ``[INFO] [1700000000.123456789] [node]: text``.
     """
-    return "".join(part(record) for part in _parts(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT))
+    return "".join(
+        formatter(record)
+        for formatter in _formatters(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT)
+    )
 
 
 @lru_cache(maxsize=8)
-def _parts(format_text: str) -> tuple[Part, ...]:
-    """Split a format into literal texts and, for each known token, a function that formats it.
+def _formatters(format_text: str) -> tuple[Part, ...]:
+    """Return a function for each literal text and each known token of a format.
 
     Unknown tokens are left unchanged.
     """
     text = _ESCAPE.sub(lambda match: _ESCAPES[match[1]], format_text[:_MAX_FORMAT_LENGTH])
-    parts: list[Part] = []
+    formatters: list[Part] = []
     end = 0
     for match in _TOKEN.finditer(text):
         token = _TOKENS.get(match[1])
         if token is not None:
-            parts += [_fixed(text[end : match.start()]), token]
+            formatters += [_literal(text[end : match.start()]), token]
             end = match.end()
-    parts.append(_fixed(text[end:]))
-    return tuple(parts)
+    formatters.append(_literal(text[end:]))
+    return tuple(formatters)
 
 
-def _fixed(text: str) -> Part:
+def _literal(text: str) -> Part:
     return lambda _: text
 
 
@@ -116,9 +119,9 @@ def print_to_console(record: LogRecord) -> None:
 
 
 def _wants_colour(stream: TextIO) -> bool:
-    forced = os.environ.get("RCUTILS_COLORIZED_OUTPUT")
-    if forced in ("0", "1"):
-        return forced == "1"
+    setting = os.environ.get("RCUTILS_COLORIZED_OUTPUT")
+    if setting in ("0", "1"):
+        return setting == "1"
     return stream.isatty() and not os.environ.get("NO_COLOR")
 
 
@@ -148,18 +151,18 @@ class Rosout:
     def __init__(self, publisher: LogPublisher, logger: Logger) -> None:
         self._publisher = publisher
         self._logger = logger
-        self._publishing = False
+        self._is_publishing = False
         logger.rosout = self.publish
 
     def publish(self, record: LogRecord) -> None:
         """Publish a record. Records that are logged while one is being published are not published."""
-        if self._publishing:
+        if self._is_publishing:
             return
-        self._publishing = True
+        self._is_publishing = True
         try:
             self._publisher.publish(self._message(record))
         finally:
-            self._publishing = False
+            self._is_publishing = False
 
     def close(self) -> None:
         """Stop publishing. The node, not this object, destroys the publisher."""

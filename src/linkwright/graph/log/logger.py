@@ -45,7 +45,7 @@ class LogLevels:
 
     def __init__(self, default: LogLevel = LogLevel.INFO) -> None:
         self._default = default
-        self._own: dict[str, LogLevel] = {}
+        self._levels_by_name: dict[str, LogLevel] = {}
         self.revision = 0
 
     def set(self, name: str, level: LogLevel) -> None:
@@ -56,13 +56,13 @@ class LogLevels:
         if not name:
             self._default = level or LogLevel.INFO
         else:
-            self._own[name] = level
+            self._levels_by_name[name] = level
         self.revision += 1
 
     def reset(self) -> None:
         """Remove all levels that were set, and reset the default level to INFO."""
         self._default = LogLevel.INFO
-        self._own.clear()
+        self._levels_by_name.clear()
         self.revision += 1
 
     def own_level(self, name: str) -> LogLevel:
@@ -70,12 +70,12 @@ class LogLevels:
 
         For an empty name, return the default level.
         """
-        return self._own.get(name, LogLevel.UNSET) if name else self._default
+        return self._levels_by_name.get(name, LogLevel.UNSET) if name else self._default
 
     def effective_level(self, name: str) -> LogLevel:
         """Return the level in force for a logger: its own or its nearest ancestor's, or the default."""
         while name:
-            level = self._own.get(name)
+            level = self._levels_by_name.get(name)
             if level:
                 return level
             name = name.rpartition(".")[0]
@@ -165,7 +165,7 @@ class Logger:
         self._levels.set(self.name, LogLevel(level))
 
     def get_effective_level(self) -> LogLevel:
-        """Return the level in force: the logger's own, that of its nearest ancestor, or the default."""
+        """Return the level in force: the level of the logger or of its nearest ancestor, or the default."""
         if self._revision != self._levels.revision:
             self._effective = self._levels.effective_level(self.name)
             self._revision = self._levels.revision
@@ -197,8 +197,8 @@ class Logger:
             TypeError: a filter is unknown or incomplete.
             ValueError: an earlier call at the same call site had another severity or other filters.
         """
-        enabled = severity >= self.get_effective_level()
-        if not enabled and not filters:
+        is_enabled = severity >= self.get_effective_level()
+        if not is_enabled and not filters:
             return False
         frame = _caller()
         name = filters.pop("name", self.name)
@@ -208,7 +208,7 @@ class Logger:
             self._calls[key] = call = CallFilter(severity, name, filters, self._steady_ns)
         else:
             call.check_unchanged(severity, name, filters)
-        if not enabled or not call.should_log():
+        if not is_enabled or not call.should_log():
             return False
         code = frame.f_code
         record = LogRecord(
@@ -252,33 +252,33 @@ def _caller() -> FrameType:
     return frame
 
 
-def log_failure(logger: Logger, what: str, error: BaseException) -> None:
+def log_failure(logger: Logger, operation: str, error: BaseException) -> None:
     """Log a failure: the message of a user's mistake, the traceback of any other exception.
 
     Args:
         logger: the logger.
-        what: the operation that failed.
+        operation: the operation that failed.
         error: the exception; a mistake of the user is a `LinkwrightError`.
     """
     if isinstance(error, LinkwrightError):
         problem = f" {error}"
     else:
         problem = "\n" + "".join(traceback.format_exception(error)).rstrip()
-    logger.error(f"{what} failed:{problem}")
+    logger.error(f"{operation} failed:{problem}")
 
 
-def run_logged(logger: Logger, what: str, callback: Callable[[], object]) -> None:
+def run_logged(logger: Logger, operation: str, callback: Callable[[], object]) -> None:
     """Call a function, and log an exception instead of raising it.
 
     Args:
         logger: the logger.
-        what: the operation, for the log message.
+        operation: the operation, for the log message.
         callback: the function.
     """
     try:
         callback()
     except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it
-        log_failure(logger, what, error)
+        log_failure(logger, operation, error)
 
 
 _DEFAULT_TIME_SOURCE = "RCUTILS_STEADY_TIME"
@@ -295,7 +295,7 @@ class CallFilter:
         steady_ns: returns the steady time, in nanoseconds, that is used if no time source is given.
 
     Raises:
-        TypeError: an option is unknown, or requires another one.
+        TypeError: an option is unknown, or requires another option.
         ValueError: the time source is neither a clock nor rcutils' steady time.
     """
 
@@ -319,7 +319,7 @@ class CallFilter:
         self._options = dict(options)
         self._severity_and_name = (severity, name)
         self._duration_s = float(options.get("throttle_duration_sec") or 0.0)
-        self._now_s = _clock_of(options.get("throttle_time_source_type", _DEFAULT_TIME_SOURCE), steady_ns)
+        self._now_s = _seconds_function(options.get("throttle_time_source_type", _DEFAULT_TIME_SOURCE), steady_ns)
         self._last_s: float | None = None
         self._skip = bool(options.get("skip_first"))
         self._once = bool(options.get("once"))
@@ -348,8 +348,8 @@ class CallFilter:
             self._skip = False
             return False
         if self._once:
-            first, self._logged = not self._logged, True
-            return first
+            is_first_call, self._logged = not self._logged, True
+            return is_first_call
         return True
 
 
@@ -357,7 +357,7 @@ def _filters(options: dict[str, Any]) -> list[bool]:
     return [bool(options.get(option)) for option in ("throttle_duration_sec", "skip_first", "once")]
 
 
-def _clock_of(source: Any, steady_ns: Callable[[], int]) -> Callable[[], float]:
+def _seconds_function(source: Any, steady_ns: Callable[[], int]) -> Callable[[], float]:
     if source == _DEFAULT_TIME_SOURCE:
         return lambda: steady_ns() / 1e9
     now = getattr(source, "now", None)

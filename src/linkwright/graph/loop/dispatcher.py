@@ -36,10 +36,10 @@ class Entity(Part, ABC):
     """
 
     unblockable = False
-    """Whether its calls run none of the user's callbacks, so that no group needs to hold them back."""
+    """Whether the entity's calls run no callback of the user, so that they need not wait for a callback group."""
 
     postponed = 0
-    """How often an executor has let others run first; see ``Executor._postpone``."""
+    """How many times an executor has let other work run first; see ``Executor._postpone``."""
 
     def __init__(self, node: NodeHandle, callback_group: CallbackGroup | None = None) -> None:
         self.node = node
@@ -189,12 +189,12 @@ class LoopDispatcher:
         self._thread = threading.get_ident()
         self._ready: deque[Entity] = deque()
         self._is_scheduled = False
-        self._waking = False
+        self._is_wake_scheduled = False
         self._closed = False
         self.on_error: Callable[[Entity, Exception], None] = Entity.report
         """Handles the error of a callback; it is logged unless this is changed."""
         self._tasks: dict[asyncio.Task[None], NodeHandle] = {}
-        self._held: dict[CallbackGroup, _GroupState] = {}
+        self._group_states: dict[CallbackGroup, _GroupState] = {}
         timebase.attach(self)
 
     @property
@@ -213,8 +213,8 @@ class LoopDispatcher:
             return
         if threading.get_ident() == self._thread:
             self._schedule()
-        elif not self._waking:
-            self._waking = True
+        elif not self._is_wake_scheduled:
+            self._is_wake_scheduled = True
             self._call_threadsafe(self._wake)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
@@ -253,7 +253,7 @@ class LoopDispatcher:
         """Drop all work, and cancel running coroutines."""
         self._closed = True
         self._ready.clear()
-        self._held.clear()
+        self._group_states.clear()
         for task in tuple(self._tasks):
             task.cancel()
 
@@ -268,10 +268,10 @@ class LoopDispatcher:
         try:
             self._loop.call_soon_threadsafe(callback)
         except RuntimeError:  # the loop is closed
-            self._waking = False
+            self._is_wake_scheduled = False
 
     def _wake(self) -> None:
-        self._waking = False
+        self._is_wake_scheduled = False
         if self._ready and not self._is_scheduled:
             self._schedule()
 
@@ -292,47 +292,47 @@ class LoopDispatcher:
             self._loop.call_soon(self._run_turn)
 
     def _run_turn(self) -> None:
-        ready = self._ready
-        now = time.perf_counter
-        end = now() + _MAX_TURN_SECONDS
+        queue = self._ready
+        clock = time.perf_counter
+        end_s = clock() + _MAX_TURN_SECONDS
         try:
             for _ in range(_MAX_CALLS_PER_TURN):
-                if not ready:
+                if not queue:
                     break
-                entity = ready.popleft()
-                if entity.dispatcher is not self or (self._held and self._must_wait(entity)):
+                entity = queue.popleft()
+                if entity.dispatcher is not self or (self._group_states and self._must_wait(entity)):
                     continue
                 call = entity.take()
                 if call is None:
                     continue
                 try:
-                    outcome = call()
+                    result = call()
                 except Exception as error:  # noqa: BLE001  # one callback must not take other nodes with it
                     self.on_error(entity, error)
                 else:
-                    if outcome is not None and isinstance(outcome, CoroutineType):
-                        self._start(entity, outcome)
-                if now() > end:
+                    if result is not None and isinstance(result, CoroutineType):
+                        self._start(entity, result)
+                if clock() > end_s:
                     break
         finally:
             self._is_scheduled = False
-            if ready:
+            if queue:
                 self._schedule()
 
     # --- coroutines ----------------------------------------------------------------------------------------------
 
     def _must_wait(self, entity: Entity) -> bool:
         group = entity.callback_group
-        hold = self._held.get(group)
-        if hold is None or entity.unblockable or group.can_execute(entity):
+        state = self._group_states.get(group)
+        if state is None or entity.unblockable or group.can_execute(entity):
             return False
-        hold.waiting.append(entity)
+        state.waiting.append(entity)
         return True
 
     def _start(self, entity: Entity, coroutine: Coroutine[Any, Any, object]) -> None:
         group = entity.callback_group
         group.beginning_execution(entity)
-        self._held.setdefault(group, _GroupState()).coroutines += 1
+        self._group_states.setdefault(group, _GroupState()).coroutines += 1
         task = self._loop.create_task(self._run(entity, coroutine))
         self._tasks[task] = entity.node
 
@@ -351,15 +351,15 @@ class LoopDispatcher:
 
     def _release(self, group: CallbackGroup, entity: Entity) -> None:
         group.ending_execution(entity)
-        hold = self._held.get(group)
-        if hold is None:
+        state = self._group_states.get(group)
+        if state is None:
             return
-        hold.coroutines -= 1
-        waiting, hold.waiting = hold.waiting, []
-        if not hold.coroutines:
-            del self._held[group]
-        for waiter in waiting:
-            self.ready(waiter)
+        state.coroutines -= 1
+        waiting_entities, state.waiting = state.waiting, []
+        if not state.coroutines:
+            del self._group_states[group]
+        for waiting_entity in waiting_entities:
+            self.ready(waiting_entity)
 
 
 @dataclass(slots=True)

@@ -21,12 +21,12 @@ from typing import Any, Generic, Protocol, TypeVar
 from linkwright.graph.loop.node_handle import MutuallyExclusiveCallbackGroup
 
 STRICT = "strict_callback_groups"
-"""The parameter by which a node has responses wait for the callback group of their client, as in rclpy."""
+"""The parameter that makes responses wait for the callback group of their client, as in rclpy."""
 
 RUNNER = "callback_of"
-"""The name of the local variable by which a function that runs callbacks holds the entity that it runs one of."""
+"""The name of the local variable that holds the entity in a function that runs the entity's callback."""
 
-_OURS = str(Path(__file__).parents[2]) + os.sep
+_PACKAGE_FOLDER = str(Path(__file__).parents[2]) + os.sep
 _reported: set[tuple[CodeType, str]] = set()
 
 
@@ -58,19 +58,23 @@ def report_self_wait(future: WaitableFuture) -> None:
     if not isinstance(group, MutuallyExclusiveCallbackGroup) or group.can_execute(client):
         return  # no callback of the group is running
     frames = list(_frames(sys._getframe(1)))
-    running = next((frame for frame in frames if _running_entity(frame) is not None), None)
-    if running is None or _running_entity(running).callback_group is not group:
+    callback_frame = next((frame for frame in frames if _running_entity(frame) is not None), None)
+    if callback_frame is None or _running_entity(callback_frame).callback_group is not group:
         return
-    own = [frame for frame in frames[: frames.index(running)] if not frame.f_code.co_filename.startswith(_OURS)]
-    if not own:
+    user_frames = [
+        frame
+        for frame in frames[: frames.index(callback_frame)]
+        if not frame.f_code.co_filename.startswith(_PACKAGE_FOLDER)
+    ]
+    if not user_frames:
         return
-    call, callback = own[0], own[-1].f_code
-    place = f"{call.f_code.co_filename}:{call.f_lineno}"
-    if (callback, place) in _reported:
+    waiting_frame, callback = user_frames[0], user_frames[-1].f_code
+    location = f"{waiting_frame.f_code.co_filename}:{waiting_frame.f_lineno}"
+    if (callback, location) in _reported:
         return
-    _reported.add((callback, place))
+    _reported.add((callback, location))
     client.node.logger.error(
-        f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {place} for the "
+        f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {location} for the "
         f"{client.what}, which is in the same mutually exclusive callback group: on a robot it waits for ever. Give "
         "the client a callback group of its own and use a MultiThreadedExecutor, or continue in a done callback of "
         "call_async()"
@@ -130,7 +134,7 @@ class Future(Generic[T]):
         self._executor = executor
         self._lock = threading.Lock()
         self.source: Any = None
-        """The client whose server it waits for; None for any other future."""
+        """The client whose response the future waits for; None for any other future."""
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:
@@ -209,10 +213,10 @@ class Future(Generic[T]):
     def remove_done_callback(self, callback: Callable[[Any], object]) -> int:
         """Unregister a callback; return how many times the callback was registered."""
         with self._lock:
-            kept = [registered for registered in self._callbacks if registered != callback]
-            removed = len(self._callbacks) - len(kept)
-            self._callbacks = kept
-        return removed
+            remaining_callbacks = [registered for registered in self._callbacks if registered != callback]
+            removed_count = len(self._callbacks) - len(remaining_callbacks)
+            self._callbacks = remaining_callbacks
+        return removed_count
 
     def set_executor(self, executor: Any) -> None:
         """Set the executor that runs the done callbacks."""
@@ -284,11 +288,11 @@ class Future(Generic[T]):
         return self.result()
 
     def _wait_on(self, loop: asyncio.AbstractEventLoop) -> Generator[Any, None, None]:
-        ready = loop.create_future()
+        completion = loop.create_future()
 
         def set_ready() -> None:
-            if not ready.done():
-                ready.set_result(None)
+            if not completion.done():
+                completion.set_result(None)
 
         def wake() -> None:
             with suppress(RuntimeError):  # the loop is closed
@@ -296,7 +300,7 @@ class Future(Generic[T]):
 
         self.add_waiter(wake)
         try:
-            yield from ready.__await__()
+            yield from completion.__await__()
         finally:
             self.remove_waiter(wake)
 

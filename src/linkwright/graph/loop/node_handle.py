@@ -82,7 +82,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def __init__(self) -> None:
         super().__init__()
         self._active: Any = None
-        self._turn = [None]  # a token: the thread that pops it may run; faster than a lock
+        self._tokens = [None]  # a token: the thread that pops it may run; faster than a lock
 
     def can_execute(self, entity: Any) -> bool:
         """Return whether no member is running."""
@@ -91,7 +91,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def beginning_execution(self, entity: Any) -> bool:
         """Let a member run if no other member is running; return whether it may run."""
         try:
-            self._turn.pop()
+            self._tokens.pop()
         except IndexError:
             return False
         self._active = entity
@@ -101,7 +101,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         """Let the next member run."""
         if self._active is entity:
             self._active = None
-            self._turn.append(None)
+            self._tokens.append(None)
 
 
 class _FreeGroup(ReentrantCallbackGroup):
@@ -112,7 +112,7 @@ class _FreeGroup(ReentrantCallbackGroup):
 
 
 FREE_GROUP: CallbackGroup = _FreeGroup()
-"""For work that belongs to no group in rclpy: the execution of an action's goals."""
+"""The group of work that belongs to no group in rclpy, such as the execution of an action's goals."""
 
 
 class Handle:
@@ -124,7 +124,7 @@ class Handle:
 
     def __init__(self, is_destroyed: Callable[[], bool]) -> None:
         self._is_destroyed = is_destroyed
-        self._users = 0
+        self._use_count = 0
 
     @property
     def pointer(self) -> int:
@@ -132,13 +132,13 @@ class Handle:
         return id(self)
 
     def __enter__(self) -> Self:
-        if not self._users and self._is_destroyed():
+        if not self._use_count and self._is_destroyed():
             raise InvalidHandleError
-        self._users += 1
+        self._use_count += 1
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._users -= 1
+        self._use_count -= 1
 
 
 class HasHandle:
@@ -154,11 +154,11 @@ class HasHandle:
 
         Entering the handle raises InvalidHandleError if the object was destroyed.
         """
-        found = _handles.get(self)
-        if found is None:
+        handle = _handles.get(self)
+        if handle is None:
             owner = weakref.ref(self)
-            found = _handles[self] = Handle(lambda: getattr(owner(), "destroyed", True))
-        return found
+            handle = _handles[self] = Handle(lambda: getattr(owner(), "destroyed", True))
+        return handle
 
 
 _handles: weakref.WeakKeyDictionary[HasHandle, Handle] = weakref.WeakKeyDictionary()
@@ -199,7 +199,7 @@ class HomeGraph(Protocol):
     def notify_change(self) -> None:
         """Wake the threads blocked in `wait_until`, which check their conditions again."""
 
-    def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
+    def wait_until(self, condition: Callable[[], bool], timeout_sec: float | None = None) -> bool:
         """Block the calling thread until a condition of the graph holds; return whether it holds."""
 
     def watch_lost(self) -> None:
@@ -218,7 +218,7 @@ class Part(HasHandle):
     destroyed = False
 
     goes_last = False
-    """Whether it outlives the other parts of a node that is destroyed, which may use it."""
+    """Whether the part is removed after the other parts when its node is destroyed, because they may use it."""
 
     def begin(self) -> None:
         """Start operating. Called after the node has added the part."""

@@ -34,8 +34,8 @@ class TimerInfo:
         actual_call_time: Time | int = 0,
         clock_type: ClockType = ClockType.SYSTEM_TIME,
     ) -> None:
-        def point(when: Time | int) -> Time:
-            return when if isinstance(when, Time) else Time(nanoseconds=when, clock_type=clock_type)
+        def point(value: Time | int) -> Time:
+            return value if isinstance(value, Time) else Time(nanoseconds=value, clock_type=clock_type)
 
         object.__setattr__(self, "expected_call_time", point(expected_call_time))
         object.__setattr__(self, "actual_call_time", point(actual_call_time))
@@ -80,7 +80,7 @@ class Timer(Entity):
         self._running = autostart
         self._last_ns = clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
-        self._rest_ns = 0
+        self._remaining_ns = 0
         clock.add_timer(self)
 
     @property
@@ -136,8 +136,7 @@ class Timer(Entity):
         self._last_ns = self.clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
         # An alarm that fires too early sets itself again, so a timer that is reset with each message does not need a
-        # new alarm
-        # each time.
+        # new alarm each time.
         if self._alarm is None or self._alarm_ns > self._due_ns:
             self._disarm_alarm()
             self._arm()
@@ -195,20 +194,20 @@ class Timer(Entity):
         callback = self._callback
         if callback is None or not self._wants_info:
             return callback
-        kind = self.clock.clock_type
+        clock_type = self.clock.clock_type
         return partial(
             callback,
-            TimerInfo(expected_call_time=expected_ns, actual_call_time=now_ns, clock_type=kind),
+            TimerInfo(expected_call_time=expected_ns, actual_call_time=now_ns, clock_type=clock_type),
         )
 
     def before_switch(self) -> None:
         """Save the remaining time to the next call before the clock changes its time source."""
-        self._rest_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
+        self._remaining_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
         self._disarm_alarm()
 
     def after_switch(self) -> None:
         """Continue with the remaining time after the clock has changed its time source."""
-        self._due_ns = self.clock.timer_ns() + self._rest_ns
+        self._due_ns = self.clock.timer_ns() + self._remaining_ns
         self._last_ns = self._due_ns - self._period_ns
         if self._running and not self._due:
             self._arm()
@@ -271,8 +270,8 @@ class Rate:
     def __init__(self, timer: Timer) -> None:
         self.timer = timer
         self._next: Future[None] = Future()
-        self._ended = False
-        timer.callback = self._beat
+        self._is_ended = False
+        timer.callback = self._tick
         timer.node.add_cleanup(self.wake)
 
     def sleep(self) -> None:
@@ -281,9 +280,9 @@ class Rate:
         Raises:
             InterruptedWaitError: the rate's node was destroyed, or its graph closed.
         """
-        beat = self._begin()
-        beat.wait()
-        self._end()
+        tick = self._begin()
+        tick.wait()
+        self._check_not_ended()
 
     async def wait(self) -> None:
         """Wait for the next tick in a coroutine.
@@ -292,12 +291,12 @@ class Rate:
             InterruptedWaitError: the rate's node was destroyed, or its graph closed.
         """
         await self._begin()
-        self._end()
+        self._check_not_ended()
 
     def wake(self) -> None:
         """End all current and future sleeps on this rate."""
-        self._ended = True
-        self._beat()
+        self._is_ended = True
+        self._tick()
 
     def destroy(self) -> bool:
         """Destroy the rate, and wake the threads that sleep on it.
@@ -309,16 +308,16 @@ class Rate:
         return self.timer.node.remove(self.timer)
 
     def _begin(self) -> Future[None]:
-        if self._ended or self.timer.destroyed:
+        if self._is_ended or self.timer.destroyed:
             raise InterruptedWaitError
         if self.timer.is_canceled():
             self.timer.reset()
         return self._next
 
-    def _end(self) -> None:
-        if self._ended:
+    def _check_not_ended(self) -> None:
+        if self._is_ended:
             raise InterruptedWaitError
 
-    def _beat(self) -> None:
-        ended, self._next = self._next, Future()
-        ended.set_result(None)
+    def _tick(self) -> None:
+        tick, self._next = self._next, Future()
+        tick.set_result(None)

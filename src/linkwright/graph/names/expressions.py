@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from regex import Pattern
 
-_SECONDS = 0.5
-"""The time that a search may take; names and usual expressions take microseconds."""
+_TIME_LIMIT_S = 0.5
+"""The time limit of a search, in seconds. A usual expression takes microseconds on a name."""
 
-_LEAST = 0.001
-"""Seconds for each of many names, though the others took all the time."""
+_MIN_TIME_S = 0.001
+"""The minimum time for each name, in seconds, even if the search in earlier names took all of the time limit."""
 
-_MOST_CHARACTERS = 2000
+_MAX_CHARACTERS = 2000
 
 
 class ExpressionError(ValueError):
@@ -40,8 +40,8 @@ class Expression:
     def __init__(self, text: str) -> None:
         import regex  # few files have expressions
 
-        if len(text) > _MOST_CHARACTERS:
-            raise ExpressionError(f"it has {len(text)} characters, more than {_MOST_CHARACTERS}")
+        if len(text) > _MAX_CHARACTERS:
+            raise ExpressionError(f"it has {len(text)} characters, more than {_MAX_CHARACTERS}")
         try:
             self._pattern: Pattern[str] = regex.compile(text)
         except (regex.error, OverflowError, RecursionError) as error:
@@ -54,7 +54,7 @@ class Expression:
             TooCostlyError: the search takes too long.
         """
         try:
-            return self._pattern.fullmatch(text, timeout=_SECONDS) is not None
+            return self._pattern.fullmatch(text, timeout=_TIME_LIMIT_S) is not None
         except TimeoutError:
             raise TooCostlyError("it takes too long to find") from None
 
@@ -64,8 +64,12 @@ class Expression:
         Raises:
             TooCostlyError: the search takes too long in total.
         """
-        end = time.monotonic() + _SECONDS
+        deadline_s = time.monotonic() + _TIME_LIMIT_S
         try:
-            return {name for name in names if self._pattern.search(name, timeout=max(end - time.monotonic(), _LEAST))}
+            return {
+                name
+                for name in names
+                if self._pattern.search(name, timeout=max(deadline_s - time.monotonic(), _MIN_TIME_S))
+            }
         except TimeoutError:
             raise TooCostlyError("it takes too long to find") from None

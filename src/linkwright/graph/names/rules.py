@@ -82,8 +82,10 @@ def node_name_problem(name: str) -> Problem | None:
     """Return why a node name is not valid, and the index of the mistake; None if it is valid."""
     if not name:
         return phrase("node name must not be empty"), 0
-    if odd := re.search(r"[^A-Za-z0-9_]", name):
-        return phrase("node name must not contain characters other than alphanumerics or '_'"), odd.start()
+    if invalid_character := re.search(r"[^A-Za-z0-9_]", name):
+        return phrase(
+            "node name must not contain characters other than alphanumerics or '_'"
+        ), invalid_character.start()
     if name[0].isdigit():
         return phrase("node name must not start with a number"), 0
     if len(name) > _MAX_NODE_NAME_LENGTH:
@@ -113,10 +115,12 @@ def namespace_problem(namespace: str) -> Problem | None:
         return None
     if namespace.endswith("/"):
         return phrase("namespace must not end with a '/'"), len(namespace) - 1
-    if odd := re.search(r"[^A-Za-z0-9_/]", namespace):
-        return phrase("namespace must not contain characters other than alphanumerics, '_', or '/'"), odd.start()
-    if (at := namespace.find("//")) >= 0:
-        return phrase("namespace must not contain repeated '/'"), at + 1
+    if invalid_character := re.search(r"[^A-Za-z0-9_/]", namespace):
+        return phrase(
+            "namespace must not contain characters other than alphanumerics, '_', or '/'"
+        ), invalid_character.start()
+    if (index := namespace.find("//")) >= 0:
+        return phrase("namespace must not contain repeated '/'"), index + 1
     if digit := re.search(r"/\d", namespace):
         return phrase("namespace must not have a token that starts with a number"), digit.start() + 1
     if len(namespace) > _MAX_NAMESPACE_LENGTH:
@@ -152,7 +156,7 @@ def split(full_name: str) -> tuple[str, str]:
 
 def is_hidden(name: str) -> bool:
     """Return whether a name is hidden by default, because one of its parts starts with ``_``."""
-    return any(part.startswith("_") for part in name.split("/"))
+    return any(token.startswith("_") for token in name.split("/"))
 
 
 @lru_cache(maxsize=4096)
@@ -161,30 +165,30 @@ def topic_name_problem(name: str) -> Problem | None:
 
     Returns None if the name is valid.
     """
-    bare = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name) if "{" in name else name
+    plain_name = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name) if "{" in name else name
     if not name:
         return phrase("topic name must not be empty string"), 0
     if name.endswith("/"):
         return phrase("topic name must not end with a forward slash"), len(name) - 1
-    if odd := re.search(r"[^A-Za-z0-9_/~{}]", name):
+    if invalid_character := re.search(r"[^A-Za-z0-9_/~{}]", name):
         return phrase(
             "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"
-        ), odd.start()
-    if odd := re.search(r"[{}]", bare):
-        return phrase("topic name must not have unmatched (unbalanced) curly braces '{}'"), odd.start()
+        ), invalid_character.start()
+    if invalid_character := re.search(r"[{}]", plain_name):
+        return phrase("topic name must not have unmatched (unbalanced) curly braces '{}'"), invalid_character.start()
     if "~" in name[1:]:
         return phrase("topic name must not have tilde '~' unless it is the first character"), name.index("~", 1)
     if name.startswith("~") and name != "~" and name[1] != "/":
         return phrase("topic name must not have a tilde '~' that is not followed by a forward slash '/'"), 1
-    if odd := re.search(r"\{[^{}]*[^A-Za-z0-9_{}][^{}]*\}", name):
+    if invalid_character := re.search(r"\{[^{}]*[^A-Za-z0-9_{}][^{}]*\}", name):
         return (
             phrase("substitution name must not contain characters other than alphanumerics or '_'"),
-            odd.start(),
+            invalid_character.start(),
         )
-    if odd := re.search(r"(^|/)\d", bare):
-        return phrase("topic name token must not start with a number"), odd.end() - 1
-    if (at := name.find("//")) >= 0:
-        return phrase("topic name must not contain repeated '/'"), at + 1
+    if invalid_character := re.search(r"(^|/)\d", plain_name):
+        return phrase("topic name token must not start with a number"), invalid_character.end() - 1
+    if (index := name.find("//")) >= 0:
+        return phrase("topic name must not contain repeated '/'"), index + 1
     return None
 
 
@@ -219,17 +223,17 @@ def _expand(
     problem = topic_name_problem(name)
     if problem is not None:
         raise error(name, *problem)
-    expanded = _substituted(name, node_name, namespace, error) if "{" in name else name
-    if expanded.startswith("~"):
-        expanded = join(namespace, node_name) + expanded[1:]
-    elif not expanded.startswith("/"):
-        expanded = join(namespace, expanded)
-    if "//" in expanded:
+    full_name = _apply_substitutions(name, node_name, namespace, error) if "{" in name else name
+    if full_name.startswith("~"):
+        full_name = join(namespace, node_name) + full_name[1:]
+    elif not full_name.startswith("/"):
+        full_name = join(namespace, full_name)
+    if "//" in full_name:
         raise error(name, phrase("topic name must not contain repeated '/'"), name.find("{"))
-    return expanded
+    return full_name
 
 
-def _substituted(
+def _apply_substitutions(
     name: str, node_name: str, namespace: str, error: type[InvalidTopicNameError | InvalidServiceNameError]
 ) -> str:
     substitutions = {"node": node_name, "ns": namespace, "namespace": namespace}
@@ -274,13 +278,13 @@ class _Rule:
 
     Attributes:
         node: the only node that the rule applies to; None for all nodes.
-        kind: ``rostopic://`` or ``rosservice://`` for a rule for topics or services only; empty for both.
+        scheme: ``rostopic://`` or ``rosservice://`` for a rule for topics or services only; empty for both.
         source: the name to replace, as written.
         target: the new name, as written.
     """
 
     node: str | None
-    kind: str
+    scheme: str
     source: str
     target: str
 
@@ -322,7 +326,7 @@ class Remappings:
             InvalidTopicNameError: a side of a rule is not a valid topic name.
         """
         for rule in self._rules:
-            if rule.source.startswith("__") or rule.kind == _SERVICE or rule.node not in (None, node_name):
+            if rule.source.startswith("__") or rule.scheme == _SERVICE or rule.node not in (None, node_name):
                 continue
             if expand_topic_name(rule.source, node_name, namespace) == full_name:
                 return expand_topic_name(rule.target, node_name, namespace)
@@ -335,7 +339,7 @@ class Remappings:
             InvalidServiceNameError: a side of a rule is not a valid name.
         """
         for rule in self._rules:
-            if rule.source.startswith("__") or rule.kind == _TOPIC or rule.node not in (None, node_name):
+            if rule.source.startswith("__") or rule.scheme == _TOPIC or rule.node not in (None, node_name):
                 continue
             if expand_service_name(rule.source, node_name, namespace) == full_name:
                 return expand_service_name(rule.target, node_name, namespace)
@@ -344,13 +348,13 @@ class Remappings:
 
 def _parse_rule(source: str, target: str) -> _Rule:
     node = None
-    before, colon, rest = source.partition(":")
-    if colon and not rest.startswith("//"):
-        node, source = before, rest
-    kind = next((prefix for prefix in (_TOPIC, _SERVICE) if source.startswith(prefix)), "")
-    name = source[len(kind) :]
-    if kind and target.startswith(kind):
-        target = target[len(kind) :]
+    node_name, colon, remainder = source.partition(":")
+    if colon and not remainder.startswith("//"):
+        node, source = node_name, remainder
+    scheme = next((prefix for prefix in (_TOPIC, _SERVICE) if source.startswith(prefix)), "")
+    name = source[len(scheme) :]
+    if scheme and target.startswith(scheme):
+        target = target[len(scheme) :]
     if "*" in name:
         raise LinkwrightError(
             Diagnostic(
@@ -363,4 +367,4 @@ def _parse_rule(source: str, target: str) -> _Rule:
                 hint=phrase("write a rule for each name"),
             )
         )
-    return _Rule(node, kind, name, target)
+    return _Rule(node, scheme, name, target)

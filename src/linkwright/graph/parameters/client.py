@@ -22,7 +22,7 @@ _SERVICES = (
     "set_parameters",
     "set_parameters_atomically",
 )
-_LOOK_EVERY_SECONDS = 0.05
+_POLL_INTERVAL_S = 0.05
 
 Done = Callable[..., Any]
 
@@ -74,11 +74,11 @@ class AsyncParameterClient:
         Returns:
             Whether all services are available.
         """
-        end = None if timeout_sec is None else time.monotonic() + timeout_sec
+        deadline_s = None if timeout_sec is None else time.monotonic() + timeout_sec
         while not self.services_are_ready():
-            if end is not None and time.monotonic() >= end:
+            if deadline_s is not None and time.monotonic() >= deadline_s:
                 return False
-            time.sleep(_LOOK_EVERY_SECONDS)
+            time.sleep(_POLL_INTERVAL_S)
         return True
 
     def destroy(self) -> None:
@@ -91,27 +91,27 @@ class AsyncParameterClient:
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Done | None = None
     ) -> Future[Any]:
         """Request the names of parameters; see `NodeParameters.list_parameters`."""
-        return self._ask("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
+        return self._send_request("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
 
     def get_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
         """Request the values of parameters."""
-        return self._ask("get_parameters", callback, names=names)
+        return self._send_request("get_parameters", callback, names=names)
 
     def get_parameter_types(self, names: list[str], callback: Done | None = None) -> Future[Any]:
         """Request the types of parameters."""
-        return self._ask("get_parameter_types", callback, names=names)
+        return self._send_request("get_parameter_types", callback, names=names)
 
     def describe_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
         """Request the descriptors of parameters."""
-        return self._ask("describe_parameters", callback, names=names)
+        return self._send_request("describe_parameters", callback, names=names)
 
     def set_parameters(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Set parameters one by one. Each is a `Parameter` or a rcl_interfaces/msg/Parameter."""
-        return self._ask("set_parameters", callback, parameters=_messages(parameters))
+        """Set parameters one by one. Each is a `Parameter` or an rcl_interfaces/msg/Parameter."""
+        return self._send_request("set_parameters", callback, parameters=_messages(parameters))
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
         """Set either all of the given parameters or none."""
-        return self._ask("set_parameters_atomically", callback, parameters=_messages(parameters))
+        return self._send_request("set_parameters_atomically", callback, parameters=_messages(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
         """Undeclare parameters, whose descriptors must allow dynamic typing."""
@@ -137,7 +137,7 @@ class AsyncParameterClient:
         event_type = _message_type("ParameterEvent")
         return self.node.create_subscription(event_type, "/parameter_events", callback, qos_profile, **options)
 
-    def _ask(self, service: str, callback: Done | None, **fields: Any) -> Future[Any]:
+    def _send_request(self, service: str, callback: Done | None, **fields: Any) -> Future[Any]:
         client = self._clients[service]
         request = client.srv_type.Request()
         for name, value in fields.items():
@@ -164,7 +164,7 @@ def parameter_dict_from_yaml_file(
         RuntimeError: the file has no values for one of the nodes, or none at all (rclpy).
     """
     sections = dict(read_parameter_file(parameter_file))
-    chosen = [ANY_NODE] if use_wildcard and ANY_NODE in sections else []
+    patterns = [ANY_NODE] if use_wildcard and ANY_NODE in sections else []
     if target_nodes:
         for node in target_nodes:
             pattern = node if node.startswith("/") else f"/{node}"
@@ -172,12 +172,12 @@ def parameter_dict_from_yaml_file(
                 raise RuntimeError(
                     f"Param file does not contain parameters for {node},only for nodes: {list(sections)} "
                 )
-            chosen.append(pattern)
+            patterns.append(pattern)
     else:
-        chosen += [pattern for pattern in sections if pattern != ANY_NODE]
-    if not chosen:
+        patterns += [pattern for pattern in sections if pattern != ANY_NODE]
+    if not patterns:
         raise RuntimeError("Param file does not contain selected parameters")
-    values = {name: value for pattern in chosen for name, value in sections[pattern].items()}
+    values = {name: value for pattern in patterns for name, value in sections[pattern].items()}
     return {
         namespace + name: Parameter(namespace + name, value=value).to_parameter_msg() for name, value in values.items()
     }

@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """The handle of a callback for one parameter of one node, with which it can be removed."""
+    """The handle of a callback for one parameter of one node, with which the callback can be removed."""
 
     parameter_name: str
     node_name: str
@@ -74,14 +74,14 @@ class _Callbacks:
     def event_callback(self, event: Any) -> None:
         """Call the callbacks of the parameters in an event, then the callbacks for all events."""
         with self._lock:
-            of_parameters = [handle for handles in self.parameter_callbacks.values() for handle in handles]
-            of_events = list(self.event_callbacks)
-        for handle in of_parameters:
+            parameter_handles = [handle for handles in self.parameter_callbacks.values() for handle in handles]
+            event_handles = list(self.event_callbacks)
+        for handle in parameter_handles:
             parameter = ParameterEventHandler.get_parameter_from_event(event, handle.parameter_name, handle.node_name)
             if parameter is not None:
                 handle.callback(parameter)
-        for of_event in of_events:
-            of_event.callback(event)
+        for event_handle in event_handles:
+            event_handle.callback(event)
 
 
 def _remove(handle: H, handles: list[H]) -> None:
@@ -125,8 +125,8 @@ class ParameterEventHandler:
 
         Args:
             parameter_name: the name of the parameter.
-            node_name: the node that has the parameter: absolute, relative to our node's namespace, or empty for our
-                node.
+            node_name: the node that has the parameter: absolute, relative to the namespace of the handler's node, or
+                empty for the handler's node.
             callback: called with the rcl_interfaces/msg/Parameter whenever the parameter is set.
         """
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
@@ -172,7 +172,7 @@ class ParameterEventHandler:
         """Return the full name of a node.
 
         Args:
-            node_path: absolute, relative to our node's namespace, or empty for our node.
+            node_path: absolute, relative to the namespace of the handler's node, or empty for the handler's node.
         """
         if not node_path:
             return str(self.node.get_fully_qualified_name())

@@ -32,8 +32,11 @@ from linkwright.files.input_files import read_text
 from linkwright.graph.parameters.parameter import ParameterFileNotFoundError, ParameterRules
 
 PARAMETERS_KEY = "ros__parameters"
-_KINDS = {bool: "bool", int: "integer", float: "double", str: "string"}
-_FORM = phrase("it maps node names to '{parameters_key}', which maps names to values", parameters_key=PARAMETERS_KEY)
+_TYPE_NAMES = {bool: "bool", int: "integer", float: "double", str: "string"}
+_FORM_HINT = phrase(
+    ("write a mapping from node names to '{parameters_key}', and below it a mapping from parameter names to values"),
+    parameters_key=PARAMETERS_KEY,
+)
 
 
 def read_parameter_file(path: str | Path) -> ParameterRules:
@@ -48,8 +51,8 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
     try:
         text = read_text(path)
     except FileNotFoundError:
-        near = [str(file) for file in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
-        hint = did_you_mean(str(path), near)
+        candidates = [str(file) for file in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+        hint = did_you_mean(str(path), candidates)
         raise ParameterFileNotFoundError(
             Diagnostic("GRAPH211", phrase("parameter file '{shown}' does not exist", shown=shown), hint=hint)
         ) from None
@@ -100,7 +103,7 @@ class _Reader:
     def __init__(self, source: SourceText) -> None:
         self._source = source
         self._rules = ParameterRules()
-        self._events = self._parsed()
+        self._events = self._parse_events()
 
     def read(self) -> ParameterRules:
         self._advance()
@@ -109,7 +112,7 @@ class _Reader:
         if self._is_event("Scalar") and not self._event.value:
             return self._rules
         if not self._is_event("MappingStart"):
-            raise self._error(phrase("a parameter file must be a mapping"), _FORM)
+            raise self._error(phrase("a parameter file must be a mapping"), _FORM_HINT)
         self._read_names(())
         return self._rules
 
@@ -120,13 +123,13 @@ class _Reader:
         if self._is_event("MappingStart"):
             raise self._error(
                 phrase("the value of parameter '{name}' is a mapping", name=name),
-                phrase("set each entry as a parameter of its own, such as gains.p"),
+                phrase("set each entry as a separate parameter, such as gains.p"),
             )
         if self._is_event("SequenceStart"):
             return self._read_list(name)
         return self._read_scalar(name)
 
-    def _parsed(self) -> Iterator[Any]:
+    def _parse_events(self) -> Iterator[Any]:
         import yaml
 
         try:
@@ -134,7 +137,7 @@ class _Reader:
                 if not isinstance(event, (yaml.StreamStartEvent, yaml.DocumentStartEvent, yaml.DocumentEndEvent)):
                     yield event
         except yaml.YAMLError as error:
-            raise self._not_yaml(error) from error
+            raise self._not_yaml_error(error) from error
 
     def _advance(self) -> None:
         self._event = next(self._events)
@@ -146,7 +149,7 @@ class _Reader:
     def _is_event(self, kind: str) -> bool:
         return type(self._event).__name__ == f"{kind}Event"
 
-    def _read_names(self, above: tuple[str, ...]) -> None:
+    def _read_names(self, parents: tuple[str, ...]) -> None:
         """Read a mapping of namespaces, node names and ``ros__parameters``.
 
         The current event is the start of the mapping.
@@ -155,12 +158,12 @@ class _Reader:
         while not self._is_event("MappingEnd"):
             key = self._read_key()
             if key == PARAMETERS_KEY:
-                if not above:
+                if not parents:
                     raise self._error(
                         phrase("there is no node name above '{parameters_key}'", parameters_key=PARAMETERS_KEY),
-                        _FORM,
+                        _FORM_HINT,
                     )
-                pattern = "/" + "/".join(above)
+                pattern = "/" + "/".join(parents)
                 self._rules.section(pattern)
                 self._advance()
                 if self._is_event("MappingStart"):
@@ -170,15 +173,19 @@ class _Reader:
                         phrase("'{parameters_key}' must be a mapping of names to values", parameters_key=PARAMETERS_KEY)
                     )
             else:
-                parts = tuple(part for part in key.split("/") if part)
-                self._check_names(key, parts)
+                tokens = tuple(part for part in key.split("/") if part)
+                self._check_names(key, tokens)
                 self._advance()
                 if not self._is_event("MappingStart"):
                     raise self._error(
-                        phrase("'{key}' has a value before '{parameters_key}'", key=key, parameters_key=PARAMETERS_KEY),
-                        did_you_mean(key, [PARAMETERS_KEY]) or _FORM,
+                        phrase(
+                            ("'{key}' has a value, but only parameters below '{parameters_key}' can have values"),
+                            key=key,
+                            parameters_key=PARAMETERS_KEY,
+                        ),
+                        did_you_mean(key, [PARAMETERS_KEY]) or _FORM_HINT,
                     )
-                self._read_names((*above, *parts))
+                self._read_names((*parents, *tokens))
             self._advance()
 
     def _read_parameters(self, prefix: str, pattern: str) -> None:
@@ -204,7 +211,7 @@ class _Reader:
             self._rules.set(pattern, name, self._read_list(name))
         except _NestedListError as error:
             (finding,) = error.diagnostics
-            note = Note(phrase("the parameter is left out"))
+            note = Note(phrase("the parameter is ignored"))
             warning = finding.with_changes(severity=Severity.WARNING, notes=(note,))
             self._rules.left_out.append((pattern, warning))
             self._skip_rest_of_list()
@@ -219,7 +226,7 @@ class _Reader:
 
     def _read_key(self) -> str:
         if not self._is_event("Scalar"):
-            raise self._error(phrase("a name must be a word, not a list or a mapping"))
+            raise self._error(phrase("a name must be text, not a list or a mapping"))
         key = str(self._event.value)
         if not key:
             raise self._error(phrase("a name must not be empty"))
@@ -227,12 +234,12 @@ class _Reader:
 
     def _read_scalar(self, name: str) -> Any:
         event = self._event
-        plain = event.style not in ("'", '"') and event.tag != "tag:yaml.org,2002:str"
-        if plain and not event.value:
+        is_plain = event.style not in ("'", '"') and event.tag != "tag:yaml.org,2002:str"
+        if is_plain and not event.value:
             raise self._error(
                 phrase("parameter '{name}' has no value", name=name), phrase('write "" for an empty string')
             )
-        return scalar_value(event.value, plain=plain)
+        return scalar_value(event.value, plain=is_plain)
 
     def _read_list(self, name: str) -> list[Any]:
         values: list[Any] = []
@@ -248,29 +255,29 @@ class _Reader:
                 raise _NestedListError(*error.diagnostics)
             value = self._read_scalar(name)
             if values and type(value) is not type(values[0]):
-                first, other = _KINDS[type(values[0])], _KINDS[type(value)]
+                first_type, other_type = _TYPE_NAMES[type(values[0])], _TYPE_NAMES[type(value)]
                 raise self._error(
                     phrase(
                         "the list of parameter '{name}' begins with a value of type {first} but contains one of type "
                         "{other}",
                         name=name,
-                        first=first,
-                        other=other,
+                        first=first_type,
+                        other=other_type,
                     ),
-                    _uniform_hint(values[0], value, self._event.value),
+                    _type_hint(values[0], value, self._event.value),
                 )
             values.append(value)
             self._advance()
         return values
 
-    def _check_names(self, key: str, parts: tuple[str, ...]) -> None:
-        for part in parts:
-            if part not in ("*", "**") and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", part):
+    def _check_names(self, key: str, tokens: tuple[str, ...]) -> None:
+        for token in tokens:
+            if token not in ("*", "**") and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", token):
                 raise self._error(
                     phrase("'{key}' is not a node name", key=key),
                     phrase("use letters, digits and '_', and do not begin with a digit; * and ** match any name"),
                 )
-        if not parts:
+        if not tokens:
             raise self._error(phrase("'{key}' is not a node name", key=key), phrase("write /** for all nodes"))
 
     def _error(self, message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
@@ -282,7 +289,7 @@ class _Reader:
         span = source.span(source.offset(line + 1, column + 1))
         return LinkwrightError(Diagnostic("GRAPH212", message, span, hint=hint, source=source))
 
-    def _not_yaml(self, error: Exception) -> LinkwrightError:
+    def _not_yaml_error(self, error: Exception) -> LinkwrightError:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or str(error)
         if mark is None:
@@ -304,7 +311,7 @@ def _loader_class() -> Any:
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def _uniform_hint(first: Any, value: Any, text: str) -> Phrase:
+def _type_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is float and type(value) is int:
         return phrase("write {text}.0", text=text)
     if type(first) is int and type(value) is float:
@@ -321,13 +328,13 @@ _FLOAT = re.compile(
     r"\s*[+-]?([0-9]+\.?[0-9]*([eE][+-]?[0-9]+)?|\.[0-9]+([eE][+-]?[0-9]+)?|inf(inity)?|nan)", re.IGNORECASE
 )
 _HEXADECIMAL_FLOAT = re.compile(r"\s*[+-]?0x[0-9a-f]*\.?[0-9a-f]*(p[+-]?[0-9]+)?", re.IGNORECASE)
-_SPECIAL = {
+_SPECIAL_FLOATS = {
     f"{sign}.{word}": f"{sign}{word}"
     for sign in ("", "+", "-")
     for word in ("inf", "Inf", "INF", "nan", "NaN", "NAN")
     if not (sign and word.lower() == "nan")
 }
-_MIN, _MAX = -(2**63), 2**63 - 1
+_MIN_INTEGER, _MAX_INTEGER = -(2**63), 2**63 - 1
 
 
 def scalar_value(text: str, *, plain: bool) -> Any:
@@ -349,10 +356,10 @@ def scalar_value(text: str, *, plain: bool) -> Any:
         return False
     if _INTEGER.fullmatch(text):
         number = _integer(text.strip())
-        if _MIN <= number <= _MAX:
+        if _MIN_INTEGER <= number <= _MAX_INTEGER:
             return number
-    if text in _SPECIAL or _FLOAT.fullmatch(text):
-        return float(_SPECIAL.get(text, text))
+    if text in _SPECIAL_FLOATS or _FLOAT.fullmatch(text):
+        return float(_SPECIAL_FLOATS.get(text, text))
     if _HEXADECIMAL_FLOAT.fullmatch(text) and any(character.isdigit() for character in text):
         return _parse_hexadecimal_float(text)
     return text
@@ -393,8 +400,12 @@ def plain_value(value: Any) -> Any:
     """
     from linkwright.graph.parameters.parameter import parameter_value_to_python
 
-    found = parameter_value_to_python(value)
-    return found if found is None or isinstance(found, (bool, int, float, str)) else list(found)
+    python_value = parameter_value_to_python(value)
+    return (
+        python_value
+        if python_value is None or isinstance(python_value, (bool, int, float, str))
+        else list(python_value)
+    )
 
 
 def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
@@ -402,10 +413,10 @@ def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
 
     If a part already has a value that is not a mapping, the rest of the name stays dotted.
     """
-    for at, part in enumerate(path[:-1]):
-        below = tree.setdefault(part, {})
-        if not isinstance(below, dict):
-            tree[".".join(path[at:])] = value
+    for index, key in enumerate(path[:-1]):
+        subtree = tree.setdefault(key, {})
+        if not isinstance(subtree, dict):
+            tree[".".join(path[index:])] = value
             return
-        tree = below
+        tree = subtree
     tree[path[-1]] = value

@@ -62,9 +62,9 @@ class NodeParameters:
             InvalidParameterValueException: a callback or the descriptor refuses the value.
         """
         declaration = (name,) if value is None and descriptor is None else (name, value, descriptor)
-        name, value, descriptor, only_name = _checked(0, declaration)
+        name, value, descriptor, only_name = _check_declaration(0, declaration)
         return self.__parameters.declare(
-            name, _plain(value), descriptor, only_name=only_name, ignore_override=ignore_override
+            name, _to_python_value(value), descriptor, only_name=only_name, ignore_override=ignore_override
         )
 
     def declare_parameters(
@@ -88,18 +88,18 @@ class NodeParameters:
             ParameterException: as for `declare_parameter`. Parameters that were declared before the error stay
                 declared.
         """
-        checked = [_checked(index, declaration) for index, declaration in enumerate(parameters)]
-        names = [f"{namespace}.{name}" if namespace else name for name, *_ in checked]
-        known = [name for name in names if name in self.__parameters]
-        if known:
-            raise ParameterAlreadyDeclaredException(known)
-        made = {
+        declarations = [_check_declaration(index, declaration) for index, declaration in enumerate(parameters)]
+        names = [f"{namespace}.{name}" if namespace else name for name, *_ in declarations]
+        declared_names = [name for name in names if name in self.__parameters]
+        if declared_names:
+            raise ParameterAlreadyDeclaredException(declared_names)
+        parameters_by_name = {
             name: self.__parameters.declare(
-                name, _plain(value), descriptor, only_name=only_name, ignore_override=ignore_override
+                name, _to_python_value(value), descriptor, only_name=only_name, ignore_override=ignore_override
             )
-            for name, (_, value, descriptor, only_name) in dict(zip(names, checked, strict=True)).items()
+            for name, (_, value, descriptor, only_name) in dict(zip(names, declarations, strict=True)).items()
         }
-        return [made[name] for name in names]
+        return [parameters_by_name[name] for name in names]
 
     def declare_parameters_from_overrides(self) -> None:
         """Declare a parameter for every override that is not declared yet, with the override's type."""
@@ -168,9 +168,9 @@ class NodeParameters:
 
         Without an alternative, the result is a parameter without a value.
         """
-        found = self.__parameters.value_or_none(name)
-        if found is not None:
-            return found
+        parameter = self.__parameters.value_or_none(name)
+        if parameter is not None:
+            return parameter
         return Parameter(name) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
@@ -232,10 +232,10 @@ class NodeParameters:
         from linkwright.graph.parameters.parameter import interface
 
         names = [name for name in self.__parameters.names() if _is_listed(name, prefixes, depth)]
-        found = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
+        name_prefixes = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
         result = interface("ListParametersResult")()
         result.names = names
-        result.prefixes = [prefix for prefix in dict.fromkeys(found) if prefix]
+        result.prefixes = [prefix for prefix in dict.fromkeys(name_prefixes) if prefix]
         return result
 
     def describe_parameter(self, name: str) -> Any:
@@ -273,7 +273,7 @@ class NodeParameters:
             ParameterImmutableException: the parameter is read-only.
             InvalidParameterValueException: neither value satisfies the descriptor.
         """
-        parameter = self.__parameters.set_descriptor(name, descriptor, _plain(alternative_value))
+        parameter = self.__parameters.set_descriptor(name, descriptor, _to_python_value(alternative_value))
         return (Parameter(name) if parameter is None else parameter).get_parameter_value()
 
     def add_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
@@ -319,21 +319,21 @@ class NodeParameters:
         self.__parameters.post_set.remove(callback)
 
 
-def _plain(value: Any) -> Any:
+def _to_python_value(value: Any) -> Any:
     """Return a default, converted to a Python value if it is an rcl_interfaces ParameterValue."""
     if getattr(value, "TYPE_NAME", None) == "rcl_interfaces/msg/ParameterValue":
         return parameter_value_to_python(value)
     return value
 
 
-def _checked(index: int, declaration: Any) -> tuple[str, Any, Any, bool]:
+def _check_declaration(index: int, declaration: Any) -> tuple[str, Any, Any, bool]:
     if not 1 <= len(declaration) <= 3:
         raise TypeError(
             f"Invalid parameter tuple length at index {index} in parameters list: {declaration}; "
             "expecting length between 1 and 3"
         )
-    words = [*declaration, None, None]
-    name, value, descriptor = words[:3]
+    elements = [*declaration, None, None]
+    name, value, descriptor = elements[:3]
     if not isinstance(name, str):
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
     if descriptor is None:
@@ -349,8 +349,8 @@ def _check_names(names: Sequence[str]) -> None:
 
 
 def _is_listed(name: str, prefixes: Sequence[str], depth: int) -> bool:
-    def near(rest: str) -> bool:
-        return depth == 0 or rest.count(PARAMETER_SEPARATOR_STRING) < depth
+    def near(relative_name: str) -> bool:
+        return depth == 0 or relative_name.count(PARAMETER_SEPARATOR_STRING) < depth
 
     if not prefixes:
         return near(name)
@@ -414,14 +414,14 @@ class ParameterServices:
         return response
 
     def _set(self, request: Any, response: Any) -> Any:
-        response.results = [self._set_together([parameter]) for parameter in request.parameters]
+        response.results = [self._set_from_messages([parameter]) for parameter in request.parameters]
         return response
 
     def _set_atomically(self, request: Any, response: Any) -> Any:
-        response.result = self._set_together(request.parameters)
+        response.result = self._set_from_messages(request.parameters)
         return response
 
-    def _set_together(self, messages: Any) -> Any:
+    def _set_from_messages(self, messages: Any) -> Any:
         try:
             return self._node.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in messages])
         except (ParameterException, ValueError) as error:

@@ -77,11 +77,11 @@ class ParameterRules:
         Args:
             full_name: the node's namespace and name, such as ``/robot/talker``.
         """
-        found: dict[str, Any] = {}
+        node_values: dict[str, Any] = {}
         for pattern, values in self._values.items():
             if _expression(pattern).fullmatch(full_name):
-                found.update(values)
-        return found
+                node_values.update(values)
+        return node_values
 
     def left_out_for(self, full_name: str) -> list[Diagnostic]:
         """Return the findings about parameters that were left out for a node."""
@@ -119,12 +119,12 @@ class ParameterNotDeclaredException(ParameterException):
 
     Args:
         parameters: the name of the parameter, or several names.
-        declared: the declared names, for the hint.
+        declared_names: the declared names, for the hint.
     """
 
-    def __init__(self, parameters: str | list[str], declared: Iterable[str] = ()) -> None:
-        first = parameters if isinstance(parameters, str) else next(iter(parameters), "")
-        hint = did_you_mean(first, declared)
+    def __init__(self, parameters: str | list[str], declared_names: Iterable[str] = ()) -> None:
+        first_name = parameters if isinstance(parameters, str) else next(iter(parameters), "")
+        hint = did_you_mean(first_name, declared_names)
         super().__init__(phrase("Invalid access to undeclared parameter(s)"), parameters, code="GRAPH202", hint=hint)
 
 
@@ -152,15 +152,15 @@ class InvalidParameterTypeException(ParameterException):
 
     def __init__(self, desired_parameter: Parameter, expected_type: object) -> None:
         name, value = desired_parameter.name, desired_parameter.value
-        expected = getattr(expected_type, "name", expected_type)
-        hint = phrase("write {value}.0", value=value) if expected == "DOUBLE" and type(value) is int else None
+        expected_name = getattr(expected_type, "name", expected_type)
+        hint = phrase("write {value}.0", value=value) if expected_name == "DOUBLE" and type(value) is int else None
         super().__init__(
             phrase(
                 "Trying to set parameter '{name}' to '{value}' of type '{type_name}', expecting type '{expected}'",
                 name=name,
                 value=value,
                 type_name=desired_parameter.type_.name,
-                expected=expected,
+                expected=expected_name,
             ),
             name,
             code="GRAPH201",
@@ -237,9 +237,9 @@ class ParameterType(Enum):
         """
         if parameter_value is None:
             return cls.NOT_SET
-        for kind, classes in _SCALARS:
+        for parameter_type, classes in _SCALARS:
             if isinstance(parameter_value, classes):
-                return kind
+                return parameter_type
         if not isinstance(parameter_value, (list, tuple, array.array)):
             raise TypeError(
                 phrase(
@@ -247,9 +247,9 @@ class ParameterType(Enum):
                     parameter_value=parameter_value,
                 )
             )
-        for kind, element in _ARRAYS:
+        for parameter_type, element in _ARRAYS:
             if all(isinstance(value, element) for value in parameter_value):
-                return kind
+                return parameter_type
         raise TypeError(
             phrase(
                 "The given value is not a list of one of the allowed types '{parameter_value}'.",
@@ -264,11 +264,11 @@ class ParameterType(Enum):
         """
         if self is ParameterType.NOT_SET:
             return parameter_value is None
-        for kind, classes in _SCALARS:
-            if self is kind and isinstance(parameter_value, classes):
+        for parameter_type, classes in _SCALARS:
+            if self is parameter_type and isinstance(parameter_value, classes):
                 return True
-        for kind, element in _ARRAYS:
-            if self is kind and isinstance(parameter_value, (list, tuple, array.array)):
+        for parameter_type, element in _ARRAYS:
+            if self is parameter_type and isinstance(parameter_value, (list, tuple, array.array)):
                 return all(isinstance(value, element) for value in parameter_value)
         return False
 
@@ -278,7 +278,7 @@ class ParameterType(Enum):
         return self.value >= ParameterType.BYTE_ARRAY.value
 
     def __str__(self) -> str:
-        # This text of rclpy's nested class appears in the reasons of refusals.
+        # rclpy's nested class has this text, which appears in the reasons of refusals.
         return f"Type.{self.name}"
 
 
@@ -506,16 +506,16 @@ def to_descriptor_message(descriptor: Any) -> Any:
     return message
 
 
-def to_result_message(verdict: Any) -> Any:
+def to_result_message(result: Any) -> Any:
     """Convert a result to an rcl_interfaces/msg/SetParametersResult.
 
     A result that is already such a message is returned unchanged.
     """
     message_class = interface("SetParametersResult")
-    if isinstance(verdict, message_class):
-        return verdict
-    return message_class(successful=verdict.successful, reason=verdict.reason)
+    if isinstance(result, message_class):
+        return result
+    return message_class(successful=result.successful, reason=result.reason)
 
 
-def _range(name: str, given: Range, kind: type) -> Any:
-    return interface(name)(from_value=kind(given.from_value), to_value=kind(given.to_value), step=kind(given.step))
+def _range(name: str, limits: Range, kind: type) -> Any:
+    return interface(name)(from_value=kind(limits.from_value), to_value=kind(limits.to_value), step=kind(limits.step))

@@ -91,21 +91,21 @@ def override_qos(
         return qos
     suffix = "" if options.entity_id is None else f"_{options.entity_id}"
     profile = copy(qos)
-    for kind in options.policy_kinds:
-        if entity == "subscription" and kind is QoSPolicyKind.LIFESPAN:
+    for policy_kind in options.policy_kinds:
+        if entity == "subscription" and policy_kind is QoSPolicyKind.LIFESPAN:
             continue
-        policy = kind.name.lower()
-        name = f"qos_overrides.{topic}.{entity}{suffix}.{policy}"
+        policy_name = policy_kind.name.lower()
+        name = f"qos_overrides.{topic}.{entity}{suffix}.{policy_name}"
         if node.has_parameter(name):
             value = node.get_parameter(name).value
         else:
-            description = f"{policy} for {entity} `{topic}` with id `{options.entity_id}`"
+            description = f"{policy_name} for {entity} `{topic}` with id `{options.entity_id}`"
             descriptor = ParameterDescriptor(description=description, read_only=True)
-            value = node.declare_parameter(name, _to_parameter(profile, kind), descriptor).value
-        setattr(profile, policy, _from_parameter(kind, value, name))
-    verdict = True if options.callback is None else options.callback(profile)
-    if not getattr(verdict, "successful", verdict):
-        reason = getattr(verdict, "reason", "")
+            value = node.declare_parameter(name, _to_parameter(profile, policy_kind), descriptor).value
+        setattr(profile, policy_name, _from_parameter(policy_kind, value, name))
+    result = True if options.callback is None else options.callback(profile)
+    if not getattr(result, "successful", result):
+        reason = getattr(result, "reason", "")
         message = phrase(
             "Provided QoS overrides for {entity} `{topic}` with id `{entity_id}`, are not valid",
             entity=entity,
@@ -126,13 +126,13 @@ def _to_parameter(profile: QoSProfile, kind: QoSPolicyKind) -> Any:
 def _from_parameter(kind: QoSPolicyKind, value: Any, name: str) -> Any:
     if kind in _DURATIONS:
         return Duration(nanoseconds=value)
-    policy = _POLICIES.get(kind)
-    if policy is None:
+    policy_class = _POLICIES.get(kind)
+    if policy_class is None:
         return value
     try:
-        return policy[str(value).upper()]
+        return policy_class[str(value).upper()]
     except KeyError:
-        known = [value.name.lower() for value in policy]
+        value_names = [value.name.lower() for value in policy_class]
         raise InvalidQosOverridesError(
             phrase(
                 "Unexpected QoS override for policy `{name}`: `{value}` (parameter '{other_name}')",
@@ -140,5 +140,5 @@ def _from_parameter(kind: QoSPolicyKind, value: Any, name: str) -> Any:
                 value=value,
                 other_name=name,
             ),
-            did_you_mean(str(value).lower(), known) or phrase("choose from {names}", names=joined(known)),
+            did_you_mean(str(value).lower(), value_names) or phrase("choose from {names}", names=joined(value_names)),
         ) from None

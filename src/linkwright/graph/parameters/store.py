@@ -25,10 +25,10 @@ from linkwright.graph.parameters.parameter import (
 )
 
 _RELATIVE_TOLERANCE = 1e-6
-"""How near floating point values must be to count as equal (rclpy ``Node.PARAM_REL_TOL``)."""
+"""The relative tolerance within which floating-point values count as equal (rclpy ``Node.PARAM_REL_TOL``)."""
 
 WRONG_TYPE = "Wrong parameter type"
-"""How a reason begins that is about the type."""
+"""The beginning of every reason that concerns the type of a value."""
 
 
 def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_read_only: bool) -> str | None:
@@ -58,14 +58,14 @@ def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_re
             given=str(parameter.type_),
         )
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
-        return _integer_objection(parameter, descriptor.integer_range[0])
+        return _integer_range_problem(parameter, descriptor.integer_range[0])
     if parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:
-        return _floating_point_objection(parameter, descriptor.floating_point_range[0])
+        return _floating_point_range_problem(parameter, descriptor.floating_point_range[0])
     return None
 
 
-def _integer_objection(parameter: Parameter, allowed: Any) -> str | None:
-    low, high = sorted((allowed.from_value, allowed.to_value))
+def _integer_range_problem(parameter: Parameter, allowed_range: Any) -> str | None:
+    low, high = sorted((allowed_range.from_value, allowed_range.to_value))
     value = parameter.value
     if value in (low, high):
         return None
@@ -77,20 +77,20 @@ def _integer_objection(parameter: Parameter, allowed: Any) -> str | None:
             high=high,
             value=value,
         )
-    if allowed.step != 0 and (value - low) % allowed.step != 0:
+    if allowed_range.step != 0 and (value - low) % allowed_range.step != 0:
         return phrase(
             "The parameter value for {name} is not a valid step. Min: {low}, max: {high}, value: {value}, step: {step}",
             name=parameter.name,
             low=low,
             high=high,
             value=value,
-            step=allowed.step,
+            step=allowed_range.step,
         )
     return None
 
 
-def _floating_point_objection(parameter: Parameter, allowed: Any) -> str | None:
-    low, high = sorted((allowed.from_value, allowed.to_value))
+def _floating_point_range_problem(parameter: Parameter, allowed_range: Any) -> str | None:
+    low, high = sorted((allowed_range.from_value, allowed_range.to_value))
     value = parameter.value
     if isclose(value, low, rel_tol=_RELATIVE_TOLERANCE) or isclose(value, high, rel_tol=_RELATIVE_TOLERANCE):
         return None
@@ -102,8 +102,8 @@ def _floating_point_objection(parameter: Parameter, allowed: Any) -> str | None:
             high=high,
             value=value,
         )
-    if allowed.step != 0.0:
-        nearest = low + round((value - low) / allowed.step) * allowed.step
+    if allowed_range.step != 0.0:
+        nearest = low + round((value - low) / allowed_range.step) * allowed_range.step
         if not isclose(nearest, value, rel_tol=_RELATIVE_TOLERANCE):
             return phrase(
                 "The parameter value for {name} is not close enough to a valid step."
@@ -112,22 +112,22 @@ def _floating_point_objection(parameter: Parameter, allowed: Any) -> str | None:
                 low=low,
                 high=high,
                 value=value,
-                step=allowed.step,
+                step=allowed_range.step,
             )
     return None
 
 
 PreSetParameters = Callable[[list[Parameter]], list[Parameter]]
 OnSetParameters = Callable[[list[Parameter]], Any]
-"""Gives a `SetParametersResult`, or the message of that name."""
+"""Returns a `SetParametersResult`, or an rcl_interfaces message of the same name."""
 PostSetParameters = Callable[[list[Parameter]], object]
 
-_EMPTIED = (
+_EMPTY_LIST = (
     "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the original "
     "parameters list."
 )
-_NO_VERDICT = "Callback returned an invalid type"
-_ONLY_A_NAME = (
+_INVALID_RESULT = "Callback returned an invalid type"
+_NAME_ONLY_WARNING = (
     "when declaring parameter named '{}', declaring a parameter only providing its name is deprecated. You have to "
     'either:\n\t- Pass a name and a default value different to "PARAMETER NOT SET" (and optionally a descriptor).\n'
     "\t- Pass a name and a parameter type.\n\t- Pass a name and a descriptor with `dynamic_typing=True"
@@ -190,19 +190,19 @@ class ParameterStore:
             raise InvalidParameterException(name)
         descriptor = copy.copy(descriptor)  # the same object may be passed for several parameters
         if only_name:
-            warnings.warn(_ONLY_A_NAME.format(name), stacklevel=4)
+            warnings.warn(_NAME_ONLY_WARNING.format(name), stacklevel=4)
             descriptor.dynamic_typing = True
         value = self._determine_type(name, default, descriptor)
         if not ignore_override and name in self.overrides:
             value = self.overrides[name]
-        parameter = _parameter(name, value, descriptor)
+        parameter = _make_parameter(name, value, descriptor)
         if name in self._parameters:
             raise ParameterAlreadyDeclaredException([name])
-        verdict = self._set([parameter], descriptors={name: descriptor}, keep_unset=True)
-        if not verdict.successful:
-            if verdict.reason.startswith(WRONG_TYPE):
+        result = self._set([parameter], descriptors={name: descriptor}, keep_unset=True)
+        if not result.successful:
+            if result.reason.startswith(WRONG_TYPE):
                 raise InvalidParameterTypeException(parameter, ParameterType(descriptor.type))
-            raise InvalidParameterValueException(name, parameter.value, verdict.reason)
+            raise InvalidParameterValueException(name, parameter.value, result.reason)
         return self._parameters[name]
 
     def undeclare(self, name: str) -> None:
@@ -242,8 +242,12 @@ class ParameterStore:
 
         For an empty prefix the result contains all parameters.
         """
-        start = f"{prefix}." if prefix else ""
-        return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
+        full_prefix = f"{prefix}." if prefix else ""
+        return {
+            name[len(full_prefix) :]: parameter
+            for name, parameter in self._parameters.items()
+            if name.startswith(full_prefix)
+        }
 
     def descriptor(self, name: str) -> Any:
         """Return the stored descriptor of a parameter.
@@ -284,28 +288,28 @@ class ParameterStore:
 
     def set_atomically(self, parameters: Sequence[Parameter]) -> Any:
         """Set either all parameters or none; see ``Node.set_parameters_atomically``."""
-        chosen = list(parameters)
+        new_parameters = list(parameters)
         if self.pre_set:
-            chosen = [parameter for callback in tuple(self.pre_set) for parameter in callback(list(parameters))]
-            if not chosen:
-                return SetParametersResult(successful=False, reason=_EMPTIED)
-        if not all(isinstance(parameter, Parameter) for parameter in chosen):
+            new_parameters = [parameter for callback in tuple(self.pre_set) for parameter in callback(list(parameters))]
+            if not new_parameters:
+                return SetParametersResult(successful=False, reason=_EMPTY_LIST)
+        if not all(isinstance(parameter, Parameter) for parameter in new_parameters):
             raise TypeError(phrase("parameter must be instance of type '{parameter}'", parameter=repr(Parameter)))
-        undeclared = [parameter.name for parameter in chosen if parameter.name not in self._parameters]
+        undeclared = [parameter.name for parameter in new_parameters if parameter.name not in self._parameters]
         if undeclared and not self.allow_undeclared:
             raise ParameterNotDeclaredException(undeclared, self._parameters)
-        return self._set([self._with_declared_type(parameter) for parameter in chosen])
+        return self._set([self._with_declared_type(parameter) for parameter in new_parameters])
 
     def _with_declared_type(self, parameter: Parameter) -> Parameter:
-        """Return a parameter; if its value is an empty list, with the declared array type.
+        """Return a parameter, with the declared array type if its value is an empty list.
 
         The element type of an empty list cannot be determined from the value.
         """
         descriptor = self._descriptors.get(parameter.name)
         if descriptor is None or descriptor.dynamic_typing or not _is_empty_list(parameter.value):
             return parameter
-        declared = ParameterType(descriptor.type)
-        return Parameter(parameter.name, declared, []) if declared.is_array else parameter
+        declared_type = ParameterType(descriptor.type)
+        return Parameter(parameter.name, declared_type, []) if declared_type.is_array else parameter
 
     def _determine_type(self, name: str, default: Any, descriptor: Any) -> Any:
         """Set the descriptor's type, and return the default value; None if only a type is given.
@@ -326,12 +330,12 @@ class ParameterStore:
         if not descriptor.dynamic_typing:
             if _is_empty_list(default) and ParameterType(descriptor.type).is_array:
                 return default
-            found = ParameterType.from_parameter_value(default)
-            if found is ParameterType.NOT_SET:
+            default_type = ParameterType.from_parameter_value(default)
+            if default_type is ParameterType.NOT_SET:
                 raise ValueError(
                     "Cannot declare a statically typed parameter with default value of type PARAMETER_NOT_SET"
                 )
-            descriptor.type = found.value
+            descriptor.type = default_type.value
         return default
 
     def _set(
@@ -342,23 +346,23 @@ class ParameterStore:
         If `descriptors` is given, the parameters are being declared. Unless `keep_unset` is true, parameters that are
         set to no value are undeclared.
         """
-        applied = self._descriptors if descriptors is None else descriptors
+        relevant_descriptors = self._descriptors if descriptors is None else descriptors
         for parameter in parameters:
-            descriptor = applied.get(parameter.name)
+            descriptor = relevant_descriptors.get(parameter.name)
             if descriptor is None:
                 continue
-            declared = parameter.name in self._parameters
-            reason = objection(parameter, descriptor, declared=declared, check_read_only=descriptors is None)
+            is_declared = parameter.name in self._parameters
+            reason = objection(parameter, descriptor, declared=is_declared, check_read_only=descriptors is None)
             if reason is not None:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in tuple(self.on_set):
-            verdict = callback(parameters)
-            if not hasattr(verdict, "successful"):
+            result = callback(parameters)
+            if not hasattr(result, "successful"):
                 name = getattr(callback, "__qualname__", callback)
-                warnings.warn(f"{_NO_VERDICT}, it should return SetParametersResult: {name}", stacklevel=5)
-                return SetParametersResult(successful=False, reason=_NO_VERDICT)
-            if not verdict.successful:
-                return verdict
+                warnings.warn(f"{_INVALID_RESULT}, it should return SetParametersResult: {name}", stacklevel=5)
+                return SetParametersResult(successful=False, reason=_INVALID_RESULT)
+            if not result.successful:
+                return result
         change = ParameterChange()
         for parameter in parameters:
             self._apply(parameter, descriptors, change, keep_unset=keep_unset)
@@ -388,7 +392,7 @@ def _is_empty_list(value: Any) -> bool:
     return isinstance(value, (list, tuple)) and not value
 
 
-def _parameter(name: str, value: Any, descriptor: Any) -> Parameter:
+def _make_parameter(name: str, value: Any, descriptor: Any) -> Parameter:
     """Return a parameter to be declared.
 
     Raises:
@@ -396,9 +400,9 @@ def _parameter(name: str, value: Any, descriptor: Any) -> Parameter:
     """
     if isinstance(value, Parameter):
         value = value.value
-    declared = ParameterType(descriptor.type)
-    if _is_empty_list(value) and declared.is_array and not descriptor.dynamic_typing:
-        return Parameter(name, declared, [])
+    declared_type = ParameterType(descriptor.type)
+    if _is_empty_list(value) and declared_type.is_array and not descriptor.dynamic_typing:
+        return Parameter(name, declared_type, [])
     try:
         return Parameter(name, value=list(value) if isinstance(value, tuple) else value)
     except TypeError as error:

@@ -48,19 +48,19 @@ def resolved(qos: QoSProfile) -> QoSProfile:
     """
     return QoSProfile(
         depth=max(qos.depth, 1),
-        history=_known(qos.history, HistoryPolicy.KEEP_LAST),
-        reliability=_known(qos.reliability, ReliabilityPolicy.RELIABLE),
-        durability=_known(qos.durability, DurabilityPolicy.VOLATILE),
+        history=_resolve_policy(qos.history, HistoryPolicy.KEEP_LAST),
+        reliability=_resolve_policy(qos.reliability, ReliabilityPolicy.RELIABLE),
+        durability=_resolve_policy(qos.durability, DurabilityPolicy.VOLATILE),
         lifespan=_or_infinite(qos.lifespan),
         deadline=_or_infinite(qos.deadline),
-        liveliness=_known(qos.liveliness, LivelinessPolicy.AUTOMATIC),
+        liveliness=_resolve_policy(qos.liveliness, LivelinessPolicy.AUTOMATIC),
         liveliness_lease_duration=_or_infinite(qos.liveliness_lease_duration),
         avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
     )
 
 
-def _known(value: V, otherwise: V) -> V:
-    return otherwise if value.name in ("SYSTEM_DEFAULT", "UNKNOWN", "BEST_AVAILABLE") else value
+def _resolve_policy(value: V, default: V) -> V:
+    return default if value.name in ("SYSTEM_DEFAULT", "UNKNOWN", "BEST_AVAILABLE") else value
 
 
 def _or_infinite(duration: Duration) -> Duration:
@@ -82,9 +82,9 @@ def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[Qo
         policies.append(QoSPolicyKind.DURABILITY)
     if _is_stricter(requested.deadline, offered.deadline):
         policies.append(QoSPolicyKind.DEADLINE)
-    by_hand = LivelinessPolicy.MANUAL_BY_TOPIC
-    lacks_signs = requested.liveliness is by_hand and offered.liveliness is not by_hand
-    if lacks_signs or _is_stricter(requested.liveliness_lease_duration, offered.liveliness_lease_duration):
+    manual = LivelinessPolicy.MANUAL_BY_TOPIC
+    lacks_assertions = requested.liveliness is manual and offered.liveliness is not manual
+    if lacks_assertions or _is_stricter(requested.liveliness_lease_duration, offered.liveliness_lease_duration):
         policies.append(QoSPolicyKind.LIVELINESS)
     return policies
 
@@ -94,8 +94,8 @@ def _is_transient_local(qos: QoSProfile) -> bool:
 
 
 def _is_stricter(requested: Duration, offered: Duration) -> bool:
-    wanted, given = limit_ns(requested), limit_ns(offered)
-    return wanted is not None and (given is None or wanted < given)
+    requested_ns, offered_ns = limit_ns(requested), limit_ns(offered)
+    return requested_ns is not None and (offered_ns is None or requested_ns < offered_ns)
 
 
 def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
@@ -105,31 +105,33 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
 
     Args:
         qos: the profile; returned unchanged if it has no BEST_AVAILABLE value.
-        others: for a publisher, the profiles of the topic's subscriptions; for a subscription, those of its publishers.
+        others: the profiles of the topic's subscriptions for a publisher, or of its publishers for a subscription.
         publisher: whether the profile is for a publisher, which offers as much as it can.
     """
     if not _has_best_available(qos):
         return qos
-    there = list(others)
+    other_profiles = list(others)
     reliability, durability, liveliness = qos.reliability, qos.durability, qos.liveliness
     if reliability is ReliabilityPolicy.BEST_AVAILABLE:
-        strict = publisher or all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in there)
+        strict = publisher or all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in other_profiles)
         reliability = ReliabilityPolicy.RELIABLE if strict else ReliabilityPolicy.BEST_EFFORT
     if durability is DurabilityPolicy.BEST_AVAILABLE:
-        strict = publisher or all(_is_transient_local(profile) for profile in there)
+        strict = publisher or all(_is_transient_local(profile) for profile in other_profiles)
         durability = DurabilityPolicy.TRANSIENT_LOCAL if strict else DurabilityPolicy.VOLATILE
-    by_hand = LivelinessPolicy.MANUAL_BY_TOPIC
+    manual = LivelinessPolicy.MANUAL_BY_TOPIC
     if liveliness is LivelinessPolicy.BEST_AVAILABLE:
-        kinds = [profile.liveliness is by_hand for profile in there]
-        strict = any(kinds) if publisher else bool(kinds) and all(kinds)
-        liveliness = by_hand if strict else LivelinessPolicy.AUTOMATIC
+        are_manual = [profile.liveliness is manual for profile in other_profiles]
+        strict = any(are_manual) if publisher else bool(are_manual) and all(are_manual)
+        liveliness = manual if strict else LivelinessPolicy.AUTOMATIC
     choose = min if publisher else max
 
-    def chosen(mine: Duration, theirs: Iterable[Duration]) -> Duration:
-        if mine != BEST_AVAILABLE_DURATION:
-            return mine
-        limited = [their for their in theirs if limit_ns(their) is not None]
-        return choose(limited) if limited else UNSPECIFIED
+    def chosen(duration: Duration, other_durations: Iterable[Duration]) -> Duration:
+        if duration != BEST_AVAILABLE_DURATION:
+            return duration
+        limited_durations = [
+            other_duration for other_duration in other_durations if limit_ns(other_duration) is not None
+        ]
+        return choose(limited_durations) if limited_durations else UNSPECIFIED
 
     return QoSProfile(
         depth=qos.depth,
@@ -137,10 +139,10 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
         reliability=reliability,
         durability=durability,
         lifespan=qos.lifespan,
-        deadline=chosen(qos.deadline, (profile.deadline for profile in there)),
+        deadline=chosen(qos.deadline, (profile.deadline for profile in other_profiles)),
         liveliness=liveliness,
         liveliness_lease_duration=chosen(
-            qos.liveliness_lease_duration, (profile.liveliness_lease_duration for profile in there)
+            qos.liveliness_lease_duration, (profile.liveliness_lease_duration for profile in other_profiles)
         ),
         avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
     )
@@ -197,32 +199,43 @@ def _errors(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
 def _warnings(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
     offered, requested = publisher.reliability, subscription.reliability
     if _is_unknown(offered) and _is_unknown(requested):
-        yield f"Publisher reliability is {_word(offered)} and subscription reliability is {_word(requested)}"
+        yield (
+            f"Publisher reliability is {_unset_value_name(offered)} and subscription reliability is "
+            f"{_unset_value_name(requested)}"
+        )
     elif _is_unknown(offered) and requested is ReliabilityPolicy.RELIABLE:
-        yield f"Reliable subscription, but publisher is {_word(offered)}"
+        yield f"Reliable subscription, but publisher is {_unset_value_name(offered)}"
     elif offered is ReliabilityPolicy.BEST_EFFORT and _is_unknown(requested):
-        yield f"Best effort publisher, but subscription is {_word(requested)}"
-    keeps, wants = publisher.durability, subscription.durability
-    if _is_unknown(keeps) and _is_unknown(wants):
-        yield f"Publisher durabilty is {_word(keeps)} and subscription durability is {_word(wants)}"
-    elif _is_unknown(keeps) and wants is DurabilityPolicy.TRANSIENT_LOCAL:
-        yield f"Transient local subscription, but publisher is {_word(keeps)}"
-    elif keeps is DurabilityPolicy.VOLATILE and _is_unknown(wants):
-        yield f"Volatile publisher, but subscription is {_word(wants)}"
-    shows, expects = publisher.liveliness, subscription.liveliness
-    if _is_unknown(shows) and _is_unknown(expects):
-        yield f"Publisher liveliness is {_word(shows)} and subscription liveliness is {_word(expects)}"
-    elif _is_unknown(shows) and expects is LivelinessPolicy.MANUAL_BY_TOPIC:
-        yield f"Subscription's liveliness is manual by topic, but publisher's is {_word(shows)}"
-    elif shows is LivelinessPolicy.AUTOMATIC and _is_unknown(expects):
-        yield f"Publisher's liveliness is automatic, but subscription's is {_word(expects)}"
+        yield f"Best effort publisher, but subscription is {_unset_value_name(requested)}"
+    offered_durability, requested_durability = publisher.durability, subscription.durability
+    if _is_unknown(offered_durability) and _is_unknown(requested_durability):
+        yield (
+            f"Publisher durabilty is {_unset_value_name(offered_durability)} and subscription durability is "
+            f"{_unset_value_name(requested_durability)}"
+        )
+    elif _is_unknown(offered_durability) and requested_durability is DurabilityPolicy.TRANSIENT_LOCAL:
+        yield f"Transient local subscription, but publisher is {_unset_value_name(offered_durability)}"
+    elif offered_durability is DurabilityPolicy.VOLATILE and _is_unknown(requested_durability):
+        yield f"Volatile publisher, but subscription is {_unset_value_name(requested_durability)}"
+    offered_liveliness, requested_liveliness = publisher.liveliness, subscription.liveliness
+    if _is_unknown(offered_liveliness) and _is_unknown(requested_liveliness):
+        yield (
+            f"Publisher liveliness is {_unset_value_name(offered_liveliness)} and subscription liveliness is "
+            f"{_unset_value_name(requested_liveliness)}"
+        )
+    elif _is_unknown(offered_liveliness) and requested_liveliness is LivelinessPolicy.MANUAL_BY_TOPIC:
+        yield (
+            f"Subscription's liveliness is manual by topic, but publisher's is {_unset_value_name(offered_liveliness)}"
+        )
+    elif offered_liveliness is LivelinessPolicy.AUTOMATIC and _is_unknown(requested_liveliness):
+        yield f"Publisher's liveliness is automatic, but subscription's is {_unset_value_name(requested_liveliness)}"
 
 
 def _is_unknown(value: QoSPolicyEnum) -> bool:
     return value.name in ("SYSTEM_DEFAULT", "UNKNOWN")
 
 
-def _word(value: QoSPolicyEnum) -> str:
+def _unset_value_name(value: QoSPolicyEnum) -> str:
     return "system_default" if value.name == "SYSTEM_DEFAULT" else "unknown"
 
 
@@ -240,24 +253,28 @@ class FittedProfile:
     mixed: tuple[tuple[str, str], ...] = ()
 
 
-def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> FittedProfile:
+def fit(base: QoSProfile, offers: Sequence[QoSProfile]) -> FittedProfile:
     """Return a profile with the strongest reliability and durability that all publishers offer.
 
     Args:
-        wanted: provides the other policies; if there are no publishers, this profile is returned.
+        base: provides the other policies; if there are no publishers, this profile is returned.
         offers: the profiles that the publishers of the topic offer.
     """
-    chosen = copy(wanted)
+    profile = copy(base)
     if not offers:
-        return FittedProfile(chosen)
-    reliable = sum(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
-    lasting = sum(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
-    everybody = len(offers)
-    chosen.reliability = ReliabilityPolicy.RELIABLE if reliable == everybody else ReliabilityPolicy.BEST_EFFORT
-    chosen.durability = DurabilityPolicy.TRANSIENT_LOCAL if lasting == everybody else DurabilityPolicy.VOLATILE
+        return FittedProfile(profile)
+    reliable_count = sum(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
+    transient_local_count = sum(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
+    publisher_count = len(offers)
+    profile.reliability = (
+        ReliabilityPolicy.RELIABLE if reliable_count == publisher_count else ReliabilityPolicy.BEST_EFFORT
+    )
+    profile.durability = (
+        DurabilityPolicy.TRANSIENT_LOCAL if transient_local_count == publisher_count else DurabilityPolicy.VOLATILE
+    )
     mixed = []
-    if 0 < reliable < everybody:
+    if 0 < reliable_count < publisher_count:
         mixed.append(("QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT"))
-    if 0 < lasting < everybody:
+    if 0 < transient_local_count < publisher_count:
         mixed.append(("QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE"))
-    return FittedProfile(chosen, tuple(mixed))
+    return FittedProfile(profile, tuple(mixed))

@@ -104,10 +104,10 @@ class LivelinessPolicy(QoSPolicyEnum):
 
 
 UNSPECIFIED = Duration()
-"""No limit given: for deadline, lifespan and lease it means the same as an infinite one."""
+"""The default of durations. A deadline, lifespan or lease with this value has no limit."""
 
 BEST_AVAILABLE_DURATION = Duration(nanoseconds=INFINITE.nanoseconds - 1)
-"""As strict as the other side allows (rmw ``RMW_QOS_DEADLINE_BEST_AVAILABLE``)."""
+"""A duration as strict as the other endpoints allow (rmw ``RMW_QOS_DEADLINE_BEST_AVAILABLE``)."""
 
 _DEFAULT_DEPTH = 10
 
@@ -201,7 +201,7 @@ class QoSProfile:
 
     @history.setter
     def history(self, value: HistoryPolicy | int) -> None:
-        self._history: HistoryPolicy = _policy(HistoryPolicy, value)
+        self._history: HistoryPolicy = _check_policy(HistoryPolicy, value)
 
     @property
     def depth(self) -> int:
@@ -228,7 +228,7 @@ class QoSProfile:
 
     @reliability.setter
     def reliability(self, value: ReliabilityPolicy | int) -> None:
-        self._reliability: ReliabilityPolicy = _policy(ReliabilityPolicy, value)
+        self._reliability: ReliabilityPolicy = _check_policy(ReliabilityPolicy, value)
 
     @property
     def durability(self) -> DurabilityPolicy:
@@ -237,7 +237,7 @@ class QoSProfile:
 
     @durability.setter
     def durability(self, value: DurabilityPolicy | int) -> None:
-        self._durability: DurabilityPolicy = _policy(DurabilityPolicy, value)
+        self._durability: DurabilityPolicy = _check_policy(DurabilityPolicy, value)
 
     @property
     def lifespan(self) -> Duration:
@@ -266,7 +266,7 @@ class QoSProfile:
 
     @liveliness.setter
     def liveliness(self, value: LivelinessPolicy | int) -> None:
-        self._liveliness: LivelinessPolicy = _policy(LivelinessPolicy, value)
+        self._liveliness: LivelinessPolicy = _check_policy(LivelinessPolicy, value)
 
     @property
     def liveliness_lease_duration(self) -> Duration:
@@ -316,18 +316,18 @@ _ORDER = (
 )
 
 
-def _policy(kind: type[P], value: object) -> P:
+def _check_policy(kind: type[P], value: object) -> P:
     assert isinstance(value, int)
     return kind(value)
 
 
 DEFAULT_QOS = QoSProfile(depth=10)
-"""ROS 2's default: reliable, volatile, the last 10."""
+"""The default of ROS 2: reliable, volatile, with the last 10 messages."""
 
 SYSTEM_DEFAULT_QOS = QoSProfile(
     0, ReliabilityPolicy.SYSTEM_DEFAULT, DurabilityPolicy.SYSTEM_DEFAULT, HistoryPolicy.SYSTEM_DEFAULT
 )
-"""Everything is left to the middleware (rmw ``rmw_qos_profile_system_default``)."""
+"""The middleware chooses the policies (rmw ``rmw_qos_profile_system_default``)."""
 
 UNKNOWN_QOS = QoSProfile(
     0,
@@ -336,7 +336,7 @@ UNKNOWN_QOS = QoSProfile(
     HistoryPolicy.UNKNOWN,
     liveliness=LivelinessPolicy.UNKNOWN,
 )
-"""Of endpoints whose QoS is not known (rmw ``rmw_qos_profile_unknown``)."""
+"""The profile of endpoints whose QoS is not known (rmw ``rmw_qos_profile_unknown``)."""
 
 BEST_AVAILABLE_QOS = QoSProfile(
     10,
@@ -346,10 +346,10 @@ BEST_AVAILABLE_QOS = QoSProfile(
     liveliness=LivelinessPolicy.BEST_AVAILABLE,
     liveliness_lease_duration=BEST_AVAILABLE_DURATION,
 )
-"""The strictest policies that match the endpoints known when one is made (rmw ``rmw_qos_profile_best_available``)."""
+"""The strictest policies that match the endpoints known at creation (rmw ``rmw_qos_profile_best_available``)."""
 
 SENSOR_DATA_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Best effort, the last 5; robot_state_publisher subscribes to joint states with it."""
+"""Best effort, with the last 5 messages; robot_state_publisher subscribes to joint states with it."""
 
 SERVICES_QOS = QoSProfile(depth=10)
 """For services and clients."""
@@ -367,10 +367,10 @@ ROSOUT_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL,
 """For ``/rosout`` (rcl ``rcl_qos_profile_rosout_default``)."""
 
 ACTION_STATUS_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""For the status topic of actions, both sides."""
+"""For publishers of and subscriptions to the status topic of actions."""
 
 TF_QOS = QoSProfile(depth=100)
-"""For ``/tf``, both sides (tf2_ros DynamicBroadcasterQoS, DynamicListenerQoS)."""
+"""For publishers of and subscriptions to ``/tf`` (tf2_ros DynamicBroadcasterQoS, DynamicListenerQoS)."""
 
 STATIC_TF_PUBLISHER_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """For publishers of ``/tf_static`` (tf2_ros StaticBroadcasterQoS)."""
@@ -379,10 +379,10 @@ STATIC_TF_SUBSCRIPTION_QOS = QoSProfile(depth=100, durability=DurabilityPolicy.T
 """For subscriptions to ``/tf_static`` (tf2_ros StaticListenerQoS)."""
 
 LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""For maps, states and whatever else a late subscriber gets as it was last published, both sides."""
+"""For maps, states and other data whose last message late subscriptions receive, both sides."""
 
 DESCRIPTION_QOS = LATCHED_QOS
-"""For ``robot_description``, both sides."""
+"""For publishers of and subscriptions to ``robot_description``."""
 
 
 class QoSPresetProfiles(Enum):

@@ -17,34 +17,34 @@ class Calls:
     """Calls the functions of a plugin, a sensor or a controller.
 
     Args:
-        failed: called with the exception of a function; may call `close`.
+        on_failure: called with the exception of a function; may call `close`.
 
     Attributes:
-        number: the number of the current call, from 1; 0 between calls. State that may change at any time, such as the
-            subscriptions of a topic, is read once per call (`Output.is_wanted`).
+        number: the number of the current call, counted from 1; 0 between calls. It lets state that may change at any
+            time, such as the subscriptions of a topic, be read once per call (`Output.is_wanted`).
         is_closed: whether further calls are ignored.
     """
 
     __slots__ = ("_count", "_failed", "is_closed", "number")
 
-    def __init__(self, failed: Failure) -> None:
+    def __init__(self, on_failure: Failure) -> None:
         self.number = 0
         self.is_closed = False
         self._count = 0
-        self._failed = failed
+        self._failed = on_failure
 
     def call(self, function: Callable[[], object]) -> None:
-        """Call a function, and pass an exception that it raises to `failed`."""
+        """Call a function, and pass an exception that it raises to `on_failure`."""
         if self.is_closed:
             return
-        outer, self._count = self.number, self._count + 1
+        previous_number, self._count = self.number, self._count + 1
         self.number = self._count
         try:
             function()
         except Exception as error:  # noqa: BLE001 - whatever a plugin throws must not end the others
             self.fail(error)
         finally:
-            self.number = outer
+            self.number = previous_number
 
     def fail(self, error: Exception) -> None:
         """Report an error that occurred elsewhere. Must be called in the simulation's thread."""

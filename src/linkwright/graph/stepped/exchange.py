@@ -22,8 +22,8 @@ class Outlet(Protocol):
         """Publish a message, or pass it to the function."""
 
 
-_BATCHES = 4
-"""The number of batches that may wait for the event loop before the simulation waits for it."""
+_MAX_PENDING_BATCHES = 4
+"""The maximum number of batches that wait for the event loop; a simulation that sends more is blocked."""
 
 
 class Exchange:
@@ -39,15 +39,15 @@ class Exchange:
 
     def __init__(self) -> None:
         self.has_commands = threading.Event()
-        self._out: list[tuple[Outlet, Any]] = []
-        self._in: deque[Command] = deque()
-        self._free: SimpleQueue[None] = SimpleQueue()  # tokens for free batches; faster than a semaphore
-        self._make_room()
+        self._outgoing: list[tuple[Outlet, Any]] = []
+        self._commands: deque[Command] = deque()
+        self._batch_tokens: SimpleQueue[None] = SimpleQueue()  # tokens for free batches; faster than a semaphore
+        self._release_batches()
         self._closed = False
 
     def send(self, publisher: Outlet, message: Any) -> None:
         """Add a message to the next batch. The message must not change afterwards."""
-        self._out.append((publisher, message))
+        self._outgoing.append((publisher, message))
 
     def deliver(self, dispatcher: LoopDispatcher | None = None) -> None:
         """Publish the messages that were added with `send`.
@@ -55,43 +55,43 @@ class Exchange:
         Args:
             dispatcher: the dispatcher of the event loop that publishes; None to publish in this call.
         """
-        if not self._out:
+        if not self._outgoing:
             return
-        batch, self._out = self._out, []
+        batch, self._outgoing = self._outgoing, []
         if dispatcher is None:
             _publish(batch)
             return
-        self._free.get()
+        self._batch_tokens.get()
         if not self._closed:
             dispatcher.call_threadsafe(partial(self._deliver, batch))
 
     def post(self, command: Command) -> None:
         """Queue a function to be called in the simulation's thread. Callable from any thread."""
-        self._in.append(command)
+        self._commands.append(command)
         self.has_commands.set()
 
     def run_commands(self) -> None:
         """Call the functions that were queued with `post`."""
         if self.has_commands.is_set():
             self.has_commands.clear()
-        while self._in:
-            self._in.popleft()()
+        while self._commands:
+            self._commands.popleft()()
 
     def close(self) -> None:
         """Stop delivering, and release a simulation that waits in `deliver`."""
         self._closed = True
-        self._in.clear()
-        self._make_room()
+        self._commands.clear()
+        self._release_batches()
         self.has_commands.set()
 
     def _deliver(self, batch: list[tuple[Outlet, Any]]) -> None:
-        self._free.put(None)
+        self._batch_tokens.put(None)
         if not self._closed:
             _publish(batch)
 
-    def _make_room(self) -> None:
-        for _ in range(_BATCHES):
-            self._free.put(None)
+    def _release_batches(self) -> None:
+        for _ in range(_MAX_PENDING_BATCHES):
+            self._batch_tokens.put(None)
 
 
 def _publish(batch: list[tuple[Outlet, Any]]) -> None:

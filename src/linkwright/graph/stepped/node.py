@@ -21,7 +21,7 @@ from linkwright.graph.stepped.calls import Calls, logged_calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.messages import get_service
 
-_WARN_SECONDS = 1.0
+_WARNING_PERIOD_S = 1.0
 
 
 class _Outlet:
@@ -44,9 +44,9 @@ class _Outlet:
         """Publish a message; with `make`, the message that it creates from the values in `message`."""
         output, make = self._output, self._make
         try:
-            made = message if make is None else make(*message)
+            outgoing_message = message if make is None else make(*message)
             for publisher in output.publishers:
-                publisher.publish(made)
+                publisher.publish(outgoing_message)
         except InvalidHandleError:
             raise  # the publisher's model was removed
         except Exception as error:  # noqa: BLE001 - of a message that a plugin made
@@ -67,7 +67,7 @@ class Output:
         self.publishers = publishers
         self.calls = calls
         self._outlet = _Outlet(self)
-        self._asked, self._is_wanted = 0, False
+        self._cached_call_number, self._is_wanted = 0, False
 
     @property
     def is_wanted(self) -> bool:
@@ -76,11 +76,11 @@ class Output:
         Subscriptions may change at any time in another thread, but within one call of a plugin this value stays the
         same.
         """
-        number = self.calls.number
-        if not number:
+        call_number = self.calls.number
+        if not call_number:
             return self._has_readers()
-        if number != self._asked:
-            self._asked, self._is_wanted = number, self._has_readers()
+        if call_number != self._cached_call_number:
+            self._cached_call_number, self._is_wanted = call_number, self._has_readers()
         return self._is_wanted
 
     def _has_readers(self) -> bool:
@@ -203,7 +203,7 @@ class SteppedNode:
         """
 
         def lost(publisher: EndpointInfo) -> None:
-            self.post(partial(self._rest, rest, publisher))
+            self.post(partial(self._stop_motion, rest, publisher))
 
         return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
 
@@ -262,14 +262,14 @@ class SteppedNode:
         """Return a subscription callback that passes each message to `callback` between steps."""
         if rest is not None:
             callback = partial(self._pass_if_finite, callback, rest, topic)
-        received: Callable[..., object] = partial(self._received, callback)
-        return received if commander is None else commander.tracking_callback(received)
+        deferred_callback: Callable[..., object] = partial(self._received, callback)
+        return deferred_callback if commander is None else commander.tracking_callback(deferred_callback)
 
     def _subscribe_to(
         self,
         msg_type: Any,
         names: Iterable[str],
-        received: Callable[..., object],
+        callback: Callable[..., object],
         qos: QoSProfile | int,
         commander: Commander | None,
     ) -> None:
@@ -277,7 +277,7 @@ class SteppedNode:
             profile = self._profile(name, "subscriber", qos)
 
             def listen(name: str, profile: QoSProfile = profile) -> Endpoint:
-                subscription: Subscription[Any] = self._node.create_subscription(msg_type, name, received, profile)
+                subscription: Subscription[Any] = self._node.create_subscription(msg_type, name, callback, profile)
                 self._endpoints.append(subscription)
                 if commander is not None:
                     commander.watch(subscription)
@@ -299,7 +299,7 @@ class SteppedNode:
         """
         return QoSProfile.of(qos)
 
-    def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
+    def _stop_motion(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
         if rest():
             self.logger.warning(phrase("{who}: the motion stops", who=describe_lost_publisher(publisher)))
 
@@ -314,8 +314,8 @@ class SteppedNode:
             callback(message)
             return
         rest()
-        warning = phrase("'{topic}': a command with NaN or an infinite number stops the motion", topic=topic)
-        self.logger.warning(warning, throttle_duration_sec=_WARN_SECONDS)
+        warning = phrase("a command on '{topic}' contains NaN or an infinite number: the motion stops", topic=topic)
+        self.logger.warning(warning, throttle_duration_sec=_WARNING_PERIOD_S)
 
     def _received(self, callback: Callable[[Any], object], message: Any) -> None:
         self.post(partial(callback, message))

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 
-_SHORT_NS = 20_000_000
-"""Waits of up to this length end in time to some microseconds; longer ones may be a millisecond late."""
+_MAX_PRECISE_WAIT_NS = 20_000_000
+"""Waits of up to this length are precise to some microseconds; longer waits may end a millisecond late."""
 
 
 class Alarm(Protocol):
@@ -41,13 +41,13 @@ class AlarmSetter(Protocol):
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a steady time of the graph, in nanoseconds. Callable from any thread.
 
-        The callback never runs before this method returns. It must be short, as it only marks entities as ready, and is
-        never a user's code.
+        The callback never runs before this method returns. It must be short: it only marks entities as ready, and never
+        runs a user's code.
         """
 
 
 class SettlingDispatcher(Protocol):
-    """Runs the callbacks of a graph, and allows waiting until they are done."""
+    """Runs the callbacks of a graph, and can wait until they are done."""
 
     async def settle(self) -> None:
         """Wait until no work is ready, including calls that other calls make ready."""
@@ -90,7 +90,7 @@ class SystemClock(Timebase):
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a callback on an event loop, with microsecond precision where possible."""
-        if steady_ns - time.monotonic_ns() <= _SHORT_NS:
+        if steady_ns - time.monotonic_ns() <= _MAX_PRECISE_WAIT_NS:
             alarms = fine_alarms(loop)
             if alarms is not None:
                 return alarms.call_at(steady_ns, callback)
@@ -138,16 +138,16 @@ class JumpClock(Timebase):
             seconds: how far to advance, in seconds.
             is_settled: whether all ready work is already done, so that there is nothing to wait for at the start.
         """
-        end = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
+        end_ns = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
         if not is_settled:
             await self._settle()
-        while self._alarms and self._alarms[0].steady_ns <= end:
+        while self._alarms and self._alarms[0].steady_ns <= end_ns:
             alarm = heapq.heappop(self._alarms)
             if not alarm.cancelled:
                 self._move_to(max(alarm.steady_ns, self._steady_ns))
                 alarm.callback()
                 await self._settle()
-        self._move_to(end)
+        self._move_to(end_ns)
 
     def jump(self, seconds: float) -> None:
         """Move system time forward or back, as when the system clock is corrected.
@@ -169,8 +169,8 @@ class JumpClock(Timebase):
 
 
 _SYSTEM = SystemClock()
-_LONGEST_WAIT_S = 0.1
-"""How long a sleep by ROS time waits at most before it looks whether it was interrupted."""
+_MAX_WAIT_S = 0.1
+"""The longest time, in seconds, for which a sleep in ROS time waits before it checks for an interruption."""
 
 
 class ClockChange(IntEnum):
@@ -273,18 +273,18 @@ class Clock:
         """Create a clock of the class that fits its type."""
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
-        wanted: Any = ROSClock if cls is Clock and clock_type is ClockType.ROS_TIME else cls
-        return object.__new__(wanted)  # type: ignore[no-any-return]  # a ROSClock is a Clock
+        clock_class: Any = ROSClock if cls is Clock and clock_type is ClockType.ROS_TIME else cls
+        return object.__new__(clock_class)  # type: ignore[no-any-return]  # a ROSClock is a Clock
 
     context: Any = None
-    """The context whose shutdown ends a sleep that is given none; None for no context."""
+    """The context whose shutdown ends a sleep without a context argument; None for no context."""
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> None:
         self.clock_type = clock_type
         self.timebase: Timebase = timebase or _SYSTEM
         self._jump_handles: list[JumpHandle] = []
         self._lock = threading.RLock()
-        self._changed = threading.Condition(self._lock)
+        self._change_condition = threading.Condition(self._lock)
 
     def __repr__(self) -> str:
         return f"Clock(clock_type={self.clock_type.name})"
@@ -312,13 +312,13 @@ class Clock:
             ValueError: neither callback is given, or one is not callable.
         """
         handle = JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback)
-        with self._changed:
+        with self._change_condition:
             self._jump_handles.append(handle)
         return handle
 
     def forget_jump_callback(self, handle: JumpHandle) -> None:
         """Remove a handle; see `JumpHandle.unregister`."""
-        with self._changed:
+        with self._change_condition:
             if handle in self._jump_handles:
                 self._jump_handles.remove(handle)
 
@@ -364,12 +364,12 @@ class Clock:
             raise NotInitializedError
         if until.clock_type != self.clock_type:
             raise ValueError("until's clock type does not match this clock's type")
-        with self._changed:
+        with self._change_condition:
             generation = self._generation()
-            while (left_ns := until.nanoseconds - self.now_ns()) > 0:
+            while (remaining_ns := until.nanoseconds - self.now_ns()) > 0:
                 if context is not None and not context.ok():
                     return False
-                self._changed.wait(self._longest_wait_s(left_ns))
+                self._change_condition.wait(self._longest_wait_s(remaining_ns))
                 if generation != self._generation():
                     return False
         return True
@@ -378,8 +378,8 @@ class Clock:
         """Block the calling thread for a duration of this clock; see `sleep_until`."""
         return self.sleep_until(self.now() + rel_time, context)
 
-    def _longest_wait_s(self, left_ns: int) -> float:
-        return min(left_ns / 1e9, _LONGEST_WAIT_S)
+    def _longest_wait_s(self, remaining_ns: int) -> float:
+        return min(remaining_ns / 1e9, _MAX_WAIT_S)
 
     def _generation(self) -> int:
         return 0
@@ -430,7 +430,7 @@ class ROSClock(Clock):
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, timebase: Timebase | None = None) -> None:
         super().__init__(clock_type=clock_type, timebase=timebase)
         self._active = False
-        self._switches = 0
+        self._switch_count = 0
         self._override_ns = 0
         self._alarms: list[_SimulatedAlarm] = []
         self._numbers = count()
@@ -473,7 +473,7 @@ class ROSClock(Clock):
 
     def set_ros_time_is_active(self, enabled: bool) -> None:
         """Activate or deactivate simulated time."""
-        with self._changed:
+        with self._change_condition:
             if enabled == self._active:
                 return
             handles = [handle for handle in self._jump_handles if handle.threshold.on_clock_change]
@@ -481,18 +481,18 @@ class ROSClock(Clock):
             self._notify_before(handles)
             for timer in timers:
                 timer.before_switch()
-            before_ns = self.now_ns()
+            previous_ns = self.now_ns()
             self._active = enabled
-            self._switches += 1
+            self._switch_count += 1
             self._alarms.clear()
             for timer in timers:
                 timer.after_switch()
             change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
-            self._notify_after(handles, TimeJump(change, Duration(nanoseconds=self.now_ns() - before_ns)))
-            self._changed.notify_all()
+            self._notify_after(handles, TimeJump(change, Duration(nanoseconds=self.now_ns() - previous_ns)))
+            self._change_condition.notify_all()
 
     _set_ros_time_is_active = set_ros_time_is_active
-    """As rclpy names it."""
+    """rclpy's name of this method."""
 
     def set_ros_time_override(self, time: Time) -> None:
         """Set simulated time, which takes effect once simulated time is active.
@@ -506,7 +506,7 @@ class ROSClock(Clock):
 
     def override(self, now_ns: int) -> None:
         """Set simulated time, in nanoseconds since the epoch."""
-        with self._changed:
+        with self._change_condition:
             if not self._active:
                 self._override_ns = now_ns
                 return
@@ -514,11 +514,11 @@ class ROSClock(Clock):
                 self._jump_to(now_ns)
             else:  # usual case
                 self._override_ns = now_ns
-            self._changed.notify_all()
-            due = []
+            self._change_condition.notify_all()
+            due_alarms = []
             while self._alarms and self._alarms[0].at_ns <= now_ns:
-                due.append(heapq.heappop(self._alarms))
-        for alarm in due:
+                due_alarms.append(heapq.heappop(self._alarms))
+        for alarm in due_alarms:
             if not alarm.cancelled:
                 alarm.callback()
 
@@ -539,11 +539,11 @@ class ROSClock(Clock):
 
     def interrupt(self) -> None:
         """Wake sleeping threads, which check their contexts."""
-        with self._changed:
-            self._changed.notify_all()
+        with self._change_condition:
+            self._change_condition.notify_all()
 
-    def _longest_wait_s(self, left_ns: int) -> float:
-        return _LONGEST_WAIT_S if self._active else super()._longest_wait_s(left_ns)
+    def _longest_wait_s(self, remaining_ns: int) -> float:
+        return _MAX_WAIT_S if self._active else super()._longest_wait_s(remaining_ns)
 
     def _generation(self) -> int:
-        return self._switches
+        return self._switch_count

@@ -36,12 +36,12 @@ def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     try:
         return _alarms_by_loop[id(loop)]  # A weak dictionary is slower, and timers call this with each tick.
     except KeyError:
-        found = _alarms_by_loop[id(loop)] = _made(loop)
+        alarms = _alarms_by_loop[id(loop)] = _create_alarms(loop)
         weakref.finalize(loop, _alarms_by_loop.pop, id(loop), None)
-        return found
+        return alarms
 
 
-def _made(loop: AbstractEventLoop) -> FineAlarms | None:
+def _create_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     if sys.platform != "linux":
         return None
     import ctypes  # imported here: few programs need it, and it is slow to import
@@ -111,7 +111,7 @@ class FineAlarms:
         alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
         if not self._is_running and self._alarms[0] is alarm:
-            self._set()
+            self._update_timer()
         return alarm
 
     def run(self) -> None:
@@ -119,23 +119,23 @@ class FineAlarms:
 
         Calls that the callbacks schedule are made in a later iteration of the loop.
         """
-        alarms, due = self._alarms, []
+        alarms, due_alarms = self._alarms, []
         now_ns = time.monotonic_ns()
         while alarms and alarms[0].steady_ns <= now_ns:
-            due.append(heapq.heappop(alarms))
+            due_alarms.append(heapq.heappop(alarms))
         self._is_running = True
         try:
-            while due:
-                alarm = due.pop(0)
+            while due_alarms:
+                alarm = due_alarms.pop(0)
                 if not alarm.cancelled:
                     alarm.callback()
         finally:
             self._is_running = False
-            for alarm in due:
+            for alarm in due_alarms:
                 heapq.heappush(alarms, alarm)
-            self._set()
+            self._update_timer()
 
-    def _set(self) -> None:
+    def _update_timer(self) -> None:
         setting = self._setting
         # A time of 0 stops the timer, as required if there are no alarms. With a time in the past, the timer expires
         # immediately.

@@ -22,7 +22,7 @@ class TransformBroadcaster:
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
         """Publish one transform, or several in a single message."""
-        self.pub_tf.publish(TFMessage(transforms=_listed(transform)))
+        self.pub_tf.publish(TFMessage(transforms=_to_list(transform)))
 
 
 class StaticTransformBroadcaster:
@@ -37,17 +37,17 @@ class StaticTransformBroadcaster:
 
     def __init__(self, node: Any, qos: QoSProfile | int = STATIC_TF_PUBLISHER_QOS) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf_static", qos)
-        self._sent: dict[str, TransformStamped] = {}
+        self._sent_transforms: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
         """Publish one transform, or several, together with those sent earlier.
 
         A transform replaces an earlier transform with the same child frame.
         """
-        for transform_stamped in _listed(transform):
-            self._sent[transform_stamped.child_frame_id] = transform_stamped
-        self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))
+        for transform_stamped in _to_list(transform):
+            self._sent_transforms[transform_stamped.child_frame_id] = transform_stamped
+        self.pub_tf.publish(TFMessage(transforms=list(self._sent_transforms.values())))
 
 
-def _listed(transform: Any) -> list[TransformStamped]:
+def _to_list(transform: Any) -> list[TransformStamped]:
     return list(transform) if isinstance(transform, (list, tuple)) else [transform]

@@ -35,17 +35,17 @@ class FrameTree:
 
     def __init__(self, parents: Rows) -> None:
         count = len(parents)
-        every = np.arange(count, dtype=np.intp)
-        rounds_enough = max(1, count).bit_length()
-        above = np.where(parents >= 0, parents, every)
-        for _ in range(rounds_enough):
-            above = above[above]
-        ends = parents[above] < 0 if count else np.zeros(0, dtype=np.bool_)
-        self.roots: Rows = np.where(ends, above, -1)
+        own_indices = np.arange(count, dtype=np.intp)
+        round_count = max(1, count).bit_length()
+        ancestors = np.where(parents >= 0, parents, own_indices)
+        for _ in range(round_count):
+            ancestors = ancestors[ancestors]
+        reaches_root = parents[ancestors] < 0 if count else np.zeros(0, dtype=np.bool_)
+        self.roots: Rows = np.where(reaches_root, ancestors, -1)
         self._is_root = parents < 0
         self._rounds: list[tuple[Rows, Rows]] = []
         # If a frame's parent is a root, the frame's pose is final from the start.
-        reference = np.where(ends & ~self._is_root & ~self._is_root[parents], parents, -1)
+        reference = np.where(reaches_root & ~self._is_root & ~self._is_root[parents], parents, -1)
         while (active := np.flatnonzero(reference >= 0)).size:
             self._rounds.append((active, reference[active]))
             reference[active] = reference[reference[active]]
@@ -68,8 +68,8 @@ class FrameTree:
 _QUATERNION_TOLERANCE = 0.01
 """How far the squared length of a quaternion may be from 1 (tf2 QUATERNION_NORMALIZATION_TOLERANCE)."""
 
-_PLANS_KEPT = 64
-"""Publishers send the same frames again and again; more different lists than this means that they do not."""
+_MAX_PLANS = 64
+"""The maximum number of plans. Publishers usually send the same lists of frames, so few plans are needed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,7 +126,7 @@ class TransformBuffer:
         self._static: NDArray[np.bool_] = np.empty(0, dtype=np.bool_)
         self._plans: dict[tuple[tuple[str, ...], tuple[str, ...]], _Plan] = {}
         self._revision = 0
-        self._in_roots: Poses | None = None
+        self._root_poses: Poses | None = None
         self._rebuild_tree()
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
@@ -143,12 +143,12 @@ class TransformBuffer:
         batch = message.batch
         plan = self._plan_for(batch)
         poses = batch.poses
-        taken, rows, parents = plan.taken, plan.rows, plan.parents
+        batch_rows, rows, parents = plan.taken, plan.rows, plan.parents
         usable = _usable_mask(poses)
         if not usable.all():
             self._report_unusable(batch, np.flatnonzero(~usable))
-            keep = usable[taken]
-            taken, rows, parents = taken[keep], rows[keep], parents[keep]
+            is_usable = usable[batch_rows]
+            batch_rows, rows, parents = batch_rows[is_usable], rows[is_usable], parents[is_usable]
         if not rows.size:
             return
         if plan.revision != self._revision:
@@ -157,10 +157,10 @@ class TransformBuffer:
                 self._rebuild_tree()
             if usable.all():
                 plan.revision = self._revision
-        self._local[rows] = poses.take(taken, axis=0)
+        self._local[rows] = poses.take(batch_rows, axis=0)
         self._received_ns[rows] = now_ns
         self._static[rows] = static
-        self._in_roots = None
+        self._root_poses = None
 
     def snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Return the poses of all frames in a fixed frame.
@@ -190,7 +190,7 @@ class TransformBuffer:
         roots = self._tree.roots
         for frame, row in ((target, target_row), (source, source_row)):
             if roots[row] < 0:
-                raise loop(phrase(" Frame '{frame}' is on it or below it.", frame=frame))
+                raise loop(phrase(" Frame '{frame}' is in the loop or below it.", frame=frame))
         if roots[target_row] != roots[source_row]:
             raise not_connected_error(target, source)
         poses = self._poses_in_roots()
@@ -211,29 +211,29 @@ class TransformBuffer:
         """
         for row in (self._rows[name] for name in names if name in self._rows):
             self._parents[row] = -1
-        in_use = self._parents >= 0
-        in_use[self._parents[in_use]] = True
-        kept = np.flatnonzero(in_use)
-        moved = np.full(len(in_use) + 1, -1, dtype=np.intp)  # one more element, so that index -1 gives -1
-        moved[kept] = np.arange(kept.size)
-        self._rows = {name: int(moved[row]) for name, row in self._rows.items() if in_use[row]}
-        self._parents = moved[self._parents[kept]]
-        self._local = self._local[kept]
-        self._received_ns, self._static = self._received_ns[kept], self._static[kept]
+        is_in_use = self._parents >= 0
+        is_in_use[self._parents[is_in_use]] = True
+        kept_rows = np.flatnonzero(is_in_use)
+        new_rows = np.full(len(is_in_use) + 1, -1, dtype=np.intp)  # one more element, so that index -1 gives -1
+        new_rows[kept_rows] = np.arange(kept_rows.size)
+        self._rows = {name: int(new_rows[row]) for name, row in self._rows.items() if is_in_use[row]}
+        self._parents = new_rows[self._parents[kept_rows]]
+        self._local = self._local[kept_rows]
+        self._received_ns, self._static = self._received_ns[kept_rows], self._static[kept_rows]
         self._plans.clear()
         self._rebuild_tree()
 
     def clear(self) -> None:
         """Remove all transforms except the static ones, for example when time restarts."""
-        moving = (self._parents >= 0) & ~self._static
-        self.remove([name for name, row in self._rows.items() if moving[row]])
+        is_moving = (self._parents >= 0) & ~self._static
+        self.remove([name for name, row in self._rows.items() if is_moving[row]])
 
     def _rebuild_tree(self) -> None:
         self._revision += 1
         self._names = tuple(self._rows)
         self._parent_tuple = tuple(self._parents.tolist())
         self._tree = FrameTree(self._parents)
-        self._in_roots = None
+        self._root_poses = None
 
     def _row(self, argument: str, frame: str) -> int:
         argument = f"lookupTransform argument {argument}"
@@ -246,17 +246,17 @@ class TransformBuffer:
         return row
 
     def _poses_in_roots(self) -> Poses:
-        if self._in_roots is None:
-            self._in_roots = self._tree.poses_in_roots(self._local)
-        return self._in_roots
+        if self._root_poses is None:
+            self._root_poses = self._tree.poses_in_roots(self._local)
+        return self._root_poses
 
     def _poses_in(self, fixed_frame: str) -> Poses:
         row = self._rows.get(fixed_frame)
         roots = self._tree.roots
         if row is None or roots[row] < 0:
             return np.full((len(self._names), 7), np.nan)
-        in_roots = self._poses_in_roots()
-        poses = in_roots.copy() if roots[row] == row else compose(invert(in_roots[row]), in_roots)
+        root_poses = self._poses_in_roots()
+        poses = root_poses.copy() if roots[row] == row else compose(invert(root_poses[row]), root_poses)
         poses[roots != roots[row]] = np.nan
         return poses
 
@@ -264,27 +264,27 @@ class TransformBuffer:
         key = (batch.parents, batch.children)
         plan = self._plans.get(key)
         if plan is None:
-            if len(self._plans) >= _PLANS_KEPT:
+            if len(self._plans) >= _MAX_PLANS:
                 self._plans.clear()
             plan = self._plans[key] = self._make_plan(batch)
         return plan
 
     def _make_plan(self, batch: TransformBatch) -> _Plan:
-        taken, rows, parents = [], [], []
+        batch_rows, rows, parents = [], [], []
         for number, (parent, child) in enumerate(zip(batch.parents, batch.children, strict=True)):
             parent, child = parent.removeprefix("/"), child.removeprefix("/")
             if self._has_usable_names(parent, child):
-                taken.append(number)
+                batch_rows.append(number)
                 parents.append(self._rows.setdefault(parent, len(self._rows)))
                 rows.append(self._rows.setdefault(child, len(self._rows)))
-        new = len(self._rows) - len(self._parents)
-        if new:
-            self._parents = np.append(self._parents, np.full(new, -1, dtype=np.intp))
-            self._local = np.vstack([self._local, np.tile(IDENTITY, (new, 1))])
-            self._received_ns = np.append(self._received_ns, np.zeros(new, dtype=np.int64))
-            self._static = np.append(self._static, np.zeros(new, dtype=np.bool_))
+        new_count = len(self._rows) - len(self._parents)
+        if new_count:
+            self._parents = np.append(self._parents, np.full(new_count, -1, dtype=np.intp))
+            self._local = np.vstack([self._local, np.tile(IDENTITY, (new_count, 1))])
+            self._received_ns = np.append(self._received_ns, np.zeros(new_count, dtype=np.int64))
+            self._static = np.append(self._static, np.zeros(new_count, dtype=np.bool_))
             self._rebuild_tree()
-        return _Plan(_as_rows(taken), _as_rows(rows), _as_rows(parents))
+        return _Plan(_to_rows(batch_rows), _to_rows(rows), _to_rows(parents))
 
     def _has_usable_names(self, parent: str, child: str) -> bool:
         if not child:
@@ -320,7 +320,7 @@ class TransformBuffer:
             self._on_problem(problem)
 
 
-def _as_rows(numbers: list[int]) -> Rows:
+def _to_rows(numbers: list[int]) -> Rows:
     return np.array(numbers, dtype=np.intp)
 
 

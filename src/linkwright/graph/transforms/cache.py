@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_COMPACT_FROM = 256
-"""How many forgotten transforms stay in the list before it is cut: the cost of a cut is that of the rest's length."""
+_MAX_EXPIRED = 256
+"""How many expired transforms stay in the list before they are deleted. A deletion moves all remaining entries."""
 
 
 class Sample(NamedTuple):
@@ -173,15 +173,15 @@ class MovingCache(FrameCache):
             return True
         if stamp_ns < latest - self._span_ns:
             return False
-        place = bisect_right(stamps, stamp_ns, self._first)
-        before = place - 1
-        while before >= self._first and stamps[before] == stamp_ns:
-            same = self._samples[before]
-            if same.parent == sample.parent and same.pose() == sample.pose():
+        index = bisect_right(stamps, stamp_ns, self._first)
+        previous_index = index - 1
+        while previous_index >= self._first and stamps[previous_index] == stamp_ns:
+            stored_sample = self._samples[previous_index]
+            if stored_sample.parent == sample.parent and stored_sample.pose() == sample.pose():
                 return True
-            before -= 1
-        stamps.insert(place, stamp_ns)
-        self._samples.insert(place, sample)
+            previous_index -= 1
+        stamps.insert(index, stamp_ns)
+        self._samples.insert(index, sample)
         return True
 
     def at(self, time_ns: int) -> tuple[int, Transform]:
@@ -189,15 +189,15 @@ class MovingCache(FrameCache):
 
         The pose is interpolated between the neighbouring transforms.
         """
-        place = self._index_at(time_ns)
-        sample = self._samples[place]
-        if time_ns in (0, self._stamps[place]):
+        index = self._index_at(time_ns)
+        sample = self._samples[index]
+        if time_ns in (0, self._stamps[index]):
             return sample.parent, sample.pose()
-        later = self._samples[place + 1]
-        if later.parent != sample.parent:
+        next_sample = self._samples[index + 1]
+        if next_sample.parent != sample.parent:
             return sample.parent, sample.pose()
-        start, end = self._stamps[place], self._stamps[place + 1]
-        return sample.parent, interpolate(sample.pose(), later.pose(), (time_ns - start) / (end - start))
+        start_ns, end_ns = self._stamps[index], self._stamps[index + 1]
+        return sample.parent, interpolate(sample.pose(), next_sample.pose(), (time_ns - start_ns) / (end_ns - start_ns))
 
     def parent_at(self, time_ns: int) -> int:
         """Return the number of the parent at a time."""
@@ -262,10 +262,10 @@ class MovingCache(FrameCache):
         return bisect_right(stamps, time_ns, self._first) - 1
 
     def _prune(self, latest: int) -> None:
-        stamps, first = self._stamps, self._first
-        while stamps[first] + self._span_ns < latest:
-            first += 1
-        if first > _COMPACT_FROM and first * 2 > len(stamps):
-            del stamps[:first], self._samples[:first]
-            first = 0
-        self._first = first
+        stamps, first_index = self._stamps, self._first
+        while stamps[first_index] + self._span_ns < latest:
+            first_index += 1
+        if first_index > _MAX_EXPIRED and first_index * 2 > len(stamps):
+            del stamps[:first_index], self._samples[:first_index]
+            first_index = 0
+        self._first = first_index

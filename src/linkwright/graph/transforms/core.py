@@ -35,12 +35,15 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 DEFAULT_CACHE_TIME = Duration(seconds=10)
 _QUATERNION_TOLERANCE = 10e-3
 _OLD_DATA_PERIOD_S = 2.0
-"""Between two complaints about transforms from the past: two publishers whose times differ give rise to all of them."""
-_PLANS_KEPT = 64
-"""Publishers send the same frames again and again; more different lists than this means that they do not."""
+"""The minimum time between two warnings about old data, in seconds.
+
+Two publishers whose clocks differ would otherwise cause a warning for every message.
+"""
+_MAX_PLANS = 64
+"""The maximum number of plans. Publishers usually send the same lists of frames, so few plans are needed."""
 
 _Plan = list[tuple["FrameCache | None", int]]
-"""For each transform of a message the cache of its frame, and the number of its parent."""
+"""For each transform of a message, the cache of the child frame and the number of the parent frame."""
 
 _NOT_DEFINED = "Source or target frame is not yet defined"
 
@@ -123,7 +126,7 @@ class BufferCore:
             ExtrapolationException: there are no transforms for that time.
             InvalidArgumentException: a name is empty or starts with a slash.
         """
-        pose, time_ns = self.lookup(target_frame, source_frame, nanoseconds_of(time))
+        pose, time_ns = self.lookup(target_frame, source_frame, to_nanoseconds(time))
         return _message(target_frame, source_frame, time_ns, pose)
 
     def lookup_transform_full_core(
@@ -139,8 +142,8 @@ class BufferCore:
         with self._lock:
             for argument, frame in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
                 self._number(f"lookupTransform argument {argument}_frame", frame)
-            source_in_fixed, _ = self.lookup(fixed_frame, source_frame, nanoseconds_of(source_time))
-            fixed_in_target, time_ns = self.lookup(target_frame, fixed_frame, nanoseconds_of(target_time))
+            source_in_fixed, _ = self.lookup(fixed_frame, source_frame, to_nanoseconds(source_time))
+            fixed_in_target, time_ns = self.lookup(target_frame, fixed_frame, to_nanoseconds(target_time))
         return _message(target_frame, source_frame, time_ns, compose(fixed_in_target, source_in_fixed))
 
     def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
@@ -156,8 +159,8 @@ class BufferCore:
                 return IDENTITY, latest[0] if latest else time_ns
             target_number = self._number("lookupTransform argument target_frame", target)
             source_number = self._number("lookupTransform argument source_frame", source)
-            way = self._walker.find_path(target_number, source_number, time_ns)
-            return way.pose(), way.time_ns
+            path = self._walker.find_path(target_number, source_number, time_ns)
+            return path.pose(), path.time_ns
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
         """Return whether a lookup would succeed, and the reason if not, with tf2's wording."""
@@ -168,7 +171,7 @@ class BufferCore:
                 objection = self._objection(f"canTransform argument {argument}_frame", frame)
                 if objection:
                     return False, objection
-            return self._can_transform(target_frame, source_frame, nanoseconds_of(time))
+            return self._can_transform(target_frame, source_frame, to_nanoseconds(time))
 
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
@@ -180,10 +183,8 @@ class BufferCore:
                 objection = self._objection(f"canTransform argument {argument}_frame", frame)
                 if objection:
                     return False, objection
-            verdict = self._can_transform(target_frame, fixed_frame, nanoseconds_of(target_time))
-            return (
-                self._can_transform(fixed_frame, source_frame, nanoseconds_of(source_time)) if verdict[0] else verdict
-            )
+            result = self._can_transform(target_frame, fixed_frame, to_nanoseconds(target_time))
+            return self._can_transform(fixed_frame, source_frame, to_nanoseconds(source_time)) if result[0] else result
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """Return the latest time for which all moving frames between two frames have transforms.
@@ -227,7 +228,7 @@ class BufferCore:
                 tracking_frame,
                 observation_frame,
                 (reference_frame, reference_point, reference_point_frame),
-                (nanoseconds_of(time), latest_ns, nanoseconds_of(averaging_interval)),
+                (to_nanoseconds(time), latest_ns, to_nanoseconds(averaging_interval)),
             )
 
     def clear(self) -> None:
@@ -243,12 +244,12 @@ class BufferCore:
         If `time` is given, the text includes the delay of each frame at that time.
         """
         with self._lock:
-            return frames_as_yaml(self._facts(), nanoseconds_of(time) if time is not None else 0)
+            return frames_as_yaml(self._frame_facts(), to_nanoseconds(time) if time is not None else 0)
 
     def all_frames_as_string(self) -> str:
         """Return all frames with their parents, one per line."""
         with self._lock:
-            return frames_as_text(self._facts(with_empty=True))
+            return frames_as_text(self._frame_facts(with_empty=True))
 
     def frame_names(self) -> list[str]:
         """Return the names of all frames, in the order in which they were first seen."""
@@ -265,19 +266,19 @@ class BufferCore:
         """
         with self._lock:
             names = [
-                *self._chain_names(fixed_frame, source_frame, nanoseconds_of(source_time)),
-                *self._chain_names(target_frame, fixed_frame, nanoseconds_of(target_time)),
+                *self._chain_names(fixed_frame, source_frame, to_nanoseconds(source_time)),
+                *self._chain_names(target_frame, fixed_frame, to_nanoseconds(target_time)),
             ]
-        kept: list[str] = []
+        chain_names: list[str] = []
         for name in names:
-            if not kept or kept[-1] != name:
-                kept.append(name)
-        return kept
+            if not chain_names or chain_names[-1] != name:
+                chain_names.append(name)
+        return chain_names
 
     def all_frames_as_dot(self, time: Any = None) -> str:
         """Return all frames as a Graphviz graph. If `time` is given, the graph includes ages."""
         with self._lock:
-            return frames_as_dot(self._facts(), nanoseconds_of(time) if time is not None else 0)
+            return frames_as_dot(self._frame_facts(), to_nanoseconds(time) if time is not None else 0)
 
     # tf2_py's names of these methods
     _chain = chain
@@ -306,18 +307,18 @@ class BufferCore:
         pose = (
             translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z, rotation.w,
         )  # fmt: skip
-        self._set(header.frame_id, message.child_frame_id, nanoseconds_of(header.stamp), pose, authority, static=static)
+        self._set(header.frame_id, message.child_frame_id, to_nanoseconds(header.stamp), pose, authority, static=static)
 
     def _set(self, parent: str, child: str, stamp_ns: int, pose: Transform, authority: str, *, static: bool) -> None:
         parent, child = parent.removeprefix("/"), child.removeprefix("/")
-        problem = _problem(parent, child, pose, authority)
+        problem = _refusal_reason(parent, child, pose, authority)
         if problem is not None:
             self._logger.error(problem)
             return
         with self._lock:
-            number = self._insert(child)
+            number = self._add_frame(child)
             cache = self._cache(number, static)
-            if cache.add(stamp_ns, Sample(self._insert(parent), pose)):
+            if cache.add(stamp_ns, Sample(self._add_frame(parent), pose)):
                 self._authorities[number] = authority
                 return
         self._logger.warning(
@@ -341,10 +342,10 @@ class BufferCore:
                 if not parent or not child or parent == child:
                     entries.append((None, 0))
                     continue
-                number = self._insert(child)
-                entries.append((self._cache(number, static), self._insert(parent)))
+                number = self._add_frame(child)
+                entries.append((self._cache(number, static), self._add_frame(parent)))
                 self._authorities[number] = authority
-            if len(self._plans) >= _PLANS_KEPT:
+            if len(self._plans) >= _MAX_PLANS:
                 self._plans.clear()
             plan = self._plans[key] = entries
         return plan
@@ -357,7 +358,7 @@ class BufferCore:
             self._plans.clear()
         return cache
 
-    def _insert(self, frame: str) -> int:
+    def _add_frame(self, frame: str) -> int:
         number = self._numbers.get(frame)
         if number is None:
             number = self._numbers[frame] = len(self._names)
@@ -397,11 +398,11 @@ class BufferCore:
         source_number = self._number("_chainAsVector argument source_frame", source)
         if target_number == source_number:
             return [target]
-        way = self._walker.find_path(target_number, source_number, time_ns, poses=False)
-        return [self._names[number] for number in way.chain()]
+        path = self._walker.find_path(target_number, source_number, time_ns, poses=False)
+        return [self._names[number] for number in path.chain()]
 
-    def _facts(self, *, with_empty: bool = False) -> list[FrameFacts]:
-        facts = []
+    def _frame_facts(self, *, with_empty: bool = False) -> list[FrameFacts]:
+        frames = []
         for number, cache in enumerate(self._caches):
             if cache is None:
                 continue
@@ -409,7 +410,7 @@ class BufferCore:
             if latest is None and not with_empty:
                 continue
             stamp_ns, parent = latest or (0, 0)
-            facts.append(
+            frames.append(
                 FrameFacts(
                     self._names[number],
                     self._names[parent],
@@ -419,7 +420,7 @@ class BufferCore:
                     cache.oldest_ns(),
                 )
             )
-        return facts
+        return frames
 
 
 def _are_usable(poses: NDArray[np.float64]) -> bool:
@@ -429,7 +430,7 @@ def _are_usable(poses: NDArray[np.float64]) -> bool:
     return bool((np.abs(squared_lengths - 1.0) < _QUATERNION_TOLERANCE).all() and not np.isnan(poses[:, :3]).any())
 
 
-def nanoseconds_of(time: Any) -> int:
+def to_nanoseconds(time: Any) -> int:
     """Return the nanoseconds of a ``Time``, a ``Duration`` or a builtin_interfaces message.
 
     Raises:
@@ -442,12 +443,12 @@ def nanoseconds_of(time: Any) -> int:
     return int(time.nanoseconds)
 
 
-def _problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
+def _refusal_reason(parent: str, child: str, pose: Transform, authority: str) -> str | None:
     """Return why a transform is refused, with tf2's wording; None if it is accepted."""
     x, y, z, w = pose[3:]
     # The comparison is false for NaN and infinite numbers, too, so this single test covers the usual case.
-    unit = abs(x * x + y * y + z * z + w * w - 1.0) < _QUATERNION_TOLERANCE
-    if unit and parent and child and parent != child and not any(map(isnan, pose[:3])):
+    is_unit = abs(x * x + y * y + z * z + w * w - 1.0) < _QUATERNION_TOLERANCE
+    if is_unit and parent and child and parent != child and not any(map(isnan, pose[:3])):
         return None
     if child == parent:
         return (

@@ -55,17 +55,17 @@ class TimeoutException(TransformException):
         super().__init__(text, code="GRAPH306")
 
 
-def loop(which: str) -> LookupException:
-    """Return the error for parents that form a loop, with `which` appended to the message."""
+def loop(detail: str) -> LookupException:
+    """Return the error for parents that form a loop, with `detail` appended to the message."""
     return LookupException(
-        phrase("The tf tree is invalid because it contains a loop.{which}", which=which), code="GRAPH303"
+        phrase("The tf tree is invalid because it contains a loop.{which}", which=detail), code="GRAPH303"
     )
 
 
-def unknown_frame_error(argument: str, frame: str, known: Iterable[str]) -> LookupException:
+def unknown_frame_error(argument: str, frame: str, frame_names: Iterable[str]) -> LookupException:
     """Return the error for a frame that does not exist."""
     text = phrase('"{frame}" passed to {argument} does not exist. ', frame=frame, argument=argument)
-    return LookupException(text, hint=did_you_mean(frame, known))
+    return LookupException(text, hint=did_you_mean(frame, frame_names))
 
 
 def frame_name_error(argument: str, frame: str) -> InvalidArgumentException | None:

@@ -18,22 +18,22 @@ _NO_ROTATION = float(np.finfo(np.float64).eps)
 """A quaternion with a squared length below this counts as no rotation, as in tf2_geometry_msgs."""
 
 
-def transform_pose_of(transform: Any) -> Transform:
+def pose_from_transform(transform: Any) -> Transform:
     """Return the pose in a geometry_msgs/msg/TransformStamped."""
     return _transform(transform.transform.translation, transform.transform.rotation)
 
 
 def do_transform_point(point: Any, transform: Any) -> Any:
     """Return a PointStamped in the target frame."""
-    result = _new("PointStamped", transform)
+    result = _new_message("PointStamped", transform)
     _set_vector(result.point, _apply(transform, (point.point.x, point.point.y, point.point.z)))
     return result
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
     """Return a Vector3Stamped in the target frame. The vector is rotated but not translated."""
-    result = _new("Vector3Stamped", transform)
-    _set_vector(result.vector, _turned(transform, vector3.vector))
+    result = _new_message("Vector3Stamped", transform)
+    _set_vector(result.vector, _rotate_vector(transform, vector3.vector))
     return result
 
 
@@ -47,24 +47,24 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
     from linkwright.messages import get_message
 
     result = get_message("geometry_msgs/msg/Pose")()
-    own = _transform(pose.position, pose.orientation)
-    x, y, z, qx, qy, qz, qw = compose(transform_pose_of(transform), own)
+    local_pose = _transform(pose.position, pose.orientation)
+    x, y, z, qx, qy, qz, qw = compose(pose_from_transform(transform), local_pose)
     _set_vector(result.position, (x, y, z))
-    turned = result.orientation
-    turned.x, turned.y, turned.z, turned.w = qx, qy, qz, qw
+    orientation = result.orientation
+    orientation.x, orientation.y, orientation.z, orientation.w = qx, qy, qz, qw
     return result
 
 
 def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
     """Return a PoseStamped in the target frame."""
-    result = _new("PoseStamped", transform)
+    result = _new_message("PoseStamped", transform)
     result.pose = do_transform_pose(pose.pose, transform)
     return result
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
     """Return a PoseWithCovarianceStamped in the target frame; its covariance is rotated, too."""
-    result = _new("PoseWithCovarianceStamped", transform)
+    result = _new_message("PoseWithCovarianceStamped", transform)
     result.pose.pose = do_transform_pose(pose.pose.pose, transform)
     result.pose.covariance = transform_covariance(pose.pose.covariance, transform)
     return result
@@ -72,9 +72,9 @@ def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
 
 def do_transform_wrench(wrench: Any, transform: Any) -> Any:
     """Return a WrenchStamped in the target frame, with force and torque rotated."""
-    result = _new("WrenchStamped", transform)
-    _set_vector(result.wrench.force, _turned(transform, wrench.wrench.force))
-    _set_vector(result.wrench.torque, _turned(transform, wrench.wrench.torque))
+    result = _new_message("WrenchStamped", transform)
+    _set_vector(result.wrench.force, _rotate_vector(transform, wrench.wrench.force))
+    _set_vector(result.wrench.torque, _rotate_vector(transform, wrench.wrench.torque))
     return result
 
 
@@ -83,7 +83,7 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
     from linkwright.messages import get_message
 
     point_class = get_message("geometry_msgs/msg/Point32")
-    result = _new("PolygonStamped", transform)
+    result = _new_message("PolygonStamped", transform)
     points = []
     for corner in polygon.polygon.points:
         point = point_class()
@@ -98,20 +98,20 @@ def transform_covariance(cov_in: Any, transform: Any) -> NDArray[np.float64]:
 
     Args:
         cov_in: 36 numbers, the rows of the covariance matrix of x, y, z and the rotations about these axes.
-        transform: the transform, of which only the rotation is used.
+        transform: the transform; only its rotation is used.
 
     Returns:
         Array, shape (36,).
     """
-    turn = rotation_matrix(transform_pose_of(transform)[3:])
-    both = np.zeros((6, 6))
-    both[:3, :3] = both[3:, 3:] = turn
+    rotation = rotation_matrix(pose_from_transform(transform)[3:])
+    block_rotation = np.zeros((6, 6))
+    block_rotation[:3, :3] = block_rotation[3:, 3:] = rotation
     covariance = np.asarray(cov_in, dtype=np.float64).reshape(6, 6)
-    turned: NDArray[np.float64] = (both @ covariance @ both.T).reshape(36)
-    return turned
+    rotated: NDArray[np.float64] = (block_rotation @ covariance @ block_rotation.T).reshape(36)
+    return rotated
 
 
-def _new(name: str, transform: Any) -> Any:
+def _new_message(name: str, transform: Any) -> Any:
     from linkwright.messages import get_message
 
     result = get_message(f"geometry_msgs/msg/{name}")()
@@ -120,18 +120,18 @@ def _new(name: str, transform: Any) -> Any:
 
 
 def _apply(transform: Any, vector: Vector3) -> Vector3:
-    pose = transform_pose_of(transform)
+    pose = pose_from_transform(transform)
     x, y, z = rotate(pose[3:], vector)
     return pose[0] + x, pose[1] + y, pose[2] + z
 
 
-def _turned(transform: Any, vector: Any) -> Vector3:
-    return rotate(transform_pose_of(transform)[3:], (vector.x, vector.y, vector.z))
+def _rotate_vector(transform: Any, vector: Any) -> Vector3:
+    return rotate(pose_from_transform(transform)[3:], (vector.x, vector.y, vector.z))
 
 
 def _transform(position: Any, rotation: Any) -> Transform:
-    turn = normalized(rotation.x, rotation.y, rotation.z, rotation.w, least=_NO_ROTATION)
-    return (position.x, position.y, position.z, *turn)
+    unit_rotation = normalized(rotation.x, rotation.y, rotation.z, rotation.w, least=_NO_ROTATION)
+    return (position.x, position.y, position.z, *unit_rotation)
 
 
 def _set_vector(target: Any, vector: Vector3) -> None:

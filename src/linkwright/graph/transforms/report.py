@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from linkwright.graph.transforms.cache import format_time
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_SHORTEST_SPAN_NS = 100_000
-"""The time that counts between transforms that came at one moment (tf2: 100 microseconds)."""
+_MIN_SPAN_NS = 100_000
+"""The minimum span from which a rate is computed, so that the rate is finite (tf2: 100 microseconds)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class FrameFacts:
     @property
     def rate(self) -> float:
         """The number of transforms per second, in Hz."""
-        span_ns = max(self.latest_ns - self.oldest_ns, _SHORTEST_SPAN_NS)
+        span_ns = max(self.latest_ns - self.oldest_ns, _MIN_SPAN_NS)
         return self.count * 1e9 / span_ns
 
     @property

@@ -1,7 +1,7 @@
 """The velocity of a frame, computed with the formulas of tf2's ``lookupVelocity``.
 
-The formulas are tf2's, so that programs receive the same numbers. This holds even when the reference frame rotates
-relative to the others, and other formulas would be correct.
+The formulas are tf2's, so that programs receive the same numbers. They are used even when the reference frame rotates
+relative to the other frames, although they are not correct then.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from linkwright.geometry.single import (
     quaternion_multiply,
     rotate,
     scaled,
-    subtracted,
+    subtract_vectors,
 )
 
 _EARLIEST_S = 0.00001
@@ -60,12 +60,12 @@ def velocity(
     start, _ = buffer.lookup(observation_frame, tracking_frame, round(start_s * 1e9))
     end, _ = buffer.lookup(observation_frame, tracking_frame, round(end_s * 1e9))
     axis, angle = axis_and_angle(quaternion_multiply(quaternion_inverse(start[3:]), end[3:]))
-    turning = scaled(rotate(start[3:], axis), angle / span_s)
-    moving = scaled(subtracted(end[:3], start[:3]), 1.0 / span_s)
-    in_reference, _ = buffer.lookup(reference_frame, tracking_frame, times_ns[0])
-    angular = rotate(in_reference[3:], turning)
-    linear = added(rotate(in_reference[3:], moving), cross(in_reference[:3], angular))
-    of_point, _ = buffer.lookup(reference_frame, point_frame, times_ns[0])
-    delta = subtracted(added(rotate(of_point[3:], point), of_point[:3]), in_reference[:3])
+    angular_velocity = scaled(rotate(start[3:], axis), angle / span_s)
+    linear_velocity = scaled(subtract_vectors(end[:3], start[:3]), 1.0 / span_s)
+    tracking_pose, _ = buffer.lookup(reference_frame, tracking_frame, times_ns[0])
+    angular = rotate(tracking_pose[3:], angular_velocity)
+    linear = added(rotate(tracking_pose[3:], linear_velocity), cross(tracking_pose[:3], angular))
+    point_pose, _ = buffer.lookup(reference_frame, point_frame, times_ns[0])
+    delta = subtract_vectors(added(rotate(point_pose[3:], point), point_pose[:3]), tracking_pose[:3])
     shift = (angular[0] * delta[0], angular[1] * delta[1], angular[2] * delta[2])
     return added(linear, shift), angular

@@ -15,8 +15,8 @@ from linkwright.graph.time.clock import JumpThreshold
 from linkwright.graph.time.values import Duration
 from linkwright.graph.transforms.core import BufferCore
 
-_LOOK_EVERY_SECONDS = 0.1
-"""Seconds that a wait lasts without news before it looks again, in case a step of the clock made the difference."""
+_CHECK_INTERVAL_S = 0.1
+"""How often a wait checks again without new data, in seconds, because a step of the clock may change the result."""
 
 NO_TIME = Duration()
 
@@ -32,7 +32,7 @@ class Buffer(BufferCore):
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:
         super().__init__(cache_time, logger=None if node is None else node.get_logger().get_child("tf2"))
-        self._news = threading.Condition(self._lock)
+        self._new_data = threading.Condition(self._lock)
         self._new_data_callbacks: list[Callable[[], None]] = []
         self._node = node
         if node is not None:
@@ -124,8 +124,8 @@ class Buffer(BufferCore):
 
         With `return_debug_tuple`, return a tuple of this bool and the reason for a failure.
         """
-        verdict = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
-        return verdict if return_debug_tuple else verdict[0]
+        result = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        return result if return_debug_tuple else result[0]
 
     def can_transform_full(
         self,
@@ -138,11 +138,11 @@ class Buffer(BufferCore):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether a lookup with a fixed frame succeeds in time; see `can_transform`."""
-        verdict = self._wait(
+        result = self._wait(
             lambda: self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame),
             timeout,
         )
-        return verdict if return_debug_tuple else verdict[0]
+        return result if return_debug_tuple else result[0]
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[Any]:
         """Return a future that gets the transform as soon as it is available."""
@@ -155,29 +155,29 @@ class Buffer(BufferCore):
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Future[Any]:
         """Return a future that gets a transform via a fixed frame as soon as it is available."""
-        question = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        arguments = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(
-            lambda: self.can_transform_full_core(*question)[0], lambda: self.lookup_transform_full_core(*question)
+            lambda: self.can_transform_full_core(*arguments)[0], lambda: self.lookup_transform_full_core(*arguments)
         )
 
     def _wait(self, ask: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
-        end = steady.monotonic() + timeout.nanoseconds / 1e9
-        with self._news:
+        deadline_s = steady.monotonic() + timeout.nanoseconds / 1e9
+        with self._new_data:
             while True:
-                verdict = ask()
-                left = end - steady.monotonic()
-                if verdict[0] or left <= 0.0:
-                    return verdict
-                self._news.wait(min(left, _LOOK_EVERY_SECONDS))
+                result = ask()
+                remaining_s = deadline_s - steady.monotonic()
+                if result[0] or remaining_s <= 0.0:
+                    return result
+                self._new_data.wait(min(remaining_s, _CHECK_INTERVAL_S))
 
-    def _future(self, can: Callable[[], bool], look_up: Callable[[], Any]) -> Future[Any]:
+    def _future(self, is_available: Callable[[], bool], look_up: Callable[[], Any]) -> Future[Any]:
         future: Future[Any] = Future()
 
         def on_new_data() -> None:
             if future.done():
                 return
             try:
-                if can():
+                if is_available():
                     future.set_result(look_up())
             except Exception as error:  # noqa: BLE001  # it belongs to the waiter
                 future.set_exception(error)
@@ -195,10 +195,10 @@ class Buffer(BufferCore):
                 self._new_data_callbacks.remove(callback)
 
     def _call_new_data_callbacks(self) -> None:
-        with self._news:
-            self._news.notify_all()
-            waiting = list(self._new_data_callbacks)
-        for callback in waiting:
+        with self._new_data:
+            self._new_data.notify_all()
+            callbacks = list(self._new_data_callbacks)
+        for callback in callbacks:
             callback()
 
     def _on_time_jump(self, _jump: Any) -> None:

@@ -15,7 +15,7 @@ from linkwright.graph.transforms.cache import FrameCache, NoDataError
 from linkwright.graph.transforms.errors import ExtrapolationException, LookupException, loop, not_connected_error
 
 MAX_DEPTH = 1000
-"""How many frames a way may have before it counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
+"""The maximum number of frames in a path; a longer path counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
 
 
 @dataclass(slots=True)
@@ -62,13 +62,13 @@ class Walker:
     Args:
         caches: the transforms of each frame, by number; None for frames without a parent. The list may grow.
         names: the names of the frames, by number.
-        shape: returns a text that lists all frames, for error messages.
+        describe_frames: returns a text that lists all frames, for error messages.
     """
 
     def __init__(self, caches: list[FrameCache | None], names: list[str], shape: Callable[[], str]) -> None:
         self._caches = caches
         self._names = names
-        self._shape = shape
+        self._describe_frames = shape
 
     def find_path(self, target: int, source: int, time_ns: int, *, poses: bool = True) -> FramePath:
         """Find the path from a source frame to a target frame.
@@ -86,12 +86,12 @@ class Walker:
         """
         if time_ns == 0:
             time_ns = self.latest_common_time(target, source)
-        way = FramePath(time_ns)
-        trouble = self._climb_from_source(way, source, target, poses)
-        if way.top == target:
-            return way
-        self._climb_from_target(way, source, target, poses, trouble)
-        return way
+        path = FramePath(time_ns)
+        reason = self._climb_from_source(path, source, target, poses)
+        if path.top == target:
+            return path
+        self._climb_from_target(path, source, target, poses, reason)
+        return path
 
     def latest_common_time(self, target: int, source: int) -> int:
         """Return the latest time for which all moving frames between two frames have transforms.
@@ -102,21 +102,21 @@ class Walker:
             ConnectivityException: no path connects the two frames.
             LookupException: the frames' parents form a loop.
         """
-        seen: list[tuple[int, int]] = []
+        ancestors: list[tuple[int, int]] = []
         times: list[int] = []
         frame = source
         for latest in self._latest_upwards(source):
-            seen.append(latest)
+            ancestors.append(latest)
             times.append(latest[0])
             frame = latest[1]
             if frame == target:
                 return _earliest(times)
-        parents = {parent: place for place, (_, parent) in reversed(list(enumerate(seen)))}
+        parents = {parent: index for index, (_, parent) in reversed(list(enumerate(ancestors)))}
         times = []
         for stamp, parent in self._latest_upwards(target):
             times.append(stamp)
             if parent in parents:
-                return _earliest(times + [stamp for stamp, _ in seen[: parents[parent] + 1]])
+                return _earliest(times + [stamp for stamp, _ in ancestors[: parents[parent] + 1]])
             if parent == source:
                 return _earliest(times)
         raise not_connected_error(self._names[target], self._names[source])
@@ -131,13 +131,13 @@ class Walker:
             frame = latest[1]
         raise self._loop()
 
-    def _climb_from_source(self, way: FramePath, source: int, target: int, poses: bool) -> str | None:
-        """Climb from the source to the target or the root, and store this half of the path in `way`.
+    def _climb_from_source(self, path: FramePath, source: int, target: int, poses: bool) -> str | None:
+        """Climb from the source to the target or the root, and store this half of the path in `path`.
 
         Returns the reason if missing data ended the climb early, otherwise None.
         """
         frame, pose = source, IDENTITY
-        trouble = None
+        reason = None
         for depth in range(MAX_DEPTH + 2):
             if frame == target:
                 break
@@ -145,59 +145,59 @@ class Walker:
             if cache is None:
                 break
             try:
-                parent, step = cache.at(way.time_ns) if poses else (cache.parent_at(way.time_ns), IDENTITY)
+                parent, step = cache.at(path.time_ns) if poses else (cache.parent_at(path.time_ns), IDENTITY)
             except NoDataError as error:
-                trouble = str(error)
+                reason = str(error)
                 break
             if depth > MAX_DEPTH:
                 raise self._loop()
             if poses:
                 pose = compose(step, pose)
-            way.up.append(frame)
+            path.up.append(frame)
             frame = parent
-        way.top, way.source_pose = frame, pose
-        return trouble
+        path.top, path.source_pose = frame, pose
+        return reason
 
-    def _climb_from_target(self, way: FramePath, source: int, target: int, poses: bool, trouble: str | None) -> None:
+    def _climb_from_target(self, path: FramePath, source: int, target: int, poses: bool, reason: str | None) -> None:
         frame, pose = target, IDENTITY
         for depth in range(MAX_DEPTH + 2):
-            if frame == way.top:
+            if frame == path.top:
                 break
             if frame == source:
-                way.up.clear()
-                way.top, way.source_pose = source, IDENTITY
+                path.up.clear()
+                path.top, path.source_pose = source, IDENTITY
                 break
             cache = self._caches[frame]
             if cache is None:
                 break
             try:
-                parent, step = cache.at(way.time_ns) if poses else (cache.parent_at(way.time_ns), IDENTITY)
+                parent, step = cache.at(path.time_ns) if poses else (cache.parent_at(path.time_ns), IDENTITY)
             except NoDataError as error:
                 raise self._extrapolation_error(str(error), source, target) from None
             if depth > MAX_DEPTH:
                 raise self._loop()
             if poses:
                 pose = compose(step, pose)
-            way.down.append(frame)
+            path.down.append(frame)
             frame = parent
-        way.target_pose = pose
-        if frame != way.top:
-            if trouble is not None:
-                raise self._extrapolation_error(trouble, source, target)
+        path.target_pose = pose
+        if frame != path.top:
+            if reason is not None:
+                raise self._extrapolation_error(reason, source, target)
             raise not_connected_error(self._names[target], self._names[source])
 
-    def _extrapolation_error(self, trouble: str, source: int, target: int) -> ExtrapolationException:
+    def _extrapolation_error(self, reason: str, source: int, target: int) -> ExtrapolationException:
         return ExtrapolationException(
             phrase(
                 "{trouble}, when looking up transform from frame [{names}] to frame [{other_names}]",
-                trouble=trouble,
+                trouble=reason,
                 names=self._names[source],
                 other_names=self._names[target],
             )
         )
 
     def _loop(self) -> LookupException:
-        return loop(f"\n{self._shape()}\n")
+        return loop(f"\n{self._describe_frames()}\n")
 
 
 def _earliest(times: list[int]) -> int:

@@ -1,4 +1,4 @@
-"""The guardian, which ends the processes of a launcher that was killed.
+"""The guardian, which ends the processes of a launch if its launcher is killed.
 
 A launcher that is killed with SIGKILL cannot end its processes. A small helper program, the guardian, is therefore
 started together with the first process. The guardian reads the process groups of the launch from a pipe that the
@@ -14,33 +14,33 @@ import sys
 from pathlib import Path
 
 _PROGRAM = Path(__file__).with_name("guardian_program.py")
-_MARK = "LINKWRIGHT_LAUNCH"
-_END_SECONDS = 2.0
+_MARK_VARIABLE = "LINKWRIGHT_LAUNCH"
+_EXIT_TIMEOUT_SECONDS = 2.0
 
 
 class Guardian:
-    """The launcher's side of the guardian, which does nothing on systems without process groups."""
+    """The launcher's interface to the guardian, without effect on systems without process groups."""
 
     def __init__(self) -> None:
-        self._identity = os.urandom(16).hex()
+        self._mark_value = os.urandom(16).hex()
         self._process: subprocess.Popen[bytes] | None = None
         self._closed = False
         self._folder: Path | None = None
 
     def start_and_mark(self, environment: dict[str, str]) -> dict[str, str]:
-        """Start the guardian if needed, and return the environment with the mark of the launch.
+        """Start the guardian if needed, and return an environment that contains the mark of the launch.
 
-        The guardian finds the processes of the launch by this mark.
+        The guardian recognises the processes of the launch by this mark.
         """
         self._start()
-        return {**environment, _MARK: self._identity}
+        return {**environment, _MARK_VARIABLE: self._mark_value}
 
     def watch(self, pid: int) -> None:
-        """Register the process group whose leader has this process ID."""
+        """Register the process group with the given leader, so that it is ended if the launcher is killed."""
         self._send(f"+{pid}\n")
 
     def register_folder(self, folder: Path) -> None:
-        """Register a folder of temporary files to delete if the launcher is killed."""
+        """Register a folder of temporary files, so that it is deleted if the launcher is killed."""
         self._folder = folder
         self._send(f"={folder}\n")
 
@@ -49,7 +49,7 @@ class Guardian:
         self._send(f"-{pid}\n")
 
     def close(self) -> None:
-        """Announce that the launch ended normally, and wait for the guardian to exit."""
+        """Tell the guardian that the launch ended normally, and wait for the guardian to exit."""
         self._closed = True
         process = self._process
         if process is None:
@@ -59,7 +59,7 @@ class Guardian:
         with contextlib.suppress(OSError):
             process.stdin.close()
         try:
-            process.wait(_END_SECONDS)
+            process.wait(_EXIT_TIMEOUT_SECONDS)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
@@ -70,7 +70,7 @@ class Guardian:
             return
         with contextlib.suppress(OSError):  # the launch continues without a guardian if it cannot start
             self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own program
-                [sys.executable, "-I", "-S", "-X", "utf8", str(_PROGRAM), f"{_MARK}={self._identity}"],
+                [sys.executable, "-I", "-S", "-X", "utf8", str(_PROGRAM), f"{_MARK_VARIABLE}={self._mark_value}"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,

@@ -1,9 +1,9 @@
 """The program of the guardian, which ends the remaining processes of a killed launcher.
 
-The launcher runs this file by its path in a bare interpreter. The file imports little, so that it adds almost no time
-to a launch. Its standard input is a pipe from the launcher, with one line per event: ``+PID`` when a process group was
-started, ``-PID`` when the group ended, ``=PATH`` when a folder of temporary files was created, and ``.`` when the
-launch ended normally. If the pipe closes without the last line, the launcher was killed.
+The launcher runs this file in a bare interpreter. The file imports little, so that it adds almost no time to a launch.
+Its standard input is a pipe from the launcher, with one line per event: ``+PID`` when a process group was started,
+``-PID`` when the group ended, ``=PATH`` when a folder of temporary files was created, and ``.`` when the launch ended
+normally. If the pipe closes without this last line, the launcher was killed.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ import signal
 import sys
 import time
 
-_STEP_SECONDS = 0.02
-_STAGES = ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 0.0))
+_POLL_SECONDS = 0.02
+_SIGNAL_STAGES = ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 0.0))
 
 
 def main(mark: str) -> None:
     """Wait for the launcher to end, and end the remaining processes if the launcher was killed.
 
     Args:
-        mark: an environment variable ``NAME=VALUE`` that every process of the launch has.
+        mark: an environment variable ``NAME=VALUE`` that all processes of the launch have.
     """
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)
+    for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(signal_number, signal.SIG_IGN)
     groups: set[int] = set()
     folder = ""
     for line in sys.stdin:
@@ -44,9 +44,9 @@ def main(mark: str) -> None:
 
 
 def marked_groups(mark: bytes) -> set[int]:
-    """Return the IDs of the process groups whose environment contains the mark.
+    """Return the IDs of the process groups with a process whose environment contains the mark.
 
-    The result includes groups that were started just before the launcher was killed and were not yet registered. It is
+    The result includes groups that the launcher started just before it was killed, without registering them. It is
     empty on systems without ``/proc``.
     """
     try:
@@ -54,7 +54,7 @@ def marked_groups(mark: bytes) -> set[int]:
     except OSError:  # only Linux has /proc
         return set()
     pids = [int(entry) for entry in entries if entry.isdigit() and int(entry) != os.getpid()]
-    return {_group_of(pid) for pid in pids if _has_mark(pid, mark)} - {0, os.getpgid(0)}
+    return {_group_id(pid) for pid in pids if _has_mark(pid, mark)} - {0, os.getpgid(0)}
 
 
 def _has_mark(pid: int, mark: bytes) -> bool:
@@ -65,7 +65,7 @@ def _has_mark(pid: int, mark: bytes) -> bool:
         return False
 
 
-def _group_of(pid: int) -> int:
+def _group_id(pid: int) -> int:
     try:
         return os.getpgid(pid)
     except OSError:
@@ -73,19 +73,19 @@ def _group_of(pid: int) -> int:
 
 
 def end_groups(groups: set[int]) -> None:
-    """End process groups with SIGINT, then SIGTERM, then SIGKILL for the groups that remain."""
-    for number, seconds in _STAGES:
-        groups = {group for group in groups if send_signal(group, number)}
+    """End process groups with SIGINT, then with SIGTERM, and then with SIGKILL, as far as they still exist."""
+    for signal_number, seconds in _SIGNAL_STAGES:
+        groups = {group for group in groups if send_signal(group, signal_number)}
         deadline = time.monotonic() + seconds
         while groups and time.monotonic() < deadline:
-            time.sleep(_STEP_SECONDS)
+            time.sleep(_POLL_SECONDS)
             groups = {group for group in groups if send_signal(group, 0)}
 
 
-def send_signal(group: int, number: int) -> bool:
-    """Send a signal to a group, and return whether the group exists."""
+def send_signal(group: int, signal_number: int) -> bool:
+    """Send a signal to a process group, and return whether the group exists."""
     try:
-        os.killpg(group, number)
+        os.killpg(group, signal_number)
     except OSError:
         return False
     return True

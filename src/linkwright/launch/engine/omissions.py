@@ -1,4 +1,4 @@
-"""The parts that a launch skips because software is not installed."""
+"""The parts of a launch that are skipped because software is not installed."""
 
 from __future__ import annotations
 
@@ -10,49 +10,52 @@ from linkwright.launch.errors.unavailable import is_unavailable
 if TYPE_CHECKING:
     from linkwright.hosting.launch_log import LaunchLog
 
-_MISSING = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAUNCH142", "PKG101", "PKG102"})
-"""Codes of findings on missing software."""
+_MISSING_SOFTWARE_CODES = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAUNCH142", "PKG101", "PKG102"})
+"""The codes of findings that report missing software."""
 
-_CONSEQUENCES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
-"""Codes of findings on unset values, which skipped parts may have set."""
+_UNSET_VALUE_CODES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
+"""The codes of findings that report unset values, which skipped parts may have been meant to set."""
 
 
 class Omissions:
-    """Decides which parts of a launch to skip, and reports them.
+    """Decides which parts of a launch are skipped, and reports them.
 
     Attributes:
-        any: whether any part was skipped.
+        has_skipped: whether any part has been skipped.
 
     Args:
         log: the log of the launch.
-        wanted: whether to skip every part that cannot run; otherwise only parts that need missing third-party software.
+        skip_all: whether to skip every part that cannot run. If False, only parts that need missing third-party
+            software are skipped.
         command: the command that repeats the launch and skips the parts that cannot run; None if there is none.
     """
 
-    def __init__(self, log: LaunchLog, command: str | None, *, wanted: bool) -> None:
+    def __init__(self, log: LaunchLog, command: str | None, *, skip_all: bool) -> None:
         self._log = log
-        self._wanted = wanted
+        self._wanted = skip_all
         self._command = command
-        self.any = False
+        self.has_skipped = False
         self._unreported: list[Note] = []
 
     def skip(self, error: LinkwrightError) -> bool:
-        """Skip the part of the launch that raised an error, if missing software is the cause.
+        """Return whether to skip the part of the launch that raised an error, and record the skipped part.
 
-        An error about an unset value is also skipped if an earlier skipped part may have set the value.
+        A part is skipped if missing software is the cause. After that, a part with an unset value is skipped too.
 
         Returns:
-            Whether the part is skipped; False if the error must be reported.
+            True if the part is skipped; False if the error must be reported.
         """
-        consequence = self.any and any(diagnostic.code in _CONSEQUENCES for diagnostic in error.diagnostics)
-        if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
+        is_consequence = self.has_skipped and any(
+            diagnostic.code in _UNSET_VALUE_CODES for diagnostic in error.diagnostics
+        )
+        if not (is_consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
-        self.any = True
+        self.has_skipped = True
         self._unreported += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]
         return True
 
     def report(self) -> None:
-        """Print a warning that lists the parts skipped since the last call, if there are any."""
+        """Log a warning that lists the parts that were skipped since the last call, if any."""
         if not self._unreported:
             return
         message = counted(
@@ -66,29 +69,29 @@ class Omissions:
         self._unreported.clear()
 
     def with_skip_command(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
-        """Return the findings of a fatal error.
+        """Return the findings of a fatal error, with a note on how to skip the part if that is possible.
 
-        If a command would skip the missing part, the last finding gets a note with this command.
+        The note gives the command, and belongs to the last finding.
         """
-        *others, last = error.diagnostics
+        *other_diagnostics, last_diagnostic = error.diagnostics
         if self._command is None or not _is_missing(error):
             return error.diagnostics
-        note = Note(phrase("run {command} to skip it and run the rest", command=foreign(self._command)))
-        return (*others, last.with_changes(notes=(*last.notes, note)))
+        note = Note(phrase("to skip it and run the rest, run {command}", command=foreign(self._command)))
+        return (*other_diagnostics, last_diagnostic.with_changes(notes=(*last_diagnostic.notes, note)))
 
 
 def add_no_skip_note(error: LinkwrightError) -> None:
-    """Add a note to an error that no part of the launch can be skipped.
+    """Add a note to an error which says that no part of the launch can be skipped.
 
-    The note is added only if the error is about missing software and has a location.
+    The note is added only to an error about missing software that has a location.
     """
-    *others, last = error.diagnostics
-    if _is_missing(error) and last.span is not None:
+    *other_diagnostics, last_diagnostic = error.diagnostics
+    if _is_missing(error) and last_diagnostic.span is not None:
         note = Note(phrase("the launch file itself needs it, so no part can be skipped"))
-        error.diagnostics = (*others, last.with_changes(notes=(*last.notes, note)))
+        error.diagnostics = (*other_diagnostics, last_diagnostic.with_changes(notes=(*last_diagnostic.notes, note)))
 
 
 def _is_missing(error: LinkwrightError) -> bool:
     if isinstance(error, (ModuleNotFoundError, FileNotFoundError)) or getattr(error, "missing", False):
         return True
-    return any(diagnostic.code in _MISSING for diagnostic in error.diagnostics)
+    return any(diagnostic.code in _MISSING_SOFTWARE_CODES for diagnostic in error.diagnostics)

@@ -1,6 +1,6 @@
 """The process table of a launch.
 
-The table starts, respawns and ends processes, and leaves none running.
+The table starts, respawns and ends processes, and makes sure that no process outlives the launch.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class ProcessTable:
     def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._running: set[RunningProcess] = set()
-        self._left_behind: list[RunningProcess] = []
+        self._remaining_groups: list[RunningProcess] = []
         self._ending = asyncio.Event()
-        self._interrupted = False
+        self._is_interrupted = False
         self._guardian = Guardian()
 
     @property
@@ -42,28 +42,29 @@ class ProcessTable:
         self._session.spawn(self._follow(plan, name))
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
-        """Ask the processes whose actions match to end.
+        """Ask the processes with a matching action to end.
 
-        The delays before SIGTERM and SIGKILL are those in the plan of each process.
+        The plan of each process contains the delays before SIGTERM and SIGKILL.
         """
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 self._session.spawn(process.stop())
 
-    def signal_matching(self, matcher: ProcessMatcher, number: signal.Signals) -> None:
-        """Send a signal to the processes whose actions match."""
+    def signal_matching(self, matcher: ProcessMatcher, signal_number: signal.Signals) -> None:
+        """Send a signal to the processes with a matching action."""
         for process in tuple(self._running):
             if matcher(process.plan.action):
-                process.signal(number)
+                process.signal(signal_number)
 
     def stop_all(self, *, interrupted: bool) -> None:
-        """Ask all processes to end, and respawn none.
+        """Ask all processes to end, and do not respawn them.
 
         Args:
-            interrupted: whether the user interrupted the launch, in which case pending processes are not started.
+            interrupted: whether the user interrupted the launch. If True, processes that wait for their start do not
+                start.
         """
         self._ending.set()
-        self._interrupted = interrupted
+        self._is_interrupted = interrupted
         for process in tuple(self._running):
             self._session.spawn(process.stop())
 
@@ -74,24 +75,24 @@ class ProcessTable:
 
     @property
     def names(self) -> list[str]:
-        """The log names of the running processes, sorted."""
+        """The names of the running processes in the log, sorted."""
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum time in seconds that processes may take to end after `stop_all`."""
+        """Return the maximum seconds that the running processes may take to end after `stop_all`."""
         plans = [process.plan for process in tuple(self._running)]
         return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 
     def kill_all(self) -> None:
         """Kill all running processes, and the remaining children of ended processes.
 
-        This method is safe to call from a signal handler.
+        A signal handler may call this method.
         """
-        for process in (*self._running, *self._left_behind):
+        for process in (*self._running, *self._remaining_groups):
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
 
     def register_folder(self, folder: Path) -> None:
-        """Register a folder to be deleted if the launcher is killed."""
+        """Register a folder, so that it is deleted if the launcher is killed."""
         self._guardian.register_folder(folder)
 
     def close(self) -> None:
@@ -99,10 +100,10 @@ class ProcessTable:
         self._guardian.close()
 
     async def _follow(self, plan: ProcessPlan, name: str) -> None:
-        starts = 0
-        # As in ROS, if an action starts a process and a later action fails, the process is still started and then asked
-        # to end, because handlers wait for its exit. After an interrupt, it is not started.
-        while not self._ending.is_set() or (starts == 0 and not self._interrupted):
+        start_count = 0
+        # As in ROS, if an action starts a process and a later action fails, the process still starts and is then asked
+        # to end, because handlers wait for its exit. After an interrupt, it does not start.
+        while not self._ending.is_set() or (start_count == 0 and not self._is_interrupted):
             process = RunningProcess(
                 plan, name, self._session.log, self._session.emit, self._session.would_handle, self._guardian
             )
@@ -117,9 +118,9 @@ class ProcessTable:
             finally:
                 self._running.discard(process)
                 if process.is_group_alive():
-                    self._left_behind.append(process)
-            starts += 1
-            if not plan.respawn or 0 <= plan.respawn_limit < starts:
+                    self._remaining_groups.append(process)
+            start_count += 1
+            if not plan.respawn or 0 <= plan.respawn_limit < start_count:
                 return
             try:
                 await asyncio.wait_for(self._ending.wait(), plan.respawn_delay)

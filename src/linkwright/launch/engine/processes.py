@@ -1,6 +1,6 @@
 """The processes of a launch.
 
-Each process has its own process group, and its output is read line by line.
+Each process has its own process group, and its output is logged line by line.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ if TYPE_CHECKING:
 _HAS_GROUPS = hasattr(os, "killpg")
 _KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 _DRAIN_SECONDS = 0.2
-"""Seconds to read on after a process has ended: its children may hold the streams open forever."""
-_LONGEST_LINE = 100_000
+"""The seconds to read output after a process has ended, because its children may keep the streams open."""
+_MAX_LINE_LENGTH = 100_000
 """The maximum number of characters of an incomplete line."""
 _ESCALATION_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
-"""Seconds to wait before each signal when the user does not want to wait."""
+"""Seconds to wait before each signal when the user is impatient, by the name of the signal."""
 _TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-terminal-emulator", "xfce4-terminal"})
-"""Terminal programs that launch files use as ``prefix``, so that a process has a keyboard."""
+"""Terminal programs that launch files use as ``prefix``, so that the process can read the keyboard."""
 
 
 class RunningProcess:
     """A process of a launch, from its start to its end.
 
     Args:
-        plan: the plan of the process to start.
+        plan: the plan of the process.
         name: the name of the process in the log, such as ``talker-1``.
         log: the log that receives the output of the process.
         emit: the function that receives the events of the process.
-        wants_output: a function that returns whether any handler accepts an output event.
+        wants_output: returns whether any handler would accept an output event.
         guardian: the guardian that ends the process if the launcher is killed.
     """
 
@@ -69,9 +69,9 @@ class RunningProcess:
         self._open_streams = {1, 2}
         self._streams_closed = asyncio.Event()
         self._ended = asyncio.Event()
-        self._stopping = False
-        self._hurried = False
-        self._news = asyncio.Event()
+        self._is_stopping = False
+        self._is_hurried = False
+        self._change = asyncio.Event()
 
     async def run(self) -> int:
         """Start the process, wait for it to end, and return its exit status.
@@ -108,47 +108,48 @@ class RunningProcess:
         return returncode
 
     async def stop(self) -> None:
-        """Ask the process to end with SIGINT, then SIGTERM, then SIGKILL.
+        """End the process with SIGINT, then with SIGTERM, and then with SIGKILL.
 
-        The plan sets the delays between the signals.
+        The plan contains the delays between the signals.
         """
-        if self._stopping or self._ended.is_set():
+        if self._is_stopping or self._ended.is_set():
             return
-        self._stopping = True
+        self._is_stopping = True
         self._log.info_line(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
         self.signal_group(signal.SIGINT)
-        for seconds, sent, following in (
+        for seconds, sent_signal, next_signal in (
             (self.plan.seconds_to_sigterm, "SIGINT", "SIGTERM"),
             (self.plan.seconds_to_sigkill, "SIGTERM", "SIGKILL"),
         ):
-            began = time.monotonic()
-            if await self._ends_within(seconds, _ESCALATION_SECONDS[following]):
+            start = time.monotonic()
+            if await self._ends_within(seconds, _ESCALATION_SECONDS[next_signal]):
                 return
-            waited = round(time.monotonic() - began, 1) if self._hurried else seconds
+            waited_seconds = round(time.monotonic() - start, 1) if self._is_hurried else seconds
             self._log.error_line(
                 self.name,
-                f"process[{self.name}] failed to terminate '{waited:g}' seconds after receiving '{sent}', "
-                f"escalating to '{following}'",
+                f"process[{self.name}] failed to terminate '{waited_seconds:g}' seconds after receiving "
+                f"'{sent_signal}', "
+                f"escalating to '{next_signal}'",
             )
-            self.signal_group(_KILL if following == "SIGKILL" else signal.SIGTERM)
+            self.signal_group(_KILL if next_signal == "SIGKILL" else signal.SIGTERM)
 
     def escalate(self) -> None:
-        """Shorten the delays before the next signals, because the user does not want to wait."""
-        self._hurried = True
-        self._news.set()
+        """Shorten the delays before the next signals, because the user is impatient."""
+        self._is_hurried = True
+        self._change.set()
 
     async def _ends_within(self, seconds: float, hurried_seconds: float) -> bool:
         with contextlib.suppress(asyncio.TimeoutError):
-            await asyncio.wait_for(self._news.wait(), seconds)
-        if self._hurried and not self._ended.is_set():
+            await asyncio.wait_for(self._change.wait(), seconds)
+        if self._is_hurried and not self._ended.is_set():
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(self._ended.wait(), min(seconds, hurried_seconds))
         return self._ended.is_set()
 
-    def signal(self, number: signal.Signals) -> None:
-        """Log and send a signal that the launch file requested."""
-        self._log.info_line(self.name, f"sending signal '{number.name}' to process[{self.name}]")
-        self.signal_group(number)
+    def signal(self, signal_number: signal.Signals) -> None:
+        """Send a signal that the launch file requested, and log it."""
+        self._log.info_line(self.name, f"sending signal '{signal_number.name}' to process[{self.name}]")
+        self.signal_group(signal_number)
 
     def is_group_alive(self) -> bool:
         """Return whether the process or any of its children is still running."""
@@ -160,14 +161,14 @@ class RunningProcess:
             return False
         return True
 
-    def signal_group(self, number: int) -> None:
+    def signal_group(self, signal_number: int) -> None:
         """Send a signal to the process and its children."""
         transport = self._transport
         if transport is None:
             return
         with contextlib.suppress(ProcessLookupError, PermissionError):
             if _HAS_GROUPS:
-                os.killpg(transport.get_pid(), number)
+                os.killpg(transport.get_pid(), signal_number)
             elif transport.get_returncode() is None:
                 transport.terminate()
 
@@ -183,25 +184,25 @@ class RunningProcess:
             options["stdout"], options["stderr"] = (inner for _, inner in terminals)
         try:
             if plan.shell:
-                started = loop.subprocess_shell(lambda: _Streams(self), " ".join(plan.command), **options)
+                subprocess = loop.subprocess_shell(lambda: _ProcessProtocol(self), " ".join(plan.command), **options)
             else:
-                started = loop.subprocess_exec(lambda: _Streams(self), *plan.command, **options)
-            await started
+                subprocess = loop.subprocess_exec(lambda: _ProcessProtocol(self), *plan.command, **options)
+            await subprocess
         except BaseException:
-            for outer, _ in terminals:
-                os.close(outer)
+            for outer_fd, _ in terminals:
+                os.close(outer_fd)
             raise
         finally:
-            for _, inner in terminals:
-                os.close(inner)
-        for number, (outer, _) in enumerate(terminals, 1):
-            pipe = os.fdopen(outer, "rb", 0)
-            await loop.connect_read_pipe(partial(_Terminal, self, number), pipe)
+            for _, inner_fd in terminals:
+                os.close(inner_fd)
+        for stream_number, (outer_fd, _) in enumerate(terminals, 1):
+            pipe = os.fdopen(outer_fd, "rb", 0)
+            await loop.connect_read_pipe(partial(_TerminalProtocol, self, stream_number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
         """Record that the process is running.
 
-        asyncio calls this method before it delivers any output.
+        asyncio calls this method before any output arrives.
         """
         self._transport = transport
         self._guardian.watch(transport.get_pid())
@@ -209,7 +210,7 @@ class RunningProcess:
         self.plan.action.process_details = details
         self._log.info_line(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
-        if self._stopping:  # `stop` was called before the process was created
+        if self._is_stopping:  # `stop` was called while the process was being created
             self.signal_group(signal.SIGINT)
 
     def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
@@ -239,7 +240,7 @@ class RunningProcess:
                 program=program,
             )
             if " " in program:
-                hint = phrase("give program and arguments as separate items of cmd, or set shell=True")
+                hint = phrase("pass the program and its arguments as separate items of cmd, or set shell=True")
             elif program in _TERMINALS:
                 hint = phrase(
                     "install '{program}', which opens a window for the process, or run the process in its own "
@@ -249,7 +250,7 @@ class RunningProcess:
         else:
             reason = error.strerror if isinstance(error, OSError) else str(error)
             message = phrase(
-                "process '{name}' cannot be started: {reason}: '{program}'",
+                "process '{name}' cannot be started from program '{program}': {reason}",
                 name=self.name,
                 reason=foreign(reason),
                 program=program,
@@ -258,41 +259,43 @@ class RunningProcess:
 
     # --- output ---------------------------------------------------------------------------------------------
 
-    def handle_output(self, number: int, chunk: bytes) -> None:
+    def handle_output(self, stream_number: int, chunk: bytes) -> None:
         """Handle output that the process wrote to stdout (1) or stderr (2)."""
         action = self.plan.action
-        action.wrote(number, chunk)
-        kind = events.ProcessStdout if number == 1 else events.ProcessStderr
+        action.wrote(stream_number, chunk)
+        event_class = events.ProcessStdout if stream_number == 1 else events.ProcessStderr
         assert self._transport is not None
-        event = kind(text=chunk, action=action, **self._details(self._transport))
+        event = event_class(text=chunk, action=action, **self._details(self._transport))
         if self._wants_output(event):
             self._emit(event)
-        for line in self._lines[number].feed(chunk):
-            self._show(number, line)
+        for line in self._lines[stream_number].feed(chunk):
+            self._log_line(stream_number, line)
 
-    def handle_stream_end(self, number: int) -> None:
+    def handle_stream_end(self, stream_number: int) -> None:
         """Record that stdout (1) or stderr (2) is closed."""
-        self._open_streams.discard(number)
+        self._open_streams.discard(stream_number)
         if not self._open_streams:
             self._streams_closed.set()
 
     def ended(self) -> None:
         """Record that the process has ended."""
         self._ended.set()
-        self._news.set()
+        self._change.set()
 
     def _flush(self) -> None:
-        for number, lines in self._lines.items():
-            for line in lines.end():
-                self._show(number, line)
+        for stream_number, splitter in self._lines.items():
+            for line in splitter.end():
+                self._log_line(stream_number, line)
 
-    def _show(self, number: int, line: str) -> None:
-        shown = self.plan.output_format.format(line=line, this=self.plan.action)
-        self._log.process_line(self.name, number, shown, self.plan.destinations[number])
+    def _log_line(self, stream_number: int, line: str) -> None:
+        formatted_line = self.plan.output_format.format(line=line, this=self.plan.action)
+        self._log.process_line(self.name, stream_number, formatted_line, self.plan.destinations[stream_number])
 
     def _report_end(self, pid: int, returncode: int) -> None:
-        as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # ended by terminate()
-        if returncode == 0 or (self._stopping and as_asked):
+        is_requested_end = (
+            returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS
+        )  # ended by terminate()
+        if returncode == 0 or (self._is_stopping and is_requested_end):
             self._log.info_line(self.name, f"process has finished cleanly [pid {pid}]")
             return
         command = " ".join(self.plan.command)
@@ -300,35 +303,35 @@ class RunningProcess:
 
 
 class _LineSplitter:
-    """Splits the output of a process into lines.
+    """Splits the output of a process into lines of text.
 
-    An incomplete line that exceeds the maximum length is returned in parts.
+    An incomplete line that exceeds the maximum length is returned in chunks.
     """
 
     def __init__(self) -> None:
         self._decode = codecs.getincrementaldecoder("utf-8")("replace").decode
-        self._pieces: list[str] = []
+        self._chunks: list[str] = []
         self._length = 0
 
     def feed(self, chunk: bytes) -> list[str]:
         """Add a chunk of bytes, and return the lines that it completes, without line ends."""
-        first, *others = self._decode(chunk).split("\n")
-        self._pieces.append(first)
-        self._length += len(first)
-        if not others and self._length < _LONGEST_LINE:
+        first_text, *other_lines = self._decode(chunk).split("\n")
+        self._chunks.append(first_text)
+        self._length += len(first_text)
+        if not other_lines and self._length < _MAX_LINE_LENGTH:
             return []
-        complete = ["".join(self._pieces), *others]
-        rest = complete.pop() if others else ""
-        self._pieces, self._length = [rest], len(rest)
-        return [line.rstrip("\r") for line in complete]
+        complete_lines = ["".join(self._chunks), *other_lines]
+        remaining_text = complete_lines.pop() if other_lines else ""
+        self._chunks, self._length = [remaining_text], len(remaining_text)
+        return [line.rstrip("\r") for line in complete_lines]
 
     def end(self) -> list[str]:
-        """Return the unterminated last line in a list, or an empty list if there is none."""
-        rest = "".join(self._pieces) + self._decode(b"", final=True)
-        return [rest.rstrip("\r")] if rest else []
+        """Return a list with the unterminated last line, which is empty if there is none."""
+        remaining_text = "".join(self._chunks) + self._decode(b"", final=True)
+        return [remaining_text.rstrip("\r")] if remaining_text else []
 
 
-class _Streams(asyncio.SubprocessProtocol):
+class _ProcessProtocol(asyncio.SubprocessProtocol):
     """Forwards asyncio's callbacks for a process to its `RunningProcess`."""
 
     def __init__(self, process: RunningProcess) -> None:
@@ -348,12 +351,12 @@ class _Streams(asyncio.SubprocessProtocol):
         self._process.ended()
 
 
-class _Terminal(asyncio.Protocol):
+class _TerminalProtocol(asyncio.Protocol):
     """Forwards the output of a process that is attached to a pseudo-terminal."""
 
-    def __init__(self, process: RunningProcess, number: int) -> None:
+    def __init__(self, process: RunningProcess, stream_number: int) -> None:
         self._process = process
-        self._number = number
+        self._number = stream_number
 
     def data_received(self, data: bytes) -> None:
         self._process.handle_output(self._number, data)
@@ -363,9 +366,9 @@ class _Terminal(asyncio.Protocol):
 
 
 def _open_pseudo_terminals() -> list[tuple[int, int]]:
-    """Open pseudo-terminals for stdout and stderr, if the system has them.
+    """Return newly opened pseudo-terminals for stdout and stderr, if the system has them.
 
     Returns:
-        The file descriptors of the outer and inner end of each pseudo-terminal; an empty list if the system has none.
+        The file descriptors of the outer and inner end of each one; an empty list if the system has none.
     """
     return [os.openpty(), os.openpty()] if hasattr(os, "openpty") else []

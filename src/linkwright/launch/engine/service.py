@@ -19,24 +19,24 @@ from linkwright.launch.model.launch_utilities import get_loop
 if TYPE_CHECKING:
     from linkwright.launch.engine.session import LaunchSession
 
-_DEFAULT_LOG = "launch.log"
+_DEFAULT_LOG_NAME = "launch.log"
 
 
 class LaunchService:
     """Runs launch descriptions.
 
     Args:
-        argv: the command-line arguments, which entities read from the context.
-        noninteractive: whether there is no terminal, so that Ctrl-C does not reach the processes directly.
-        debug: whether details are logged.
+        argv: the command-line arguments, which entities can read from the launch context.
+        noninteractive: whether there is no terminal. Without one, Ctrl-C does not reach the processes directly.
+        debug: whether to log details.
         log_file_name: the name of the log file.
 
-    Descriptions and events that are added before a run are handled when it starts. Event handlers stay registered for
-    the next run.
+    Descriptions and events that are added before a run are handled when the run starts. Event handlers remain
+    registered for the next run.
     """
 
     _isolates_nodes = False
-    """Whether nodes that come with Linkwright run in separate processes."""
+    """Whether Linkwright's own nodes run in separate processes."""
 
     def __init__(
         self,
@@ -44,7 +44,7 @@ class LaunchService:
         argv: Iterable[str] | None = None,
         noninteractive: bool = False,
         debug: bool = False,
-        log_file_name: str = _DEFAULT_LOG,
+        log_file_name: str = _DEFAULT_LOG_NAME,
     ) -> None:
         self._log_file_name = log_file_name if log_file_name.endswith(".log") else f"{log_file_name}.log"
         self._logger_name = self._log_file_name.removesuffix(".log")
@@ -71,16 +71,16 @@ class LaunchService:
         return self.__task
 
     def include_launch_description(self, launch_description: LaunchDescription) -> None:
-        """Queue a description to be visited.
+        """Queue a description, which is then visited.
 
         This method may be called from any thread.
         """
         self.emit_event(events.IncludeLaunchDescription(launch_description))
 
     def emit_event(self, event: Any) -> None:
-        """Queue an event.
+        """Queue an event, which is then handled.
 
-        This method may be called from any thread, and before the run.
+        This method may be called from any thread, also before the run.
         """
         with self.__lock:
             loop = self.event_loop
@@ -95,8 +95,8 @@ class LaunchService:
         This method may be called from any thread, and has no effect if the launch is not running.
 
         Returns:
-            An awaitable if this is called on the launch's event loop or between two runs of that loop, unless
-            `force_sync` is set; otherwise None.
+            An awaitable if the caller is on the launch's event loop or between two runs of that loop, and `force_sync`
+            is not set. Otherwise None.
         """
         if self.__session is None:
             return None
@@ -104,7 +104,7 @@ class LaunchService:
         return asyncio.sleep(0) if self.__is_thread_of_loop() and not force_sync else None
 
     def __is_thread_of_loop(self) -> bool:
-        """Return whether the caller runs on the thread of the launch's event loop."""
+        """Return whether the caller is on the thread of the launch's event loop."""
         try:
             return asyncio.get_running_loop() is self.event_loop
         except RuntimeError:
@@ -115,10 +115,10 @@ class LaunchService:
         """Run until the launch is idle.
 
         Args:
-            shutdown_when_idle: whether an idle launch ends; otherwise only `shutdown` and signals end it.
+            shutdown_when_idle: whether the launch ends when it is idle. If False, only `shutdown` and signals end it.
 
         Returns:
-            0, or 1 if something in the launch failed.
+            0 if the launch succeeded, and 1 if something in it failed.
 
         Raises:
             RuntimeError: the service is already running, or the caller is not on the main thread.
@@ -168,10 +168,10 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
     """Cancel the remaining tasks of an event loop, unless the loop is still running."""
     if loop.is_running():
         return
-    left = asyncio.all_tasks(loop)
-    for task in left:
+    remaining_tasks = asyncio.all_tasks(loop)
+    for task in remaining_tasks:
         task.cancel()
-    loop.run_until_complete(asyncio.gather(*left, return_exceptions=True))
+    loop.run_until_complete(asyncio.gather(*remaining_tasks, return_exceptions=True))
     loop.run_until_complete(loop.shutdown_asyncgens())
 
 
@@ -182,6 +182,6 @@ class ProcessLaunchService(LaunchService):
 
 
 def _starting_folders() -> list[Path]:
-    """Return the start folders of the package search: the program's folder and the current one."""
+    """Return the folders where the search for packages starts: the program's folder and the current one."""
     program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
     return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may not exist any more

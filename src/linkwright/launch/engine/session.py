@@ -33,17 +33,17 @@ if TYPE_CHECKING:
 
 
 _REPORT_DELAY_SECONDS = 1.0
-"""Seconds after Ctrl-C until the log names the processes that delay the end."""
+"""The seconds after Ctrl-C until the log names the processes that delay the end of the launch."""
 
 
 class LaunchSession:
-    """A launch on the running event loop.
+    """A launch that runs on the current event loop.
 
     Args:
-        finder: the package finder.
+        finder: the finder of ROS packages.
         options: the options of the launch.
         log: the log of the launch.
-        context: an existing context with its handlers and queued events; a new context by default.
+        context: an existing context with its handlers and queued events; None to create a new one.
     """
 
     def __init__(
@@ -58,31 +58,31 @@ class LaunchSession:
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ending = False
         self._failures: set[object] = set()
-        self._visiting = False
-        self._wake = asyncio.Event()
-        self._queue.on_put = self._wake.set
-        self._held: set[asyncio.Future[Any]] = set()
+        self._is_visiting = False
+        self._wake_event = asyncio.Event()
+        self._queue.on_put = self._wake_event.set
+        self._held_futures: set[asyncio.Future[Any]] = set()
         self._waiting: dict[object, Callable[[], None] | None] = {}
         self._tasks: set[asyncio.Task[Any]] = set()
         self._process_numbers = count(1)
-        self._crash: BaseException | None = None
+        self._exception: BaseException | None = None
         self._scratch: ScratchFolder | None = None
-        self._included: deque[LaunchDescriptionEntity] = deque()
+        self._included_descriptions: deque[LaunchDescriptionEntity] = deque()
         self.left_out: set[str] = set()
-        self._omissions = Omissions(log, options.command_to_skip_missing, wanted=options.skip_missing)
+        self._omissions = Omissions(log, options.command_to_skip_missing, skip_all=options.skip_missing)
         self.processes = ProcessTable(self)
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
     async def run(self, description: LaunchDescriptionEntity, locals_: dict[str, Any] | None = None) -> bool:
-        """Visit a description and handle events until the launch is idle.
+        """Visit a description, and handle events until the launch ends.
 
         Args:
             description: the launch description.
             locals_: the initial locals of the context, such as the path of the launch file.
 
         Returns:
-            Whether all entities started and none failed.
+            Whether the launch succeeded: no entity failed, and something ran even if parts were skipped.
         """
         self.loop = asyncio.get_running_loop()
         self.context.extend_locals(locals_ or {})
@@ -96,19 +96,21 @@ class LaunchSession:
             await self._handle_events()
         finally:
             await self._close()
-        nothing_ran = self._omissions.any and not self.options.skip_missing and next(self._process_numbers) == 1
-        return not (self._failures or nothing_ran)
+        has_run_nothing = (
+            self._omissions.has_skipped and not self.options.skip_missing and next(self._process_numbers) == 1
+        )
+        return not (self._failures or has_run_nothing)
 
     @property
     def visiting(self) -> bool:
         """Whether code of the launch file is running, which blocks the event loop."""
-        return self._visiting
+        return self._is_visiting
 
     @property
     def scratch_folder(self) -> Path:
         """A folder for files that the processes of this launch read.
 
-        The folder is created on first access and deleted after the launch.
+        The folder is created on first access, and deleted after the launch.
         """
         if self._scratch is None:
             from linkwright.files.scratch_folders import ScratchFolder
@@ -118,11 +120,11 @@ class LaunchSession:
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:
-        """Queue a description to be visited.
+        """Queue a description, which is then visited.
 
-        This method may be called from any thread, and before the run.
+        This method may be called from any thread, also before the run.
         """
-        self._included.append(description)
+        self._included_descriptions.append(description)
         if self.loop is not None:
             self.loop.call_soon_threadsafe(self._visit_included)
 
@@ -137,7 +139,7 @@ class LaunchSession:
 
         As in ROS, an error ends the launch.
         """
-        self._visiting = True
+        self._is_visiting = True
         try:
             self._visit(entity, context)
         except LinkwrightError as error:
@@ -148,24 +150,24 @@ class LaunchSession:
         except KeyboardInterrupt:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
         finally:
-            self._visiting = False
+            self._is_visiting = False
             self._omissions.report()
 
-    def could_not_start(self, what: object, error: LinkwrightError) -> None:
+    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started; the launch continues without it."""
         if self._omissions.skip(error):
             self._omissions.report()
             return
         self.log.diagnostics(error.diagnostics)
-        self.fail(what)
+        self.fail(subject)
 
-    def fail(self, what: object) -> None:
-        """Record a failure; the launch exits with status 1 unless the failure is cleared."""
-        self._failures.add(what)
+    def fail(self, failure: object) -> None:
+        """Record a failure, which makes the launch exit with status 1 unless the failure is cleared."""
+        self._failures.add(failure)
 
-    def clear_failure(self, what: object) -> None:
-        """Clear a failure that has been resolved."""
-        self._failures.discard(what)
+    def clear_failure(self, failure: object) -> None:
+        """Clear a failure whose cause has been fixed."""
+        self._failures.discard(failure)
 
     @property
     def isolates_nodes(self) -> bool:
@@ -185,12 +187,12 @@ class LaunchSession:
         """Return whether any handler accepts an event."""
         return self.context.would_handle_event(event)
 
-    def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description in the log and in the viewer."""
-        self.reload.report(about, findings)
+    def report(self, description: object, findings: Sequence[Diagnostic]) -> None:
+        """Report findings about a robot description in the log and the viewer."""
+        self.reload.report(description, findings)
 
     def number_process(self, base_name: str) -> str:
-        """Return the log name of a process, which is its base name and the next number."""
+        """Return the name of a process in the log, which is its base name with the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
     def call_later(
@@ -202,30 +204,30 @@ class LaunchSession:
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Schedule an event and a visit to entities with the current locals.
+        """Emit an event and visit entities with the current locals, after a delay.
 
         Args:
-            seconds: the delay.
+            seconds: the delay in seconds.
             event: the event to emit after the delay.
             entities: the entities to visit after the delay.
-            cancel_on_shutdown: whether a shutdown of the launch cancels the visit.
-            schedule: measures the delay; by default the event loop does.
+            cancel_on_shutdown: whether a shutdown of the launch cancels the event and the visit.
+            schedule: the function that schedules the call; None for the event loop of the launch.
 
         Returns:
-            A function that cancels the visit.
+            A function that cancels the event and the visit.
         """
         assert self.loop is not None
         token = object()
-        following = as_entities(entities)
-        values = self.context.get_locals_as_dict()
+        next_entities = as_entities(entities)
+        local_values = self.context.get_locals_as_dict()
 
         def due() -> None:
             self._waiting.pop(token, None)
             self.emit(event)
             self.context.push_locals()
-            self.context.extend_locals(values)
+            self.context.extend_locals(local_values)
             try:
-                for entity in following:
+                for entity in next_entities:
                     self.visit(entity, self.context)
             finally:
                 self.context.pop_locals()
@@ -234,7 +236,7 @@ class LaunchSession:
         def cancel() -> None:
             handle.cancel()
             self._waiting.pop(token, None)
-            self._wake.set()
+            self._wake_event.set()
 
         handle = (schedule or self.loop.call_later)(seconds, due)
         self._waiting[token] = cancel if cancel_on_shutdown else None
@@ -243,24 +245,24 @@ class LaunchSession:
     # --- reports from the nodes of this process ---------------------------------------------------------------
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Report that a node of this process is running."""
+        """Report that a node in the launcher's process is running."""
         plan.owner.process_details = plan.details
         self.emit(events.ProcessStarted(action=plan.owner, **plan.details))
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Report that a node of this process has ended or could not start, with its exit status."""
+        """Report the exit status of a node in the launcher's process that has ended or could not start."""
         self.emit(events.ProcessExited(action=plan.owner, returncode=status, **plan.details))
 
     # --- shutdown -------------------------------------------------------------------------------------------
 
     def shut_down(self, reason: str) -> None:
-        """End the launch after the queued events have been handled."""
+        """End the launch after the events that are already queued have been handled."""
         self.emit(events.Shutdown(reason=reason))
 
     def interrupt(self, reason: str) -> None:
         """End the launch because the user interrupted it.
 
-        If the launch is already ending, its processes receive SIGTERM now and SIGKILL half a second later.
+        If the launch is already ending, its processes receive SIGTERM now, and SIGKILL half a second later.
         """
         self.log.warning_line("launch", reason)
         if self.ending:
@@ -271,13 +273,13 @@ class LaunchSession:
             self.loop.call_later(_REPORT_DELAY_SECONDS, self._log_running_processes)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum time in seconds that the processes may take to end."""
+        """Return the maximum seconds that the processes may take to end."""
         return self.processes.seconds_to_end()
 
     def kill_all(self) -> None:
         """Kill the processes immediately.
 
-        This method is safe to call from a signal handler.
+        A signal handler may call this method.
         """
         self.processes.kill_all()
 
@@ -292,7 +294,7 @@ class LaunchSession:
         if depth > DEEPEST:
             raise endless_nesting_error(entity.place)
         try:
-            following = entity.visit(context)
+            next_entities = entity.visit(context)
         except DescriptionError as error:
             if not (error.missing or self.ending):
                 self._retry_when_fixed(entity, context.snapshot(), error)
@@ -301,23 +303,23 @@ class LaunchSession:
             return
         except (Exception, SystemExit) as error:
             name = type(entity).__name__
-            explained = explain(error, phrase("launch action {name}", name=name), entity.place)
-            if self._omissions.skip(explained):
+            explained_error = explain(error, phrase("launch action {name}", name=name), entity.place)
+            if self._omissions.skip(explained_error):
                 return
-            raise explained from error
+            raise explained_error from error
         future = entity.get_asyncio_future()
         if future is not None:
             self.hold(future)
         try:
-            for launch_description_entity in following or ():
-                self._visit(launch_description_entity, context, depth + 1)
+            for next_entity in next_entities or ():
+                self._visit(next_entity, context, depth + 1)
         except LinkwrightError as error:
             raise located(entity.explain_inside(error), entity.place) from error
 
     def _retry_when_fixed(
         self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError
     ) -> None:
-        """Record a failure, and visit the entity again once its robot description can be expanded."""
+        """Record a failure, and visit the entity again when its robot description can be expanded."""
         self.fail(error.call)
 
         def again(_text: str) -> None:
@@ -333,8 +335,8 @@ class LaunchSession:
 
     async def _handle_events(self) -> None:
         while True:
-            if self._crash is not None:
-                raise self._crash
+            if self._exception is not None:
+                raise self._exception
             while not self._queue.empty():
                 self._handle(self._queue.get_nowait())
                 await self._start_hosted()
@@ -344,11 +346,11 @@ class LaunchSession:
                 if self.options.shutdown_when_idle:
                     self.shut_down("idle")
                     continue
-            self._wake.clear()
-            await self._wake.wait()
+            self._wake_event.clear()
+            await self._wake_event.wait()
 
     def _is_busy(self) -> bool:
-        return bool(self.processes.is_busy or self._tasks or self._waiting or self._held or self.host.is_busy)
+        return bool(self.processes.is_busy or self._tasks or self._waiting or self._held_futures or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
         self.log.debug_line("launch", f"processing event: '{event.name}'")
@@ -373,7 +375,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """Handle an event that ends the launch, or that stops or signals processes."""
+        """Carry out an event that ends the launch, or that stops or signals processes."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_shutdown(event)
@@ -394,42 +396,42 @@ class LaunchSession:
         self.processes.stop_all(interrupted=event.due_to_sigint)
 
     def _visit_included(self) -> None:
-        while self._included:
-            self.visit(self._included.popleft(), self.context)
+        while self._included_descriptions:
+            self.visit(self._included_descriptions.popleft(), self.context)
             self.spawn(self._start_hosted())
 
     async def _start_hosted(self) -> None:
         await self.host.start_planned()
-        waits = any(isinstance(failure, XacroCall) for failure in self._failures)
-        if waits and not self.host.has_viewer and not self.ending:
+        waits_for_fix = any(isinstance(failure, XacroCall) for failure in self._failures)
+        if waits_for_fix and not self.host.has_viewer and not self.ending:
             self.shut_down("the robot cannot be read, and there is no viewer to wait in")
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Keep the launch running until an entity's future is done."""
-        if future.done() or future in self._held:
+        """Keep the launch running until a future is done."""
+        if future.done() or future in self._held_futures:
             return
-        self._held.add(future)
+        self._held_futures.add(future)
 
         def done(future: asyncio.Future[Any]) -> None:
-            self._held.discard(future)
-            self._wake.set()
+            self._held_futures.discard(future)
+            self._wake_event.set()
 
         future.add_done_callback(done)
 
-    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
+    def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background.
 
         The launch does not become idle until the coroutine has finished.
         """
         assert self.loop is not None
-        task = self.loop.create_task(work)
+        task = self.loop.create_task(coroutine)
         self._tasks.add(task)
 
         def done(task: asyncio.Task[Any]) -> None:
             self._tasks.discard(task)
-            self._wake.set()
+            self._wake_event.set()
             if not task.cancelled() and task.exception() is not None:
-                self._crash = task.exception()
+                self._exception = task.exception()
 
         task.add_done_callback(done)
 

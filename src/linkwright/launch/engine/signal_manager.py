@@ -1,4 +1,4 @@
-"""Signal handlers of users' programs (``launch.utilities.signal_management``)."""
+"""A manager for the signal handlers of users' programs (``launch.utilities.signal_management``)."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 class AsyncSafeSignalManager:
-    """Runs signal handlers on an event loop while a ``with`` block in the main thread is active.
+    """A context manager for the main thread that calls signal handlers on an event loop.
 
-    Blocks may be nested.
+    Such contexts may be nested.
 
     Args:
         loop: the event loop that calls the handlers.
@@ -24,51 +24,51 @@ class AsyncSafeSignalManager:
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._handlers: dict[int, Callable[[int], object]] = {}
-        self._before: dict[int, Any] = {}
-        self._entered = False
+        self._previous_handlers: dict[int, Any] = {}
+        self._is_entered = False
 
     def __enter__(self) -> Self:
-        self._entered = True
-        for number in self._handlers:
-            self._take_over(number)
+        self._is_entered = True
+        for signal_number in self._handlers:
+            self._install(signal_number)
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._entered = False
-        for number in tuple(self._before):
-            self._give_back(number)
+        self._is_entered = False
+        for signal_number in tuple(self._previous_handlers):
+            self._restore(signal_number)
 
     def handle(self, signum: int, handler: Callable[[int], object] | None) -> Callable[[int], object] | None:
         """Set the handler of a signal, or remove it if `handler` is None.
 
-        The handler is called with the signal's number.
+        The handler is called with the number of the signal.
 
         Returns:
-            The previous handler, or None.
+            The previous handler, or None if there was none.
 
         Raises:
             ValueError: there is no such signal.
         """
-        number = signal.Signals(signum)
-        previous = self._handlers.pop(number, None)
+        signal_number = signal.Signals(signum)
+        previous = self._handlers.pop(signal_number, None)
         if handler is not None:
-            self._handlers[number] = handler
-        if self._entered and handler is not None:
-            self._take_over(number)
-        elif self._entered:
-            self._give_back(number)
+            self._handlers[signal_number] = handler
+        if self._is_entered and handler is not None:
+            self._install(signal_number)
+        elif self._is_entered:
+            self._restore(signal_number)
         return previous
 
-    def _take_over(self, number: int) -> None:
-        if number not in self._before:
-            self._before[number] = signal.signal(number, self._came)
+    def _install(self, signal_number: int) -> None:
+        if signal_number not in self._previous_handlers:
+            self._previous_handlers[signal_number] = signal.signal(signal_number, self._handle_signal)
 
-    def _give_back(self, number: int) -> None:
-        if number in self._before:
-            before = self._before.pop(number)
-            signal.signal(number, signal.SIG_DFL if before is None else before)
+    def _restore(self, signal_number: int) -> None:
+        if signal_number in self._previous_handlers:
+            previous = self._previous_handlers.pop(signal_number)
+            signal.signal(signal_number, signal.SIG_DFL if previous is None else previous)
 
-    def _came(self, number: int, _: FrameType | None) -> None:
-        handler = self._handlers.get(number)
+    def _handle_signal(self, signal_number: int, _: FrameType | None) -> None:
+        handler = self._handlers.get(signal_number)
         if handler is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(handler, number)
+            self._loop.call_soon_threadsafe(handler, signal_number)

@@ -1,4 +1,4 @@
-"""The interface of the session to the modules that run processes."""
+"""The interface of the session that the modules for processes use."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class SessionOptions(HostOptions):
     Attributes:
         isolate: whether Linkwright's own nodes run in separate processes.
         shutdown_when_idle: whether the launch ends when it is idle.
-        skip_missing: whether to skip parts whose package, program or file is missing.
+        skip_missing: whether to skip the parts of the launch whose package, program or file is missing.
         command_to_skip_missing: the command that repeats the launch with `skip_missing`; None if `skip_missing` is set
-            or there is no such command.
+            already, or there is no such command.
     """
 
     isolate: bool = False
@@ -32,7 +32,7 @@ class SessionOptions(HostOptions):
 
 
 class Supervisor(RunningLaunch, Protocol):
-    """The part of the session that starts and ends the processes of a launch."""
+    """The interface of the session for starting and ending the processes of a launch."""
 
     def emit(self, event: Event) -> None:
         """Queue an event."""
@@ -40,5 +40,5 @@ class Supervisor(RunningLaunch, Protocol):
     def would_handle(self, event: Event) -> bool:
         """Return whether any handler accepts an event."""
 
-    def could_not_start(self, what: object, error: LinkwrightError) -> None:
+    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started; the launch continues without it."""

@@ -1,6 +1,6 @@
 """The exceptions of ``launch`` that programs catch.
 
-Some errors of Linkwright are also instances of such an exception's class.
+Some of Linkwright's errors are also instances of these exceptions.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ class InvalidLaunchFileError(Exception):
     """Raised when a launch file cannot be read.
 
     Args:
-        extension: the file name extension; empty if it does not determine the language.
+        extension: the file name extension; empty if it does not determine the parser.
         likely_errors: the exceptions of the parsers that tried to read the file.
         launch_file_path: the path of the file.
     """
@@ -26,8 +26,8 @@ class InvalidLaunchFileError(Exception):
         errors = list(likely_errors or ())
         lines = [f" - {type(error).__name__}: {error}" for error in errors]
         if extension and errors:
-            number = "multiple exceptions" if len(errors) > 1 else "exception"
-            lines.insert(0, f"Caught {number} when trying to load file of format [{extension}]:")
+            exception_count = "multiple exceptions" if len(errors) > 1 else "exception"
+            lines.insert(0, f"Caught {exception_count} when trying to load file of format [{extension}]:")
         else:
             lines.insert(0, "The launch file may have a syntax error, or its format is unknown")
         if launch_file_path is not None:
@@ -55,21 +55,23 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
     """Return a LinkwrightError that is also an instance of a ROS exception's class.
 
     Args:
-        ros_error: the exception that a program may expect; its text precedes the text of the new error. None gives a
-            plain LinkwrightError.
-        diagnostics: the diagnostics for the user.
+        ros_error: the exception that a program may expect; its text precedes the text of the new error. If it is None,
+            the result is a plain LinkwrightError.
+        diagnostics: the findings for the user.
     """
     if ros_error is None:
         return LinkwrightError(*diagnostics)
-    error = _class_for(_constructible_base(type(ros_error)))(*diagnostics)
+    error = _combined_class(_constructible_base(type(ros_error)))(*diagnostics)
     vars(error)["ros_text"] = str(ros_error)
     return error
 
 
 def _constructible_base(kind: type[Exception]) -> type[Exception]:
-    """Return an exception class or its nearest base whose constructor accepts a single string."""
-    bases: list[type[Any]] = [candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)]
-    for base in bases:
+    """Return an exception class, or its nearest base class whose constructor accepts a single string."""
+    candidates: list[type[Any]] = [
+        candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)
+    ]
+    for base in candidates:
         try:
             base("")
         except TypeError:
@@ -81,15 +83,15 @@ def _constructible_base(kind: type[Exception]) -> type[Exception]:
 _classes: dict[type, type[LinkwrightError]] = {}
 
 
-def _class_for(kind: type[Exception]) -> type[LinkwrightError]:
+def _combined_class(kind: type[Exception]) -> type[LinkwrightError]:
     if kind in _classes:
         return _classes[kind]
     if issubclass(kind, LinkwrightError) or issubclass(LinkwrightError, kind):
         return LinkwrightError
 
     def __str__(self: Any) -> str:  # noqa: N807 - becomes the method of that name
-        ours = LinkwrightError.__str__(self)
-        return ours if self.ros_text in ours else f"{self.ros_text}\n{ours}"
+        own_text = LinkwrightError.__str__(self)
+        return own_text if self.ros_text in own_text else f"{self.ros_text}\n{own_text}"
 
-    made = _classes[kind] = type(kind.__name__, (LinkwrightError, kind), {"__str__": __str__})
-    return made
+    combined_class = _classes[kind] = type(kind.__name__, (LinkwrightError, kind), {"__str__": __str__})
+    return combined_class

@@ -16,29 +16,29 @@ from typing import Any, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.packages.programs.code_files import is_ours
+from linkwright.packages.programs.code_files import is_linkwright_file
 
 T = TypeVar("T", bound="Placed")
 
 _STARTER_FOLDERS = (str(Path(__file__).parents[2] / "cli") + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
-"""Folders of the programs that may have started our code: the command line, the event loop."""
+"""Folders of the code that may have started Linkwright: its command line, and the event loop."""
 
 
 class Place(ABC):
-    """A location in a program (`CodePlace`) or in an XML or YAML file (`MarkupPlace`)."""
+    """A location in a program (`CodePlace`), or in an XML or YAML file (`MarkupPlace`)."""
 
     __slots__ = ()
 
     def __deepcopy__(self, _: object) -> Place:
-        """Return the place itself, which is immutable."""
+        """Return the place itself, because it is immutable."""
         return self
 
     @staticmethod
     def of_caller() -> Place | None:
-        """Return the place of the markup being read, or else of the nearest frame of user code.
+        """Return the place in the markup that is being read, or the place of the nearest frame of user code.
 
         Returns:
-            The place; None if Linkwright's command line or the event loop started the calling code.
+            The place; None if no user code called, but Linkwright's command line or the event loop.
         """
         if _markup_places:
             return _markup_places[-1]
@@ -47,7 +47,7 @@ class Place(ABC):
             filename = frame.f_code.co_filename
             if filename.startswith(_STARTER_FOLDERS):
                 return None
-            if not is_ours(filename):
+            if not is_linkwright_file(filename):
                 break
             frame = frame.f_back
         return None if frame is None else CodePlace(frame.f_code, frame.f_lasti, frame.f_lineno)
@@ -63,7 +63,7 @@ class Place(ABC):
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the lines and columns, which are computed only on request."""
+        """Return the lines and columns of the place, which are computed only on request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,11 +94,11 @@ class MarkupPlace(Place):
         return self.text.span(self.start, self.end)
 
     def part(self, start: int, end: int) -> MarkupPlace:
-        """Return a part of this range.
+        """Return a subrange of this range.
 
         Args:
-            start: the first character, as an offset from the start of this range.
-            end: the end of the part, exclusive, as an offset from the start of this range.
+            start: the start of the subrange, as an offset from the start of this range.
+            end: the end of the subrange, exclusive, as an offset from the start of this range.
         """
         return MarkupPlace(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
 
@@ -107,19 +107,19 @@ class Placed:
     """An object that records the place where the user's program or launch file created it.
 
     Attributes:
-        place: the location; None if it is not known.
+        place: the location; None if it is unknown.
     """
 
     place: Place | None = None
 
     def __new__(cls: type[T], *_: Any, **__: Any) -> T:  # noqa: PYI019 - Self needs Python 3.11
-        """Create the object and record the place of the caller.
+        """Create the object, and record the place of the caller.
 
-        The place is not recorded in ``__init__``, because users' classes need not call our constructor.
+        The place is not recorded in ``__init__``, because users' classes need not call the constructor of this class.
         """
-        made = super().__new__(cls)
-        made.place = Place.of_caller()
-        return made
+        created = super().__new__(cls)
+        created.place = Place.of_caller()
+        return created
 
 
 _markup_places: list[Place | None] = []
@@ -127,7 +127,7 @@ _markup_places: list[Place | None] = []
 
 @contextmanager
 def reading_markup_at(place: Place | None) -> Iterator[None]:
-    """Set the place that is recorded for objects created in this context; None if unknown."""
+    """Record a place in markup for the objects that are created in this context; None if it is unknown."""
     _markup_places.append(place)
     try:
         yield
@@ -137,16 +137,16 @@ def reading_markup_at(place: Place | None) -> Iterator[None]:
 
 @contextmanager
 def outside_markup() -> Iterator[None]:
-    """Record the caller's place on Python's stack for objects created in this context.
+    """Record the place of the caller in Python code for the objects that are created in this context.
 
-    Outside this context, the objects get the place in the markup that is being read.
+    Without this context, the objects would get the place in the markup that is being read.
     """
-    kept = _markup_places[:]
+    saved_places = _markup_places[:]
     _markup_places.clear()
     try:
         yield
     finally:
-        _markup_places[:] = kept
+        _markup_places[:] = saved_places
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,18 +167,18 @@ class CodePlace(Place):
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the expression at the place, or its entire line before Python 3.11."""
+        """Return the range of the expression at the place, or of its entire line before Python 3.11."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
-            exact = next(islice(positions(), self.instruction // 2, None), None)
-            if exact is not None and None not in exact:
-                return self._exact_span(exact, source)
+            positions_of_instruction = next(islice(positions(), self.instruction // 2, None), None)
+            if positions_of_instruction is not None and None not in positions_of_instruction:
+                return self._exact_span(positions_of_instruction, source)
         text = source.line(self.line) if source else ""
         start = len(text) - len(text.lstrip()) + 1
         return Span(self.file, self.line, start, self.line, max(len(text.rstrip()), start) + 1)
 
-    def _exact_span(self, exact: tuple[int, int, int, int], source: SourceText | None) -> Span:
-        line, end_line, start, end = exact
+    def _exact_span(self, exact_positions: tuple[int, int, int, int], source: SourceText | None) -> Span:
+        line, end_line, start, end = exact_positions
         if source:
             start = _characters(source.line(line), start)
             end = _characters(source.line(end_line), end)
@@ -194,7 +194,7 @@ def read_source(filename: str) -> SourceText | None:
 
 
 def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
-    """Set the place of all diagnostics of an error if none of them has a location.
+    """Set the location of all findings of an error to a place, if none of them has a location.
 
     Returns:
         The same error.
@@ -215,15 +215,15 @@ def error_at(
     *,
     ros_error: Exception | None = None,
 ) -> LinkwrightError:
-    """Return a new error about the text at a place.
+    """Return a new error with a location.
 
     Args:
-        place: the location; None if it is not known.
-        code: the code of the diagnostic.
-        message: the message of the diagnostic.
-        hint: the hint of the diagnostic.
-        ros_error: the exception that ROS raises in this case. The new error has the class and text of this exception,
-            for programs that check them.
+        place: the location; None if it is unknown.
+        code: the code of the finding.
+        message: the message of the finding.
+        hint: the hint of the finding, or None.
+        ros_error: the exception that ROS raises in this case, or None. The new error has the class and text of this
+            exception, because programs may check them.
     """
     return located(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), place)
 

@@ -1,7 +1,7 @@
-"""Marks on errors that distinguish missing third-party software from mistakes of the user.
+"""Marks for errors that missing third-party software causes, and not a mistake of the user.
 
-A launch skips a part whose software is missing and continues: the simulation of a robot is useful even without
-move_group.
+A launch skips the parts whose software is missing, and continues. For example, the simulation of a robot is useful
+even without move_group.
 """
 
 from __future__ import annotations
@@ -9,25 +9,25 @@ from __future__ import annotations
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages import PackageNotFoundError
 
-_MARK = "is_unavailable"
+_MARK_ATTRIBUTE = "is_unavailable"
 
 
 def mark_unavailable(error: LinkwrightError) -> LinkwrightError:
-    """Mark an error as caused by missing third-party software, and return the error.
+    """Mark an error as caused by missing third-party software, and return it.
 
-    Errors about misspelt names are not marked.
+    Callers do not mark errors about misspelt names.
     """
-    vars(error)[_MARK] = True
+    vars(error)[_MARK_ATTRIBUTE] = True
     return error
 
 
 def is_unavailable(error: LinkwrightError) -> bool:
-    """Return whether an error was marked by `mark_unavailable`."""
-    return bool(vars(error).get(_MARK))
+    """Return whether `mark_unavailable` marked an error."""
+    return bool(vars(error).get(_MARK_ATTRIBUTE))
 
 
 def is_missing_third_party(error: LinkwrightError) -> bool:
-    """Return whether an error is about a missing third-party package or module."""
+    """Return whether an error reports a missing third-party package or module."""
     if isinstance(error, PackageNotFoundError):
         return not error.is_slip
     return isinstance(error, ModuleNotFoundError) or is_unavailable(error)

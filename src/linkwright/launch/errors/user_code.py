@@ -1,4 +1,4 @@
-"""Conversion of exceptions in a user's launch file to findings without a traceback.
+"""Conversion of exceptions in a user's launch file to findings, without a traceback.
 
 The findings have a location, and their hints suggest similar names.
 """
@@ -29,43 +29,45 @@ from linkwright.diagnostics import (
 )
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.places import CodePlace, Place, error_at, located, read_source
-from linkwright.packages.programs.code_files import is_users
+from linkwright.packages.programs.code_files import is_user_file
 
 DEEPEST = 300
-"""The maximum nesting of launch actions: files that include files, groups in groups, functions that return actions.
-Python's own limit would be reached a little later, at an unrelated place."""
+"""The maximum nesting depth of launch actions: includes, groups, and functions that return actions.
 
-_PATH_OF_MODULE = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
+Python's own limit would be exceeded only slightly later, at an unrelated location."""
+
+_MODULE_PATH = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
 
-def explain(error: BaseException, where: str, fallback: Place | None = None) -> LinkwrightError:
-    """Convert an exception to an error that points at the user's own line.
+def explain(error: BaseException, subject: str, fallback: Place | None = None) -> LinkwrightError:
+    """Return an error that reports an exception at the user's own line of code.
 
     Args:
-        error: the exception, which may come from ``sys.exit``.
-        where: the code that was running, such as "launch file 'x.launch.py'".
-        fallback: the place to report if no line of the user's code was running.
+        error: the exception, which may also come from ``sys.exit``.
+        subject: the code that raised the exception, for the message, such as "launch file 'x.launch.py'".
+        fallback: the place to report if no line of user code was running.
 
     Returns:
-        The exception itself if it is a LinkwrightError, with a place if it had none; otherwise a new error LAUNCH104.
+        The exception itself if it is a LinkwrightError, with the place added if it had none. Otherwise, a new error
+            LAUNCH104.
     """
-    trail = list(_user_places(error.__traceback__))
-    place = trail[-1] if trail else fallback
+    user_places = list(_user_places(error.__traceback__))
+    place = user_places[-1] if user_places else fallback
     if isinstance(error, LinkwrightError):
         return located(error, place)
-    kind = type(error).__name__
+    type_name = type(error).__name__
     text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
-    text = _PATH_OF_MODULE.sub("", (text.splitlines() or [""])[0]).rstrip(".")
+    text = _MODULE_PATH.sub("", (text.splitlines() or [""])[0]).rstrip(".")
     message = (
-        phrase("{where} raised {kind}: {text}", where=where, kind=kind, text=foreign(text))
+        phrase("{where} raised {kind}: {text}", where=subject, kind=type_name, text=foreign(text))
         if text
-        else phrase("{where} raised {kind}", where=where, kind=kind)
+        else phrase("{where} raised {kind}", where=subject, kind=type_name)
     )
     source = place.source() if place else None
     span = place.span(source) if place else None
-    callers = dict.fromkeys(reversed(trail[:-1]))  # report a recursive function only once
+    callers = dict.fromkeys(reversed(user_places[:-1]))  # report a recursive function only once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
     diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
@@ -73,7 +75,7 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
 
 def endless_nesting_error(place: Place | None) -> LinkwrightError:
     """Return the error for launch actions that are nested more deeply than the limit."""
-    message = phrase("launch actions are nested without end: more than {count} levels", count=DEEPEST)
+    message = phrase("launch actions are nested more than {count} levels deep, probably without end", count=DEEPEST)
     hint = phrase(
         "a launch file that includes itself, or a function that returns itself, needs a condition that ends "
         "the recursion"
@@ -82,31 +84,31 @@ def endless_nesting_error(place: Place | None) -> LinkwrightError:
 
 
 def too_deep_error(path: str) -> LinkwrightError:
-    """Return the error for a launch file that is nested too deeply for Python's stack."""
-    message = phrase("launch file '{path}' is nested too deeply to be read", path=display_path(path))
+    """Return the error for a launch file whose nesting exceeds the limit of Python's stack."""
+    message = phrase("the elements of launch file '{path}' are nested too deeply to be read", path=display_path(path))
     return error_at(None, "LAUNCH156", message)
 
 
 def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
     if traceback is None:
         return
-    current: TracebackType | None = traceback
+    traceback_entry: TracebackType | None = traceback
     for frame, line in walk_tb(traceback):
-        assert current is not None
-        if is_users(frame.f_code.co_filename):
-            yield CodePlace(frame.f_code, current.tb_lasti, line)
-        current = current.tb_next
+        assert traceback_entry is not None
+        if is_user_file(frame.f_code.co_filename):
+            yield CodePlace(frame.f_code, traceback_entry.tb_lasti, line)
+        traceback_entry = traceback_entry.tb_next
 
 
 def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint on what the user may have meant, or None if there is no guess."""
+    """Return a hint on what the user may have meant, or None if nothing is similar."""
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
         frame = _innermost_frame(error)
-        known = {**frame.f_globals, **frame.f_locals} if frame else {}
+        visible_names = {**frame.f_globals, **frame.f_locals} if frame else {}
         name = getattr(error, "name", None)
-        return did_you_mean(name, known) if name else None
+        return did_you_mean(name, visible_names) if name else None
     if isinstance(error, AttributeError):
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
         return did_you_mean(name, _public_names(owner)) if name else None
@@ -116,9 +118,9 @@ def _hint(error: BaseException, source: SourceText | None, span: Span | None) ->
 
 
 def _public_names(owner: object) -> list[str]:
-    """Return the public names of an object, except submodules.
+    """Return the public names of an object, without submodules.
 
-    Submodules are excluded, because they often have the name of an object inside them.
+    A submodule often has the same name as an object inside it.
     """
     return [
         name
@@ -130,12 +132,12 @@ def _public_names(owner: object) -> list[str]:
 def _import_hint(error: ImportError) -> Phrase | None:
     from linkwright.packages.programs.missing_modules import missing_name, other_module_hint, provider_hint
 
-    found = missing_name(error)
-    if found:
-        name, module = found
+    missing_attribute = missing_name(error)
+    if missing_attribute:
+        name, module = missing_attribute
         return other_module_hint(error) or did_you_mean(name, _public_names(sys.modules.get(module)))
-    missing = error.name or ""
-    parent, _, name = missing.rpartition(".")
+    missing_module = error.name or ""
+    parent, _, name = missing_module.rpartition(".")
     if parent in sys.modules:
         import pkgutil
 
@@ -143,64 +145,70 @@ def _import_hint(error: ImportError) -> Phrase | None:
             iter_module.name for iter_module in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))
         ]
         return did_you_mean(name, siblings)
-    known = did_you_mean(missing, ("launch", "launch_ros", "ament_index_python"))
-    if known or not missing:
-        return known
-    return provider_hint(missing)
+    suggestion = did_you_mean(missing_module, ("launch", "launch_ros", "ament_index_python"))
+    if suggestion or not missing_module:
+        return suggestion
+    return provider_hint(missing_module)
 
 
 def _keyword_hint(error: TypeError) -> Phrase | None:
-    """Return a hint that suggests a valid name for an unexpected keyword argument.
+    """Return a hint with the valid name that is similar to an unexpected keyword argument.
 
     Returns:
         The hint; None if the error has another cause or no name is similar.
     """
-    found = _UNEXPECTED_ARGUMENT.search(str(error))
+    match = _UNEXPECTED_ARGUMENT.search(str(error))
     frame = _innermost_frame(error, users_only=True)
-    if not found or frame is None:
+    if not match or frame is None:
         return None
-    function, name = found.groups()
-    called = _called_objects(frame, function.partition(".")[0])
-    names = {parameter for called_object in called for parameter in _parameter_names(called_object)}
+    function, name = match.groups()
+    candidates = _called_objects(frame, function.partition(".")[0])
+    names = {parameter for candidate in candidates for parameter in _parameter_names(candidate)}
     return did_you_mean(name, names)
 
 
 def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint that a given keyword argument may be the misspelt name of a missing one.
+    """Return a hint with the keyword argument that is probably a misspelling of a missing one.
 
     Returns:
         The hint; None if the error has another cause or no name is similar.
     """
-    found = _MISSING_ARGUMENT.search(str(error))
-    if not found or source is None or span is None:
+    match = _MISSING_ARGUMENT.search(str(error))
+    if not match or source is None or span is None:
         return None
     call = source.text[source.offset(span.line, span.column) : source.offset(span.end_line, span.end_column)]
-    written = re.findall(r"\b(\w+)\s*=(?!=)", call)
-    for missing in re.findall(r"'(\w+)'", found.group(1)):
-        near = nearest(missing, (name for name in written if name != missing))
-        if near:
+    keyword_names = re.findall(r"\b(\w+)\s*=(?!=)", call)
+    for missing_name in re.findall(r"'(\w+)'", match.group(1)):
+        similar_names = nearest(missing_name, (name for name in keyword_names if name != missing_name))
+        if similar_names:
             return phrase(
-                "'{missing}' is missing; the call has {near}", missing=missing, near=quoted_names(near, " or ")
+                "argument '{missing}' is missing; the call passes {near}",
+                missing=missing_name,
+                near=quoted_names(similar_names, " or "),
             )
     return None
 
 
 def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
-    """Return the functions and classes visible in a frame to which a failed call may refer.
+    """Return the functions and classes in the scope of a frame that a failed call may have called.
 
-    These are the functions with the given name, and the classes with this name or derived from such a class.
+    These are the functions with the given name, and the classes with this name or with a base class of this name.
     """
-    known = [*frame.f_globals.values(), *frame.f_locals.values()]
+    visible_objects = [*frame.f_globals.values(), *frame.f_locals.values()]
     return [
         function_type
-        for function_type in known
+        for function_type in visible_objects
         if (inspect.isclass(function_type) and any(base.__name__ == class_name for base in function_type.__mro__))
         or (inspect.isfunction(function_type) and function_type.__name__ == class_name)
     ]
 
 
-def _parameter_names(called: Any) -> Iterable[str]:
-    functions = [vars(base).get("__init__") for base in called.__mro__] if inspect.isclass(called) else [called]
+def _parameter_names(callable_object: Any) -> Iterable[str]:
+    functions = (
+        [vars(base).get("__init__") for base in callable_object.__mro__]
+        if inspect.isclass(callable_object)
+        else [callable_object]
+    )
     for function in functions:
         if inspect.isfunction(function):
             for parameter in inspect.signature(function).parameters.values():
@@ -211,6 +219,6 @@ def _parameter_names(called: Any) -> Iterable[str]:
 def _innermost_frame(error: Exception, *, users_only: bool = False) -> FrameType | None:
     frame = None
     for candidate, _ in walk_tb(error.__traceback__):
-        if not users_only or is_users(candidate.f_code.co_filename):
+        if not users_only or is_user_file(candidate.f_code.co_filename):
             frame = candidate
     return frame

@@ -1,6 +1,6 @@
 """Launch file extensions (tags, substitutions, languages).
 
-The extensions are part of Linkwright, of installed packages or of packages in the workspace.
+The extensions come from Linkwright, from installed packages, and from packages in the workspace.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from linkwright.packages.readers.entry_points import (
 )
 
 ACTIONS = "launch.frontend.launch_extension"
-"""The group of modules that expose actions and substitutions when they are imported."""
+"""The entry point group of modules that expose actions and substitutions when they are imported."""
 PARSERS = "launch.frontend.parser"
-"""The group of parsers, each by the name of its language."""
-_KINDS = {ACTIONS: "launch extension", PARSERS: "parser extension"}
-_OURS = {
+"""The entry point group of parsers; the names are the languages."""
+_GROUP_NAMES = {ACTIONS: "launch extension", PARSERS: "parser extension"}
+_BUILTIN_ENTRY_POINTS = {
     ACTIONS: {
         "actions": "linkwright.launch.model.actions",
         "include": "linkwright.launch.frontend.include",
@@ -42,42 +42,44 @@ _OURS = {
     PARSERS: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
 }
 _STAND_INS = "linkwright.launch_extensions"
-"""The group of modules that replace launch extensions, each by the name of one, where it is not installed."""
+"""The entry point group of modules that replace launch extensions that are not installed, by their names."""
 
 
 def load(group: str) -> Iterator[tuple[str, Any]]:
-    """Yield the name and object of each entry point of a group, Linkwright's first.
+    """Yield the names and objects of the entry points of a group, Linkwright's own first.
 
     An entry point that cannot be loaded is skipped with a warning.
     """
-    installed = entry_points(group=group)
-    ours = (EntryPoint(name, value, group) for name, value in _OURS[group].items())
-    stand_ins = extensions(_STAND_INS).values() if group == ACTIONS else ()
-    missing = (entry_point for entry_point in stand_ins if entry_point.name not in installed.names)
-    for entry_point in (*ours, *missing, *installed):
+    installed_entry_points = entry_points(group=group)
+    builtin_entry_points = (EntryPoint(name, value, group) for name, value in _BUILTIN_ENTRY_POINTS[group].items())
+    stand_in_entry_points = extensions(_STAND_INS).values() if group == ACTIONS else ()
+    used_stand_ins = (
+        entry_point for entry_point in stand_in_entry_points if entry_point.name not in installed_entry_points.names
+    )
+    for entry_point in (*builtin_entry_points, *used_stand_ins, *installed_entry_points):
         try:
-            loaded = entry_point.load()
+            loaded_object = entry_point.load()
         except Exception:  # noqa: BLE001, PERF203 - a broken package must not stop the others
-            problem = f"Failed to load the {_KINDS[group]}: {entry_point.name}\n{traceback.format_exc()}"
-            warnings.warn(problem, stacklevel=2)
+            message = f"Failed to load the {_GROUP_NAMES[group]}: {entry_point.name}\n{traceback.format_exc()}"
+            warnings.warn(message, stacklevel=2)
         else:
-            yield entry_point.name, loaded
+            yield entry_point.name, loaded_object
 
 
-_loaded: set[tuple[Path, str]] = set()
+_loaded_modules: set[tuple[Path, str]] = set()
 
 
 def load_workspace_extensions() -> None:
-    """Import the launch extensions of the packages in the workspace, each module only once."""
+    """Import the launch extensions of the packages in the workspace, each module once."""
     finder = current_finder()
     for package, share in finder.packages().items():
-        for module in _modules(package, share):
-            if (share, module) not in _loaded:
-                _loaded.add((share, module))
-                _import(module, finder, share)
+        for module in _extension_modules(package, share):
+            if (share, module) not in _loaded_modules:
+                _loaded_modules.add((share, module))
+                _import_module(module, finder, share)
 
 
-def _import(module: str, finder: PackageFinder, share: Path) -> None:
+def _import_module(module: str, finder: PackageFinder, share: Path) -> None:
     try:
         top = module.partition(".")[0]
         spec = None if top in sys.modules else find_module(finder, top, share)
@@ -89,25 +91,25 @@ def _import(module: str, finder: PackageFinder, share: Path) -> None:
         warnings.warn(f"Failed to load the launch extension: {module}\n{traceback.format_exc()}", stacklevel=3)
 
 
-def _modules(package: str, share: Path) -> Iterator[str]:
-    """Yield the names of the launch extension modules in a package's entry points."""
+def _extension_modules(package: str, share: Path) -> Iterator[str]:
+    """Yield the names of the modules with launch extensions in the entry points of a package."""
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
                 yield from _modules_in_lines(read_metadata_group(text_of(path), ACTIONS))
         return
-    for name, read in (
+    for name, read_group in (
         ("setup.py", read_setup_py_group),
         ("setup.cfg", read_setup_cfg_group),
         ("pyproject.toml", read_pyproject_group),
     ):
         text = text_of(share / name)
         if ACTIONS in text:
-            yield from _modules_in_lines(read(text, ACTIONS))
+            yield from _modules_in_lines(read_group(text, ACTIONS))
 
 
 def _modules_in_lines(lines: list[str]) -> Iterator[str]:
-    """Yield the module names in lines of the form ``name = module:attribute``."""
+    """Yield the names of modules in lines of the form ``name = module:attribute``."""
     for line in lines:
         _, equals, target = line.partition("=")
         module = target.partition(":")[0].strip()

@@ -18,18 +18,18 @@ from linkwright.launch.model.markup.expose import substitution_parse_methods
 from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
 _NAME = re.compile(r"[A-Za-z][\w-]*")
-_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
-_BLANK = " \t\r\n"
-_UNQUOTED_END = frozenset(_BLANK + "()")
+_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
+_BLANKS = " \t\r\n"
+_ARGUMENT_ENDS = frozenset(_BLANKS + "()")
 
 
 def replace_escaped_characters(data: str) -> str:
     """Return the text with backslash escapes resolved."""
-    return _ESCAPED.sub(r"\1", data)
+    return _ESCAPE.sub(r"\1", data)
 
 
 def parse_substitution(string_value: str) -> list[Substitution]:
-    """Parse a text into a list of substitutions.
+    """Return a text as a list of substitutions.
 
     Raises:
         ValueError: LAUNCH119, the text cannot be parsed.
@@ -41,30 +41,39 @@ def parse_substitution(string_value: str) -> list[Substitution]:
 
 
 def parse_if_substitutions(value: Any) -> Any:
-    """Parse the substitutions in the strings of a value.
+    """Return a value with the substitutions in its strings parsed.
 
-    Strings without substitutions stay strings.
+    Strings without substitutions are unchanged.
 
     Raises:
-        ValueError: a list has plain values of several types.
+        ValueError: the strings of a list have values of different types.
     """
     if not isinstance(value, list):
         return _parse_if(value)
-    parsed = [_parse_if(item) for item in value]
-    if len({str if isinstance(item, str) else type(item) for item in parsed if not isinstance(item, list)}) > 1:
+    parsed_items = [_parse_if(item) for item in value]
+    if len({str if isinstance(item, str) else type(item) for item in parsed_items if not isinstance(item, list)}) > 1:
         raise ValueError("The result is a non-uniform list")
-    return parsed
+    return parsed_items
 
 
 def _parse_if(value: Any) -> Any:
     if not isinstance(value, str):
         return value
-    parts = parse_substitution(value)
-    return parts[0].text if len(parts) == 1 and isinstance(parts[0], TextSubstitution) else parts
+    substitutions = parse_substitution(value)
+    return (
+        substitutions[0].text
+        if len(substitutions) == 1 and isinstance(substitutions[0], TextSubstitution)
+        else substitutions
+    )
 
 
 class _Reader:
-    """Parses one text into substitutions."""
+    """Parses one text into substitutions.
+
+    Args:
+        text: the text.
+        place: the location of the text, or None.
+    """
 
     def __init__(self, text: str, place: Place | None) -> None:
         self._text = text
@@ -72,90 +81,90 @@ class _Reader:
         self._place = place
 
     def template(self) -> list[Substitution]:
-        """Parse the entire text."""
-        parts = self._parts(until="", argument=False)
+        """Return the substitutions of the entire text."""
+        substitutions = self._parse_parts(until="", argument=False)
         assert self._at == len(self._text)
-        return parts
+        return substitutions
 
-    def _parts(self, until: str, argument: bool) -> list[Substitution]:
-        """Parse text and substitutions up to a closing character.
+    def _parse_parts(self, until: str, argument: bool) -> list[Substitution]:
+        """Return the substitutions of the text up to a closing character.
 
         Args:
-            until: the closing quote, which is not consumed; empty outside quotes.
-            argument: whether the parts form an unquoted argument, which a space or a parenthesis also ends.
+            until: the closing quote, at which parsing stops; empty outside quotes.
+            argument: whether the text is an unquoted argument, which a space or a parenthesis also ends.
         """
-        parts: list[Substitution] = []
+        substitutions: list[Substitution] = []
         start = self._at
         while self._at < len(self._text):
             character = self._text[self._at]
-            if character == until or (argument and character in _UNQUOTED_END):
+            if character == until or (argument and character in _ARGUMENT_ENDS):
                 break
             if self._text.startswith("$(", self._at):
-                self._add_text(parts, start)
-                parts.append(self._substitution(until))
+                self._add_text(substitutions, start)
+                substitutions.append(self._parse_substitution(until))
                 start = self._at
             elif argument and not until and character in "'\"":
-                before = repr(self._text[start : self._at])
-                message = phrase("there is a quote inside the argument {before}", before=before)
+                preceding_text = repr(self._text[start : self._at])
+                message = phrase("there is an unexpected quote in an argument, after {before}", before=preceding_text)
                 self._fail(message, phrase("quote the whole argument"))
             else:
                 self._at += 2 if character == "\\" and self._at + 1 < len(self._text) else 1
-        self._add_text(parts, start)
-        return parts
+        self._add_text(substitutions, start)
+        return substitutions
 
-    def _add_text(self, parts: list[Substitution], start: int) -> None:
+    def _add_text(self, substitutions: list[Substitution], start: int) -> None:
         if start < self._at:
             with reading_markup_at(self._part(start, self._at)):
-                parts.append(TextSubstitution(text=replace_escaped_characters(self._text[start : self._at])))
+                substitutions.append(TextSubstitution(text=replace_escaped_characters(self._text[start : self._at])))
 
-    def _substitution(self, quote: str) -> Substitution:
+    def _parse_substitution(self, quote: str) -> Substitution:
         start = self._at
         self._at += 2
-        name = _NAME.match(self._text, self._at)
-        if name is None:
-            self._fail(phrase("there is no name after '$('"), phrase("write \\$( for the literal characters"))
-        self._at = name.end()
+        match = _NAME.match(self._text, self._at)
+        if match is None:
+            self._fail(phrase("'$(' is not followed by a name"), phrase("write \\$( for the literal characters"))
+        self._at = match.end()
         arguments = []
         while True:
-            blank = self._skip_blanks()
+            has_blank = self._skip_blanks()
             if self._at >= len(self._text) or self._text[self._at] == quote:
                 end, self._at = self._at, start
                 message = phrase("'{text}' has no closing parenthesis", text=self._text[start:end])
-                self._fail(message, phrase("end it with ')'"))
+                self._fail(message, phrase("add ')' at its end"))
             if self._text[self._at] == ")":
                 break
-            if not blank:
-                self._unexpected(name[0])
-            arguments.append(self._argument(quote))
+            if not has_blank:
+                self._unexpected(match[0])
+            arguments.append(self._parse_argument(quote))
         self._at += 1
-        return instantiate_substitution(name[0], arguments, self._part(start, self._at))
+        return instantiate_substitution(match[0], arguments, self._part(start, self._at))
 
-    def _argument(self, quote: str) -> list[Substitution]:
-        opening = self._text[self._at]
-        if quote or opening not in "'\"":
+    def _parse_argument(self, quote: str) -> list[Substitution]:
+        opening_quote = self._text[self._at]
+        if quote or opening_quote not in "'\"":
             start = self._at
-            parts = self._parts(until=quote, argument=True)
+            substitutions = self._parse_parts(until=quote, argument=True)
             if self._at == start:
                 self._fail(
-                    phrase("there is an opening parenthesis in an argument"),
+                    phrase("an argument contains an opening parenthesis"),
                     phrase(r"put quotes around it, or write \("),
                 )
-            return parts
+            return substitutions
         start = self._at
         self._at += 1
-        parts = self._parts(until=opening, argument=False)
+        substitutions = self._parse_parts(until=opening_quote, argument=False)
         if self._at >= len(self._text):
             self._at = start
             self._fail(
-                phrase("the quote {opening} is not closed", opening=opening),
-                phrase("close it, or write \\{opening} for the character", opening=opening),
+                phrase("the quote {opening} is not closed", opening=opening_quote),
+                phrase("close it, or write \\{opening} for the character", opening=opening_quote),
             )
         self._at += 1
-        return parts
+        return substitutions
 
     def _skip_blanks(self) -> bool:
         start = self._at
-        while self._at < len(self._text) and self._text[self._at] in _BLANK:
+        while self._at < len(self._text) and self._text[self._at] in _BLANKS:
             self._at += 1
         return self._at > start
 
@@ -165,7 +174,11 @@ class _Reader:
         if character == "(":
             hint = hint or phrase(r"put quotes around it, or write \(")
         self._fail(
-            phrase("there is {character} after '{text}'", character=repr(character), text=self._text[: self._at][-20:]),
+            phrase(
+                ("there is an unexpected {character} after '{text}'"),
+                character=repr(character),
+                text=self._text[: self._at][-20:],
+            ),
             hint or phrase("separate arguments by spaces"),
         )
 

@@ -42,20 +42,20 @@ from linkwright.packages import is_substitute
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Parser
 
-_FILE = "current_launch_file_path"
-_FOLDER = "current_launch_file_directory"
+_FILE_LOCAL = "current_launch_file_path"
+_FOLDER_LOCAL = "current_launch_file_directory"
 
 
 @expose_action("include")
 class IncludeLaunchDescription(Action):
     """Visits the description of another launch file.
 
-    As in ROS, the including and the included file share their launch configurations. A GroupAction around this action
-    keeps changes of the included file out of the including file.
+    As in ROS, the including and the included file share their launch configurations. To keep the changes of the
+    included file out of the including file, put this action into a `GroupAction`.
 
     Args:
-        launch_description_source: the source of the description, or a path.
-        launch_arguments: pairs of name and value.
+        launch_description_source: the source of the description, or the path of its file.
+        launch_arguments: pairs of the name and value of an argument.
     """
 
     def __init__(
@@ -69,15 +69,16 @@ class IncludeLaunchDescription(Action):
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self._source = launch_description_source
-        # As in ROS, a value that is not a string, such as None, is an error only when the file is included, which may
+        # As in ROS, a value that is not a string, such as None, is an error only when the file is included. That may
         # never happen.
         self._arguments = [
-            (normalize_to_list_of_substitutions(name), _normalized(value)) for name, value in launch_arguments or ()
+            (normalize_to_list_of_substitutions(name), _normalize_if_possible(value))
+            for name, value in launch_arguments or ()
         ]
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attribute ``file`` and the ``arg`` (or ``let``) tags inside."""
+        """Return the class and keyword arguments for the tag, with the ``arg`` (or ``let``) tags inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
         arguments = []
@@ -99,7 +100,7 @@ class IncludeLaunchDescription(Action):
     def launch_arguments(self) -> list[tuple[list[Substitution], Any]]:
         """The names and values of the arguments as substitutions.
 
-        A value that cannot be converted to substitutions is unchanged.
+        A value that cannot be converted to substitutions remains unchanged.
         """
         return self._arguments
 
@@ -108,7 +109,7 @@ class IncludeLaunchDescription(Action):
         return f"{type(self).__name__}({self._source.location})"
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the included description in a list.
+        """Return a list with the included description.
 
         The list is empty if the description cannot be read before the launch runs.
         """
@@ -120,15 +121,14 @@ class IncludeLaunchDescription(Action):
         return self._source.try_get_launch_description_without_context() is None
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """Return the names of the given arguments, except names that contain substitutions."""
+        """Return the names of the arguments that are set, except names that contain substitutions."""
         names = (name[0] for name, _ in self._arguments if len(name) == 1)
         return tuple(name.text for name in names if isinstance(name, TextSubstitution))
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the entities to visit next.
+        """Return the entities to visit next: actions that set the arguments, the description, and a closing action.
 
-        They are actions that set the arguments, the included description, and an action that restores the locals of the
-        including file.
+        The closing action restores the locals of the including file.
 
         Raises:
             RuntimeError: LAUNCH114, a required argument is missing.
@@ -141,16 +141,16 @@ class IncludeLaunchDescription(Action):
             if is_missing_third_party(error) or self._is_missing_in_substitute():
                 mark_unavailable(error)
             raise
-        given = [perform_substitutions(context, name) for name, _ in self._arguments]
-        self._check_required(description.get_launch_arguments(), given)
-        self._check_values(given)
-        outer = context.get_locals_as_dict()
-        before = {name: outer[name] for name in (_FILE, _FOLDER) if name in outer}
+        given_names = [perform_substitutions(context, name) for name, _ in self._arguments]
+        self._check_required(description.get_launch_arguments(), given_names)
+        self._check_values(given_names)
+        outer_locals = context.get_locals_as_dict()
+        replaced_locals = {name: outer_locals[name] for name in (_FILE_LOCAL, _FOLDER_LOCAL) if name in outer_locals}
         context.extend_locals(self._file_values())
 
         def leave(context: LaunchContext) -> None:
-            context.remove_locals((_FILE, _FOLDER))
-            context.extend_locals(before)
+            context.remove_locals((_FILE_LOCAL, _FOLDER_LOCAL))
+            context.extend_locals(replaced_locals)
 
         return [
             *(SetLaunchConfiguration(name, value) for name, value in self._arguments),
@@ -159,7 +159,7 @@ class IncludeLaunchDescription(Action):
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Add a note on where the file was included to an error in the included description.
+        """Add a note to an error in the included description that says where the file was included.
 
         Returns:
             The same error.
@@ -178,23 +178,23 @@ class IncludeLaunchDescription(Action):
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
     def _file_values(self) -> dict[str, str]:
-        """Return the locals for the path and folder of the included file; empty if there is no file."""
+        """Return the locals for the path and folder of the included file, or an empty dictionary without a file."""
         path = self._source.location_path
         if path is None:
             return {}
         folder = str(path.parent) if path.exists() else self._source.location
-        return {_FILE: str(path), _FOLDER: folder}
+        return {_FILE_LOCAL: str(path), _FOLDER_LOCAL: folder}
 
-    def _check_required(self, declared: Sequence[Any], given: list[str]) -> None:
-        names = [argument.name for argument in declared]
-        for argument in declared:
-            if argument.default_value is not None or argument.conditionally_included or argument.name in given:
+    def _check_required(self, declared_arguments: Sequence[Any], given_names: list[str]) -> None:
+        names = [argument.name for argument in declared_arguments]
+        for argument in declared_arguments:
+            if argument.default_value is not None or argument.conditionally_included or argument.name in given_names:
                 continue
-            unknown = [name for name in given if name not in names]
-            near = nearest(argument.name, unknown)
+            unknown_names = [name for name in given_names if name not in names]
+            similar_names = nearest(argument.name, unknown_names)
             hint = (
-                phrase("{near} is given; did you mean that?", near=quoted_names(near, " or "))
-                if near
+                phrase("{near} was passed; is its name misspelt?", near=quoted_names(similar_names, " or "))
+                if similar_names
                 else self._argument_hint(argument.name)
             )
             path = self._source.location_path
@@ -211,7 +211,7 @@ class IncludeLaunchDescription(Action):
                 )
             text = (
                 f"Included launch description missing required argument '{argument.name}' "
-                f"(description: '{argument.description}'), given: [{', '.join(given)}]"
+                f"(description: '{argument.description}'), given: [{', '.join(given_names)}]"
             )
             raise error_at(self.place, "LAUNCH114", message, hint, ros_error=RuntimeError(text))
 
@@ -226,7 +226,7 @@ class IncludeLaunchDescription(Action):
                 raise error_at(self.place, "LAUNCH114", message, hint, ros_error=ros_error)
 
     def _argument_hint(self, name: str) -> Phrase:
-        """Return a hint on how to pass an argument, in the language of the including file."""
+        """Return a hint on how to pass an argument in the language of the including file."""
         if not isinstance(self.place, MarkupPlace):
             return phrase("add ('{name}', VALUE) to launch_arguments", name=name)
         if self.place.text.text.lstrip().startswith("<"):
@@ -234,7 +234,7 @@ class IncludeLaunchDescription(Action):
         return phrase("write 'arg: [{{name: {name}, value: VALUE}}]' below 'include'", name=name)
 
 
-def _normalized(value: Any) -> Any:
+def _normalize_if_possible(value: Any) -> Any:
     try:
         return normalize_to_list_of_substitutions(value)
     except TypeError:
@@ -242,12 +242,12 @@ def _normalized(value: Any) -> Any:
 
 
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):
-    """An `IncludeLaunchDescription` with its own scope.
+    """Includes another launch file in a separate scope.
 
-    Changes to launch configurations and environment variables are undone after the included file.
+    The changes of launch configurations and environment variables end with the included file.
     """
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Return the entities to visit next, enclosed by actions that open and close the scope."""
-        opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
-        return [*opening, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]
+        open_actions: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
+        return [*open_actions, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]

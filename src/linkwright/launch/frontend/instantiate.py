@@ -16,38 +16,38 @@ if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Parser
 
 
-def _method(methods: dict[str, Any], name: str) -> Any:
-    """Return the parse function of a tag or substitution, or None if the name is unknown.
+def _method(parse_methods: dict[str, Any], name: str) -> Any:
+    """Return the parse function of a tag or substitution, or None if the name is not registered.
 
-    If the name is not registered, the launch extensions in the workspace are loaded first.
+    If the name is not registered, this function first loads the launch extensions in the workspace.
     """
-    if name not in methods:
+    if name not in parse_methods:
         from linkwright.launch.frontend.extensions import load_workspace_extensions
 
         load_workspace_extensions()
-    return methods.get(name)
+    return parse_methods.get(name)
 
 
 def instantiate_action(entity: Entity, parser: Parser) -> Action:
-    """Create the action for a tag.
+    """Return the action that a tag describes.
 
     Raises:
-        RuntimeError: LAUNCH115, the tag is not known.
+        RuntimeError: LAUNCH115, no action has this tag.
     """
-    method = _method(action_parse_methods, entity.type_name)
+    parse = _method(action_parse_methods, entity.type_name)
     place = entity.place
-    if method is None:
+    if parse is None:
         raise error_at(
             place,
             "LAUNCH115",
-            phrase("there is no action '{type_name}'", type_name=entity.type_name),
+            phrase("no action has the tag '{type_name}'", type_name=entity.type_name),
             did_you_mean(entity.type_name, action_parse_methods),
             ros_error=RuntimeError(f"Unrecognized entity of the type: {entity.type_name}"),
         )
     with reading_markup_at(place):
         try:
             action_type: type[Action]
-            action_type, kwargs = method(entity, parser)
+            action_type, kwargs = parse(entity, parser)
             return action_type(**kwargs)
         except LinkwrightError as error:
             raise located(error, place) from error
@@ -55,7 +55,9 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
             raise error_at(
                 place,
                 "LAUNCH118",
-                phrase("action '{type_name}': {error}", type_name=entity.type_name, error=foreign(error)),
+                phrase(
+                    ("action '{type_name}' is not valid: {error}"), type_name=entity.type_name, error=foreign(error)
+                ),
                 ros_error=error,
             ) from error
 
@@ -63,13 +65,13 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 def instantiate_substitution(
     type_name: str, args: Sequence[Any] | None = None, place: Place | None = None
 ) -> Substitution:
-    """Create the substitution with a name, given a list of substitutions for each argument.
+    """Return the substitution with a name, given a list of substitutions for each argument.
 
     Raises:
-        RuntimeError: LAUNCH119, the name is not known, or its arguments are wrong.
+        RuntimeError: LAUNCH119, there is no substitution with this name, or its arguments are wrong.
     """
-    method = _method(substitution_parse_methods, type_name)
-    if method is None:
+    parse = _method(substitution_parse_methods, type_name)
+    if parse is None:
         raise error_at(
             place,
             "LAUNCH119",
@@ -80,13 +82,13 @@ def instantiate_substitution(
     with reading_markup_at(place):
         try:
             substitution_type: type[Substitution]
-            substitution_type, kwargs = method([] if args is None else args)
+            substitution_type, kwargs = parse([] if args is None else args)
             return substitution_type(**kwargs)
         except LinkwrightError as error:
             raise located(error, place) from error
         except (AttributeError, TypeError, ValueError, AssertionError) as error:
             message = (
-                phrase("substitution '{type_name}': {error}", type_name=type_name, error=foreign(error))
+                phrase("substitution '{type_name}' is not valid: {error}", type_name=type_name, error=foreign(error))
                 if str(error)
                 else phrase("substitution '{type_name}' is not valid", type_name=type_name)
             )

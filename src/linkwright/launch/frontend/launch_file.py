@@ -17,23 +17,23 @@ from linkwright.launch.frontend.python_file import load_python_launch_file, load
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.share_layout import source_of
 
-_MARKUP = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
+_MARKUP_LANGUAGES = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 
 
 def load_launch_file(path: Path) -> LaunchDescription:
     """Load the description of a launch file.
 
-    The file's name determines the language. If the name does not, markup and then Python are tried.
+    The file name determines the language. If it does not, the markup languages are tried first, and then Python.
 
     Raises:
-        LinkwrightError: LAUNCH101 to LAUNCH109 and LAUNCH115 to LAUNCH119, the errors in the file.
+        LinkwrightError: LAUNCH101 to LAUNCH109 and LAUNCH115 to LAUNCH119, errors in the file.
     """
     if path.suffix == ".py":
         return load_python_launch_file(path)
     text = read_launch_file(path).text
     from linkwright.launch.frontend.parser import Parser
 
-    if path.suffix in _MARKUP or Parser.is_filename_valid(path.name):
+    if path.suffix in _MARKUP_LANGUAGES or Parser.is_filename_valid(path.name):
         return load_markup_launch_file(path, text)
     try:
         return load_markup_launch_file(path, text)
@@ -44,7 +44,7 @@ def load_launch_file(path: Path) -> LaunchDescription:
     except LinkwrightError as error:
         errors.append(error)
     message = phrase("launch file '{path}' is neither Python, XML nor YAML", path=display_path(path))
-    hint = phrase("its name should end in .launch.py, .launch.xml or .launch.yaml")
+    hint = phrase("give it a name that ends in .launch.py, .launch.xml or .launch.yaml")
     ros_error = InvalidLaunchFileError("", likely_errors=errors, launch_file_path=path)
     raise error_at(None, "LAUNCH107", message, hint, ros_error=ros_error) from errors[0]
 
@@ -52,27 +52,27 @@ def load_launch_file(path: Path) -> LaunchDescription:
 def load_markup_launch_file(path: Path, text: str | None = None) -> LaunchDescription:
     """Load the description of a launch file in a markup language.
 
-    The language is XML, YAML or one for which a package has a parser.
+    The language is XML, YAML, or another one for which a package provides a parser.
 
     Raises:
         LinkwrightError: LAUNCH101, LAUNCH102, LAUNCH107 to LAUNCH109 and LAUNCH115 to LAUNCH119.
     """
     from linkwright.launch.frontend.parser import Parser
 
-    opened = io.StringIO(read_launch_file(path).text if text is None else text)
-    opened.name = source_of(str(path))
+    file = io.StringIO(read_launch_file(path).text if text is None else text)
+    file.name = source_of(str(path))
     try:
-        entity, parser = Parser.load(opened)
+        entity, parser = Parser.load(file)
         return parser.parse_description(entity)
     except RecursionError as error:
-        raise too_deep_error(opened.name) from error
+        raise too_deep_error(file.name) from error
 
 
-_ANY = "launch.launch_description_sources.any_launch_file_utilities"
+_PUBLIC_MODULE = "launch.launch_description_sources.any_launch_file_utilities"
 
 
 def load_python_launch_file_as_module(launch_file_path: str | os.PathLike[str]) -> ModuleType:
-    """Run a Python launch file, and return it as a module.
+    """Run a Python launch file, and return its module.
 
     Raises:
         FileNotFoundError: LAUNCH101, there is no such file.
@@ -96,8 +96,8 @@ def get_launch_description_from_frontend_launch_file(
     """Load the description of an XML or YAML launch file."""
     if parser is None:
         return load_markup_launch_file(Path.cwd() / launch_file_path)
-    entity, made = parser.load(launch_file_path)
-    description: LaunchDescription = made.parse_description(entity)
+    entity, file_parser = parser.load(launch_file_path)
+    description: LaunchDescription = file_parser.parse_description(entity)
     return description
 
 
@@ -108,17 +108,17 @@ def get_launch_description_from_any_launch_file(
 ) -> LaunchDescription:
     """Load the description of a launch file in Python or markup.
 
-    The language that the file's name suggests is tried first, and then the other.
+    The language that the file name suggests is tried first, and then the other one.
 
     Raises:
-        InvalidLaunchFileError: LAUNCH107, the file cannot be read as either.
+        InvalidLaunchFileError: LAUNCH107, neither Python nor markup can be read from the file.
     """
-    names = sys.modules.get(_ANY, sys.modules[__name__])  # users and tests may replace these functions
-    in_markup = names.get_launch_description_from_frontend_launch_file
-    in_python = names.get_launch_description_from_python_launch_file
+    functions = sys.modules.get(_PUBLIC_MODULE, sys.modules[__name__])  # users and tests may replace these functions
+    load_markup = functions.get_launch_description_from_frontend_launch_file
+    load_python = functions.get_launch_description_from_python_launch_file
     path = Path(launch_file_path)
     errors: list[Exception] = []
-    for load in (in_python, in_markup) if path.suffix == ".py" else (in_markup, in_python):
+    for load in (load_python, load_markup) if path.suffix == ".py" else (load_markup, load_python):
         try:
             return load(launch_file_path)  # type: ignore[no-any-return]  # may be a user's function
         except Exception as error:  # noqa: BLE001, PERF203 - launch files are programs, and there are two tries

@@ -1,6 +1,6 @@
 """The base class of XML and YAML entities.
 
-The class records the parts that were read, and reports the others as unknown.
+The class records the parts that were read, and reports the remaining ones as unknown.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from linkwright.launch.model.markup.entity import Entity
 
 
 class MarkupEntity(Entity):
-    """An entity with named parts, which records the parts that were read.
+    """An entity with named parts that records which parts were read.
 
     Args:
         type_name: the tag of the entity.
@@ -43,41 +43,47 @@ class MarkupEntity(Entity):
         """The location of the entity."""
         return self._place
 
-    def _check_all_read(self, present: Iterable[str], what: str, ros_text: str) -> None:
-        """Raise an error if parts of the entity were not read.
+    def _check_all_read(self, present: Iterable[str], part_kind: str, ros_text: str) -> None:
+        """Raise an error if some parts of the entity were not read.
 
         Args:
             present: the names of all parts.
-            what: the term for such a part in the message.
-            ros_text: ROS's own text, to which the names are appended.
+            part_kind: the term for such a part in the message, such as ``attribute``.
+            ros_text: the text of the error in ROS, to which the names are appended.
 
         Raises:
             ValueError: LAUNCH116, a part was not read.
         """
-        unknown = [name for name in present if name not in self._asked]
-        if not unknown:
+        unread_names = [name for name in present if name not in self._asked]
+        if not unread_names:
             return
-        name = unknown[0]
-        listed = ", ".join(repr(str(part)) for part in unknown)
-        known = [part for part in self._asked if part not in unknown]
-        hint = did_you_mean(name, known)
-        if hint is None and known:
-            hint = phrase("'{type_name}' accepts {names}", type_name=self._type_name, names=quoted_names(sorted(known)))
+        name = unread_names[0]
+        names_text = ", ".join(repr(str(unread_name)) for unread_name in unread_names)
+        known_names = [read_name for read_name in self._asked if read_name not in unread_names]
+        hint = did_you_mean(name, known_names)
+        if hint is None and known_names:
+            hint = phrase(
+                "'{type_name}' accepts {names}", type_name=self._type_name, names=quoted_names(sorted(known_names))
+            )
         raise error_at(
             self._place_of_part(name),
             "LAUNCH116",
-            phrase("'{type_name}' has no {what} '{name}'", type_name=self._type_name, what=term(what), name=name),
+            phrase("'{type_name}' has no {what} '{name}'", type_name=self._type_name, what=term(part_kind), name=name),
             hint,
-            ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{listed}}}"),
+            ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{names_text}}}"),
         )
 
     def _place_of_part(self, name: str) -> Place | None:
         return self._place
 
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
-        others = [other for other in present if other not in self._asked]
-        near = nearest(name, others)
-        hint = phrase("it has {names}; did you mean that?", names=quoted_names(near, " or ")) if near else None
+        unread_names = [candidate for candidate in present if candidate not in self._asked]
+        similar_names = nearest(name, unread_names)
+        hint = (
+            phrase(("it has {names}; is that a misspelling?"), names=quoted_names(similar_names, " or "))
+            if similar_names
+            else None
+        )
         message = phrase("'{type_name}' needs an attribute '{name}'", type_name=self._type_name, name=name)
         raise error_at(self._place, "LAUNCH117", message, hint, ros_error=AttributeError(ros_error))
 
@@ -93,11 +99,11 @@ class MarkupEntity(Entity):
 
 
 def describe_type(data_type: Any) -> Phrase:
-    """Return a type in words for messages, such as "an integer"."""
-    words = {
+    """Return words for a type in messages, such as "an integer"."""
+    type_words = {
         int: phrase("an integer"),
         float: phrase("a number"),
         bool: phrase("a boolean ('true' or 'false')"),
         str: phrase("a string"),
     }
-    return words.get(data_type, phrase("a list of the right type"))
+    return type_words.get(data_type, phrase("a list of the expected type"))

@@ -1,4 +1,4 @@
-"""Parsers of launch files in markup languages, and the choice of a parser for a file."""
+"""Parsers of launch files in markup languages, and the selection of a parser for a file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Parser:
-    """Creates actions and substitutions from entities.
+    """Creates actions and substitutions from the entities of a launch file.
 
     The parser of each language overrides `load`.
     """
@@ -33,7 +33,7 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import Linkwright's and all installed modules that expose actions and substitutions."""
+        """Import all modules of Linkwright and of installed packages that expose actions and substitutions."""
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -46,8 +46,8 @@ class Parser:
         if Parser.frontend_parsers is not None:
             return
         parsers: dict[str, type[Parser]] = {}
-        for name, loaded in extensions.load(extensions.PARSERS):
-            parsers.setdefault(name, loaded)
+        for name, parser in extensions.load(extensions.PARSERS):
+            parsers.setdefault(name, parser)
         Parser.frontend_parsers = dict(sorted(parsers.items()))
 
     # --- interface for functions that read tags -------------------------------------------------------------
@@ -63,7 +63,7 @@ class Parser:
         return grammar.parse_substitution(value)
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """Parse the substitutions in the strings of a value."""
+        """Return a value with the substitutions in its strings parsed."""
         self.load_launch_extensions()
         return grammar.parse_if_substitutions(value)
 
@@ -88,17 +88,19 @@ class Parser:
         deprecated = entity.get_attr("deprecated", optional=True)
         entity.get_attr("version", optional=True)  # "version" is the format version in the ROS 2 launch design
         actions = []
-        problems = []
+        errors = []
         for child in entity.children:
             try:
                 actions.append(self.parse_action(child))
             except LinkwrightError as error:  # noqa: PERF203 - independent errors are reported together
-                problems.append(error)
-        if len(problems) == 1:
-            raise problems[0]
-        if problems:
-            problems[0].diagnostics = tuple(diagnostic for problem in problems for diagnostic in problem.diagnostics)
-            raise problems[0]
+                errors.append(error)
+        if len(errors) == 1:
+            raise errors[0]
+        if errors:
+            errors[0].diagnostics = tuple(
+                diagnostic for child_error in errors for diagnostic in child_error.diagnostics
+            )
+            raise errors[0]
         entity.assert_entity_completely_parsed()
         return LaunchDescription(actions, deprecated_reason=deprecated)
 
@@ -124,13 +126,13 @@ class Parser:
 
     @classmethod
     def is_extension_valid(cls, extension: str) -> bool:
-        """Return whether there is a parser with this name."""
+        """Return whether there is a parser with the given name."""
         warnings.warn("Parser.is_extension_valid is deprecated, use Parser.is_filename_valid instead", stacklevel=2)
         return extension in cls._parsers()
 
     @classmethod
     def get_parser_from_extension(cls, extension: str) -> type[Parser]:
-        """Return the parser with this name.
+        """Return the parser with the given name.
 
         Raises:
             RuntimeError: there is no such parser.
@@ -146,12 +148,12 @@ class Parser:
 
     @classmethod
     def is_filename_valid(cls, filename: str) -> bool:
-        """Return whether any parser reads files with this name."""
+        """Return whether any parser reads files with the given name."""
         return any(parser.may_parse(filename) for parser in cls._parsers().values())
 
     @classmethod
     def get_parsers_from_filename(cls, filename: str) -> list[type[Parser]]:
-        """Return the parsers that read files with this name."""
+        """Return the parsers that read files with the given name."""
         return [parser for parser in cls._parsers().values() if parser.may_parse(filename)]
 
     @classmethod
@@ -161,21 +163,21 @@ class Parser:
 
     @classmethod
     def load(cls, file: Any) -> tuple[Entity, Parser]:
-        """Return the root entity of a path or open file, and its parser.
+        """Return the root entity of a launch file, given as a path or open file, and its parser.
 
-        If the file's name does not determine the parser, all parsers are tried.
+        If the file name does not determine the parser, all parsers are tried.
 
         Raises:
             InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, the errors in the file.
         """
         name, text = read_file(file)
-        chosen = cls.get_parsers_from_filename(name) or _parsers_by_suffix(name, cls._parsers())
+        candidates = cls.get_parsers_from_filename(name) or _parsers_by_suffix(name, cls._parsers())
         errors: list[Exception] = []
-        for parser in chosen or cls._parsers().values():
-            again = io.StringIO(text)
-            again.name = name
+        for parser in candidates or cls._parsers().values():
+            file_copy = io.StringIO(text)
+            file_copy.name = name
             try:
-                return parser.load(again)
+                return parser.load(file_copy)
             except RecursionError:  # no other parser can read a text that is nested too deeply
                 raise
             except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
@@ -207,9 +209,9 @@ def read_file(file: Any) -> tuple[str, str]:
 
 
 def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
-    """Return the findings of the parser for the most likely language of an unreadable file.
+    """Return the findings of the parser for the language that an unreadable file probably has.
 
-    If no parser fits, a single finding LAUNCH107 is returned.
+    If no parser fits, the result is one finding LAUNCH107.
     """
     reports = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
     looks_like_xml = text.lstrip().startswith("<")

@@ -38,7 +38,7 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
     Raises:
         LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, the file cannot be read; LAUNCH103, it has a
             syntax error; LAUNCH104, it raised an exception; LAUNCH105, it does not define the function; LAUNCH106, the
-            function does not return a LaunchDescription.
+            function does not return a `LaunchDescription`.
     """
     with outside_markup():
         source = read_launch_file(path)
@@ -56,11 +56,11 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
         except (Exception, SystemExit) as error:
             if isinstance(error, SystemExit) and not error.code:
                 raise
-            where = phrase("launch file '{path}'", path=display_path(source.name))
-            raise explain(error, where, _definition(function, source)) from error
+            subject = phrase("launch file '{path}'", path=display_path(source.name))
+            raise explain(error, subject, _definition(function, source)) from error
     if not isinstance(description, LaunchDescription):
         message = phrase(
-            "'{function}' returned {kind}, not a LaunchDescription", function=_FUNCTION, kind=_kind(description)
+            "'{function}' returned {kind}, not a LaunchDescription", function=_FUNCTION, kind=_type_phrase(description)
         )
         hint = phrase("end it with: return LaunchDescription([...])")
         ros_error = InvalidPythonLaunchFileError(message)
@@ -69,9 +69,9 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
 
 
 def _definition(function: Callable[..., Any], source: SourceText) -> Place:
-    """Return the place of the line that defines a function in a launch file.
+    """Return the location of the line that defines a function in a launch file.
 
-    If another file defines the function, the place is the first line of the launch file.
+    If the function is defined in another file, the location is the first line of the launch file.
     """
     code = getattr(function, "__code__", None)
     line = code.co_firstlineno if code is not None and code.co_filename == source.name else 1
@@ -80,7 +80,7 @@ def _definition(function: Callable[..., Any], source: SourceText) -> Place:
 
 
 def load_python_module(path: Path) -> ModuleType:
-    """Run a launch file and return it as a module.
+    """Run a launch file, and return its module.
 
     Raises:
         LinkwrightError: LAUNCH101 to LAUNCH104, see `load_python_launch_file`.
@@ -90,9 +90,9 @@ def load_python_module(path: Path) -> ModuleType:
 
 
 def _run(source: SourceText, path: Path) -> ModuleType:
-    """Run a launch file as a module whose ``__file__`` is a path, and return the module.
+    """Run a launch file, and return its module with ``__file__`` set to the path.
 
-    Messages name the user's own file, even if the path is a copy of it.
+    Messages name the user's original file, even if the path is that of a copy.
     """
     try:
         code = compile(source.text, source.name, "exec", dont_inherit=True)
@@ -117,33 +117,37 @@ def _run(source: SourceText, path: Path) -> ModuleType:
 def read_launch_file(path: Path) -> SourceText:
     """Return the text of a launch file in any language.
 
-    The text has the name of the user's own file (see `source_of`).
+    The text has the name of the user's original file (see `source_of`).
 
     Raises:
         LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, the file cannot be read.
     """
     name = source_of(str(path))
-    shown = display_path(name)
+    shown_path = display_path(name)
     try:
         return SourceText(name, read_text(path, "utf-8-sig"))
     except FileNotFoundError as error:
         hint = missing_file_hint(path, is_launch_file_name)
-        message = phrase("launch file '{shown}' does not exist", shown=as_typed(shown))
+        message = phrase("launch file '{shown}' does not exist", shown=as_typed(shown_path))
         raise error_at(None, "LAUNCH101", message, hint, ros_error=error) from error
     except IsADirectoryError as error:
         hint = missing_file_hint(path / "_", is_launch_file_name)
         raise error_at(
-            None, "LAUNCH101", phrase("'{shown}' is a folder, not a launch file", shown=shown), hint, ros_error=error
+            None,
+            "LAUNCH101",
+            phrase("'{shown}' is a folder, not a launch file", shown=shown_path),
+            hint,
+            ros_error=error,
         ) from error
     except OSError as error:
         message = phrase(
-            "launch file '{shown}' cannot be read: {strerror}", shown=shown, strerror=foreign(error.strerror)
+            "launch file '{shown}' cannot be read: {strerror}", shown=shown_path, strerror=foreign(error.strerror)
         )
         raise error_at(None, "LAUNCH102", message, ros_error=error) from error
     except UnicodeDecodeError as error:
         raise _error(
             "LAUNCH102",
-            phrase("launch file '{shown}' is not UTF-8: {reason}", shown=shown, reason=foreign(error.reason)),
+            phrase("launch file '{shown}' is not UTF-8: {reason}", shown=shown_path, reason=foreign(error.reason)),
         ) from error
 
 
@@ -156,11 +160,11 @@ def _syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:
         end_line, end_column = line, column + 1
     span = Span(source.name, line, column, end_line, end_column)
     return Diagnostic(
-        "LAUNCH103", phrase("syntax error in the launch file: {msg}", msg=foreign(error.msg)), span, source=source
+        "LAUNCH103", phrase("the launch file has a syntax error: {msg}", msg=foreign(error.msg)), span, source=source
     )
 
 
-def _kind(value: object) -> Phrase:
+def _type_phrase(value: object) -> Phrase:
     return phrase("None") if value is None else phrase("a {type}", type=type(value).__name__)
 
 

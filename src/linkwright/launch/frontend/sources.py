@@ -1,4 +1,4 @@
-"""Sources of launch descriptions: existing descriptions and launch files."""
+"""Sources of launch descriptions: existing descriptions, and launch files."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from linkwright.launch.model.substitution import (
 
 
 class LaunchDescriptionSource(Placed):
-    """A launch description, or the file that contains it.
+    """Provides a launch description, which exists already or is loaded from a file.
 
     Args:
         launch_description: the description, if it already exists.
-        location: the path of the file, if there is no description yet.
-        method: how the description is loaded, for listings.
+        location: the path of the file; empty if the description exists already.
+        method: a text for listings that describes how the description is loaded.
     """
 
     def __init__(
@@ -37,55 +37,59 @@ class LaunchDescriptionSource(Placed):
         self._description = launch_description
         self._location = normalize_to_list_of_substitutions(location)
         self._method = method
-        self._known_location: str | None = None
+        self._evaluated_location: str | None = None
 
     @property
     def location(self) -> str:
-        """The evaluated path, or a listing of the path's substitutions before they are evaluated."""
-        if self._known_location is not None:
-            return self._known_location
+        """The evaluated path; before the evaluation, a text with its substitutions."""
+        if self._evaluated_location is not None:
+            return self._evaluated_location
         return " + ".join(map(repr, self._location))
 
     @property
     def location_path(self) -> Path | None:
-        """The absolute path; None if it is not evaluated yet or the description has no file."""
-        return Path.cwd() / self._known_location if self._known_location else None
+        """The absolute path; None if it is not evaluated yet, or the description has no file."""
+        return Path.cwd() / self._evaluated_location if self._evaluated_location else None
 
     @property
     def method(self) -> str:
-        """How the description is loaded, for listings."""
+        """A text for listings that describes how the description is loaded."""
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """Return the description, which is read from its file on the first call.
+        """Return the description, which is loaded from its file on the first call.
 
         Raises:
-            LinkwrightError: the errors in the file.
+            LinkwrightError: the file has errors.
         """
-        if self._known_location is None:
-            self._known_location = perform_substitutions(context, self._location)
+        if self._evaluated_location is None:
+            self._evaluated_location = perform_substitutions(context, self._location)
         return self._get()
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
-        """Return the description, or None if its path contains substitutions that need a context."""
-        if self._description is None and all(isinstance(part, TextSubstitution) for part in self._location):
-            self._known_location = "".join(part.text for part in self._location if isinstance(part, TextSubstitution))
+        """Return the description, or None if its path contains substitutions that need a launch context."""
+        if self._description is None and all(
+            isinstance(substitution, TextSubstitution) for substitution in self._location
+        ):
+            self._evaluated_location = "".join(
+                part.text for part in self._location if isinstance(part, TextSubstitution)
+            )
             return self._get()
         return self._description
 
     def _get(self) -> LaunchDescription:
-        assert self._known_location is not None
+        assert self._evaluated_location is not None
         if self._description is None:
             try:
-                self._description = self._get_launch_description(self._known_location)
+                self._description = self._get_launch_description(self._evaluated_location)
             except LinkwrightError as error:
                 raise located(error, self.place) from error
         return self._description
 
     def _get_launch_description(self, location: str) -> LaunchDescription:
-        """Read the description from the file.
+        """Load the description from the file.
 
-        Users' classes override this method, so it keeps its name in ROS.
+        Users' classes override this method, so it has its name in ROS.
         """
         raise NotImplementedError(f"{type(self).__name__} does not implement how to read '{location}'")
 
@@ -109,8 +113,8 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
 
     Args:
         launch_file_path: the path of the file.
-        method: how the file is loaded, for listings.
-        parser: the parser of the file; by default, the file's name determines the parser.
+        method: a text for listings that describes how the file is loaded.
+        parser: the parser; None to select it by the file name.
     """
 
     def __init__(
@@ -169,7 +173,7 @@ class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
     """A launch file in any language.
 
-    The file's name determines the language. If the name does not, markup and then Python are tried.
+    The file name determines the language. If it does not, the markup languages are tried first, and then Python.
 
     Args:
         launch_file_path: the path of the file.

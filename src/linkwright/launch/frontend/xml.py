@@ -31,7 +31,7 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child elements.
+        """The child elements, all of which count as read after an access.
 
         Reading this property marks all child elements as read.
         """
@@ -39,7 +39,7 @@ class Entity(MarkupEntity):
         return [Entity(element, parent=self) for element in self._element.elements()]
 
     def assert_entity_completely_parsed(self) -> None:
-        """Check that all attributes and child elements have been read.
+        """Raise an error if some attributes or child elements have not been read.
 
         Raises:
             ValueError: LAUNCH116, an attribute or child element was not read.
@@ -49,19 +49,19 @@ class Entity(MarkupEntity):
         self._check_all_read(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return the value of an attribute, or the child elements with a tag.
+        """Return the value of an attribute, or the child elements with a given tag.
 
-        The value is converted to the type. If there is an attribute ``NAME-sep``, the value is a list that is split at
-        this separator. See `linkwright.launch.model.markup.entity.Entity`.
+        The value is converted to the type. If there is an attribute ``NAME-sep``, the value is split at this separator
+        into a list. See `linkwright.launch.model.markup.entity.Entity`.
         """
         self._asked[name] = None
         attributes = self._element.attributes
         ros_error = f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'"
         if is_list_of_entities(data_type):
-            inside = [Entity(element, parent=self) for element in self._element.elements(name)]
-            if not inside and not optional:
+            children = [Entity(element, parent=self) for element in self._element.elements(name)]
+            if not children and not optional:
                 self._missing(name, {element.tag for element in self._element.elements()}, ros_error)
-            return inside or None
+            return children or None
         if name not in attributes:
             if optional:
                 return None
@@ -69,7 +69,7 @@ class Entity(MarkupEntity):
         value: Any = PlacedText(attributes[name], _attribute_place(self._element, name))
         if name + _SEPARATOR in attributes:
             self._asked[name + _SEPARATOR] = None
-            value = [PlacedText(part, value.place) for part in value.split(attributes[name + _SEPARATOR])]
+            value = [PlacedText(item, value.place) for item in value.split(attributes[name + _SEPARATOR])]
         try:
             return get_typed_value(value, data_type, can_be_str=can_be_str)
         except (TypeError, ValueError):
@@ -82,14 +82,14 @@ class Entity(MarkupEntity):
     def _place_of_part(self, name: str) -> Place | None:
         element, source = self._element, self._element.source
         if name not in element.attributes:
-            inside = element.first(name)
-            return self.place if inside is None else _place(inside)
+            child = element.first(name)
+            return self.place if child is None else _place(child)
         if source is None:
             return None
         if name in self._asked:
             return _attribute_place(element, name)
-        found = attribute_name_range(source.text, element.offset, name)
-        return MarkupPlace(source, *found) if found else self.place
+        name_range = attribute_name_range(source.text, element.offset, name)
+        return MarkupPlace(source, *name_range) if name_range else self.place
 
 
 class Parser(AnyParser):
@@ -100,14 +100,14 @@ class Parser(AnyParser):
         """Return the root entity of a path or open file, and a parser for it.
 
         Raises:
-            LinkwrightError: the errors in the XML.
+            LinkwrightError: the file is not valid XML.
         """
         name, text = read_file(file)
         return Entity(parse(text, name).root), cls()
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the file name extensions, without the leading dot."""
+        """Return the file name extensions of XML launch files, without the leading dot."""
         return {"launch.xml"}
 
 
@@ -120,11 +120,11 @@ def _place(element: Element) -> Place | None:
 def _attribute_place(element: Element, name: str) -> Place | None:
     if element.source is None:
         return None
-    found = attribute_value_range(element.source.text, element.offset, name)
-    return MarkupPlace(element.source, *found) if found else _place(element)
+    value_range = attribute_value_range(element.source.text, element.offset, name)
+    return MarkupPlace(element.source, *value_range) if value_range else _place(element)
 
 
 def _from_etree(element: Any) -> Element:
-    made = Element(element.tag, dict(element.attrib))
-    made.children.extend(_from_etree(child) for child in element if isinstance(child.tag, str))
-    return made
+    converted_element = Element(element.tag, dict(element.attrib))
+    converted_element.children.extend(_from_etree(child) for child in element if isinstance(child.tag, str))
+    return converted_element

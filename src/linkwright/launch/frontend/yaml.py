@@ -18,12 +18,12 @@ from linkwright.launch.model.markup.values import is_instance_of
 
 _CHILDREN = "children"
 
-_BARE = {"include": "file"}
-"""Tag -> the attribute of a single value, as in ``- include: other.launch.py``."""
+_SINGLE_VALUE_ATTRIBUTES = {"include": "file"}
+"""Maps tags to the attribute for a single value, as in ``- include: other.launch.py``."""
 
 
 class Entity(MarkupEntity):
-    """An action in a YAML launch file: a mapping of attributes, or a list of actions.
+    """An action in a YAML launch file, which is a mapping of attributes or a list of actions.
 
     Args:
         element: the mapping or list.
@@ -34,22 +34,22 @@ class Entity(MarkupEntity):
     def __init__(self, element: Any, type_name: str = "", *, parent: AnyEntity | None = None) -> None:
         super().__init__(type_name, place_of(type_name) or getattr(element, "place", None), parent)
         self._element = element
-        self._children_asked = False
+        self._are_children_read = False
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child entities: the items of the list, or of the mapping's ``children``.
+        """The child entities, which are the items of the list, or of the mapping's ``children``.
 
         Raises:
             TypeError: LAUNCH118, the element is neither a list nor a mapping.
             ValueError: LAUNCH117, the mapping has no ``children``.
             RuntimeError: LAUNCH118, an item is not a mapping with one key.
         """
-        self._children_asked = True
-        listed = self._element
-        if isinstance(listed, dict):
+        self._are_children_read = True
+        children = self._element
+        if isinstance(children, dict):
             self._asked[_CHILDREN] = None
-            if _CHILDREN not in listed:
+            if _CHILDREN not in children:
                 text = (
                     f"Expected entity `{self.type_name}` to have children entities."
                     f"That can be a list of subentities or a dictionary with a `children` list element"
@@ -59,12 +59,12 @@ class Entity(MarkupEntity):
                     type_name=self.type_name,
                 )
                 raise error_at(self.place, "LAUNCH117", message, ros_error=ValueError(text))
-            listed = listed[_CHILDREN]
-        if not isinstance(listed, list):
-            text = f"Expected a dict or list, got {type(listed)}:\n---\n{listed}\n---"
+            children = children[_CHILDREN]
+        if not isinstance(children, list):
+            text = f"Expected a dict or list, got {type(children)}:\n---\n{children}\n---"
             message = phrase("'{type_name}' needs a list of actions", type_name=self.type_name)
             raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(text))
-        return [self._child(item) for item in listed]
+        return [self._child(item) for item in children]
 
     def _child(self, item: Any) -> AnyEntity:
         if not isinstance(item, dict) or len(item) != 1:
@@ -76,40 +76,40 @@ class Entity(MarkupEntity):
             place = getattr(item, "place", None) or place_of(item) or self.place
             raise error_at(place, "LAUNCH118", message, hint, ros_error=RuntimeError(text))
         [(name, element)] = item.items()
-        if isinstance(element, str) and name in _BARE:
-            mapping = PlacedMapping({_BARE[name]: element})
+        if isinstance(element, str) and name in _SINGLE_VALUE_ATTRIBUTES:
+            mapping = PlacedMapping({_SINGLE_VALUE_ATTRIBUTES[name]: element})
             mapping.place = place_of(element)
             element = mapping
         return Entity({} if element is None else element, name, parent=self)
 
     def assert_entity_completely_parsed(self) -> None:
-        """Check that all keys have been read.
+        """Raise an error if some keys have not been read.
 
         Raises:
             ValueError: LAUNCH116, a key was not read.
         """
         if isinstance(self._element, dict):
             self._check_all_read(self._element, "key", "Unexpected key(s) found in")
-        elif isinstance(self._element, list) and not self._children_asked:
+        elif isinstance(self._element, list) and not self._are_children_read:
             text = f"Unexpected nested entity(ies) found in `{self.type_name}`: {self._element}"
             message = phrase("'{type_name}' does not accept a list of actions", type_name=self.type_name)
             raise error_at(self.place, "LAUNCH116", message, ros_error=ValueError(text))
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return the value of an attribute, or the child entities with a name.
+        """Return the value of an attribute, or the child entities with a given name.
 
-        The value must have the type under YAML's rules. As in newer ROS versions, a number or boolean is also accepted
+        The value must have the type according to YAML. As in newer ROS versions, a number or boolean is also accepted
         as a string. See `linkwright.launch.model.markup.entity.Entity`.
         """
         self._asked[name] = None
         if not isinstance(self._element, (dict, list)):
-            message = phrase("'{type_name}' needs attributes", type_name=self.type_name)
+            message = phrase("'{type_name}' must be a mapping of attributes", type_name=self.type_name)
             raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(message))
         if name not in self._element:
             if optional:
                 return None
-            present = self._element if isinstance(self._element, dict) else {}
-            self._missing(name, present, f"Can not find attribute '{name}' in Entity '{self.type_name}'")
+            attributes = self._element if isinstance(self._element, dict) else {}
+            self._missing(name, attributes, f"Can not find attribute '{name}' in Entity '{self.type_name}'")
         value: Any = dict(self._element)[name]
         if is_list_of_entities(data_type):
             if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
@@ -149,7 +149,7 @@ class Parser(AnyParser):
         """Return the root entity of a path or open file, and a parser for it.
 
         Raises:
-            LinkwrightError: LAUNCH108, the file is not YAML; LAUNCH109, the file is not a mapping with one key.
+            LinkwrightError: LAUNCH108, the file is not valid YAML; LAUNCH109, it is not a mapping with one key.
         """
         name, text = read_file(file)
         tree = load(text, name)
@@ -163,7 +163,7 @@ class Parser(AnyParser):
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the file name extensions, without the leading dot."""
+        """Return the file name extensions of YAML launch files, without the leading dot."""
         return {"launch.yaml", "launch.yml"}
 
 
@@ -177,7 +177,11 @@ class PlacedMapping(dict[Any, Any]):
 
 
 class _Loader(yaml.SafeLoader):
-    """Loads plain values, and records the locations of strings and mappings."""
+    """Loads plain values, and records the locations of strings and mappings.
+
+    Attributes:
+        launch_text: the text of the file.
+    """
 
     launch_text: SourceText
 
@@ -186,7 +190,7 @@ class _Loader(yaml.SafeLoader):
         self._open_anchors: list[str | None] = []
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """Compose a node, and reject an alias to an enclosing node, which would recurse endlessly."""
+        """Compose a node, and raise an error for an alias to an enclosing node, which would recurse endlessly."""
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
         anchor = getattr(event, "anchor", None)
         if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:
@@ -209,24 +213,24 @@ def _text(loader: _Loader, node: yaml.ScalarNode) -> PlacedText:
     return PlacedText(loader.construct_scalar(node), MarkupPlace(loader.launch_text, start, end))
 
 
-def _mapping(loader: _Loader, node: yaml.MappingNode) -> Any:
-    made = PlacedMapping()
-    made.place = loader.place_of_node(node.value[0][0] if node.value else node)
-    yield made
-    made.update(loader.construct_mapping(node))
+def _construct_mapping(loader: _Loader, node: yaml.MappingNode) -> Any:
+    mapping = PlacedMapping()
+    mapping.place = loader.place_of_node(node.value[0][0] if node.value else node)
+    yield mapping
+    mapping.update(loader.construct_mapping(node))
 
 
 _Loader.add_constructor("tag:yaml.org,2002:str", _text)
-_Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
+_Loader.add_constructor("tag:yaml.org,2002:map", _construct_mapping)
 
 
 def load(text: str, name: str) -> Any:
     """Load the data of a YAML text.
 
-    Each string is a `PlacedText`, and each mapping is a `PlacedMapping`.
+    In the data, each string is a `PlacedText`, and each mapping is a `PlacedMapping`.
 
     Raises:
-        LinkwrightError: LAUNCH108, the text is not YAML.
+        LinkwrightError: LAUNCH108, the text is not valid YAML.
     """
     source = SourceText(name, text)
     loader = _Loader(text)
@@ -236,15 +240,22 @@ def load(text: str, name: str) -> Any:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         span = source.span(mark.index) if mark else None
-        problem = ", ".join(part for part in (error.problem, error.context) if part)
+        problem = ", ".join(message for message in (error.problem, error.context) if message)
         hint = phrase("indent with spaces") if mark and source.text[mark.index : mark.index + 1] == "\t" else None
         diagnostic = Diagnostic(
-            "LAUNCH108", phrase("YAML syntax: {problem}", problem=foreign(problem)), span, hint=hint, source=source
+            "LAUNCH108",
+            phrase("the launch file is not valid YAML: {problem}", problem=foreign(problem)),
+            span,
+            hint=hint,
+            source=source,
         )
         raise as_ros_error(error, diagnostic) from error
     except yaml.YAMLError as error:
         raise LinkwrightError(
-            Diagnostic("LAUNCH108", phrase("YAML syntax in '{name}': {error}", name=name, error=foreign(error)))
+            Diagnostic(
+                "LAUNCH108",
+                phrase(("launch file '{name}' is not valid YAML: {error}"), name=name, error=foreign(error)),
+            )
         ) from error
     finally:
         loader.dispose()

@@ -1,4 +1,4 @@
-"""The handlers of `logging` with formats for individual loggers (``launch.logging.handlers``)."""
+"""Handlers of `logging` with separate formats for individual loggers (``launch.logging.handlers``)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import logging
 import logging.handlers
 from typing import Any
 
-_CLASSES: dict[str, type[Any]] = {}
+_EXTENDED_CLASSES: dict[str, type[Any]] = {}
 
 
 class ForEachLogger:
@@ -17,15 +17,15 @@ class ForEachLogger:
         self._formatters: dict[str, logging.Formatter] = {}
 
     def setFormatterFor(self, logger: logging.Logger, formatter: logging.Formatter) -> None:  # noqa: N802 - ROS's name
-        """Set the formatter for a logger's lines."""
+        """Set the formatter for the lines of a logger."""
         self._formatters[logger.name] = formatter
 
     def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS's name
-        """Remove the formatter for a logger's lines."""
+        """Remove the formatter for the lines of a logger."""
         self._formatters.pop(logger.name, None)
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line for a log record."""
+        """Return the formatted line for a log record."""
         record.msg, record.args = record.getMessage(), None
         formatter = self._formatters.get(record.name)
         if formatter is not None:
@@ -52,18 +52,18 @@ class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
 def handler_class(name: str) -> type[Any]:
     """Return a class of `logging.handlers` combined with `ForEachLogger`.
 
-    This function is used as the ``__getattr__`` of a module.
+    A module uses this function as its ``__getattr__``.
 
     Raises:
         AttributeError: there is no such handler.
     """
-    found = getattr(logging.handlers, name, None)
-    if isinstance(found, type) and issubclass(found, logging.Handler):
-        return _extended(found)
+    base_class = getattr(logging.handlers, name, None)
+    if isinstance(base_class, type) and issubclass(base_class, logging.Handler):
+        return _extend(base_class)
     raise AttributeError(f"module 'launch.logging.handlers' has no attribute '{name}'")
 
 
-def _extended(kind: Any) -> type[Any]:
-    if kind.__name__ not in _CLASSES:
-        _CLASSES[kind.__name__] = type(kind.__name__, (ForEachLogger, kind), {"__doc__": kind.__doc__})
-    return _CLASSES[kind.__name__]
+def _extend(kind: Any) -> type[Any]:
+    if kind.__name__ not in _EXTENDED_CLASSES:
+        _EXTENDED_CLASSES[kind.__name__] = type(kind.__name__, (ForEachLogger, kind), {"__doc__": kind.__doc__})
+    return _EXTENDED_CLASSES[kind.__name__]

@@ -1,7 +1,7 @@
-"""The loggers of ``launch.logging``: Python's loggers with the format of launch lines.
+"""The loggers of ``launch.logging``, which are Python's loggers with the format of launch lines.
 
-These loggers are separate from the launcher's own log (`linkwright.hosting.launch_log`), but have the same format and
-use the same environment variables. A log file is opened when its first line is written.
+These loggers are separate from the launcher's own log (`linkwright.hosting.launch_log`). They have the same format,
+and use the same environment variables. A log file is opened when its first line is written.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from linkwright.launch.log.handlers import FileHandler, ForEachLogger, Handler, 
 
 MAIN_LOG = "launch.log"
 
-_SOURCES = ("stdout", "stderr", "both")
+_STREAMS = ("stdout", "stderr", "both")
 _DESTINATIONS = frozenset({"screen", "log", "own_log"})
 _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
     "screen": {"both": {"screen"}},
@@ -32,7 +32,7 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
 
 
 class _ScreenHandler(StreamHandler):
-    """Writes lines to ``sys.stdout``, even if a program replaces this stream."""
+    """Writes lines to ``sys.stdout``, even after a program has replaced this stream."""
 
     @property
     def stream(self) -> Any:
@@ -47,7 +47,7 @@ class _MainFileHandler(Handler):
     """Writes lines to the main log file, which is opened when the first line is written."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write the line of a log record, unless the logger has its own handler for the same file."""
+        """Write the line of a log record, unless the logger has its own handler for the main log file."""
         handler = launch_config.get_log_file_handler(launch_config.log_file_name)
         if handler not in logging.getLogger(record.name).handlers:
             handler.handle(record)
@@ -81,7 +81,7 @@ class LaunchConfig:
         self.screen_formatter: logging.Formatter | None = None
         self.file_formatter: logging.Formatter | None = None
         self._log_handler_factory: Callable[..., logging.Handler] | None = None
-        self.level_chosen = False
+        self.is_level_set = False
         self.set_screen_format("default")
         self.set_log_format("default")
 
@@ -93,11 +93,11 @@ class LaunchConfig:
     @level.setter
     def level(self, new_level: int) -> None:
         logging.root.setLevel(new_level)
-        self.level_chosen = True
+        self.is_level_set = True
 
     @property
     def log_dir(self) -> str:
-        """The folder of the launch's log files, which is created on first use."""
+        """The folder that contains the log files of the launch; it is created on first access."""
         if self._log_dir is None:
             module = _public_module()
             self._log_dir = module._make_unique_log_dir(base_path=_get_logging_directory())
@@ -109,23 +109,23 @@ class LaunchConfig:
     def log_dir(self, new_log_dir: str | None) -> None:
         if new_log_dir is not None:
             if self.file_handlers:
-                problem = (
+                message = (
                     f"Loggers have been already configured to output to log files below {self._log_dir}. "
                     "Proceed at your own risk."
                 )
-                warnings.warn(problem, stacklevel=2)
+                warnings.warn(message, stacklevel=2)
             if not Path(new_log_dir).is_dir():
                 raise ValueError(f"{new_log_dir} is not a directory")
         self._log_dir = None if new_log_dir is None else str(new_log_dir)
 
     def share(self, folder: Path) -> None:
-        """Use the log folder of the running launch, unless loggers already write to files elsewhere."""
+        """Use the log folder of the running launch, unless log files have already been opened."""
         if not self.file_handlers:
             self._log_dir = str(folder)
 
     @property
     def log_handler_factory(self) -> Callable[..., logging.Handler]:
-        """The factory of file handlers, called with a path and the keyword argument ``encoding``."""
+        """The factory of file handlers, which is called with a path and the keyword argument ``encoding``."""
         return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
 
     @log_handler_factory.setter
@@ -142,7 +142,7 @@ class LaunchConfig:
             screen_style: the style of a format string, as in `logging.Formatter`; ``{`` by default.
         """
         override = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
-        self.screen_formatter = _formatter(screen_format, screen_style, override, FORMATS, "screen")
+        self.screen_formatter = _create_formatter(screen_format, screen_style, override, FORMATS, "screen")
         if self.screen_handler is not None:
             self.screen_handler.setFormatter(self.screen_formatter)
 
@@ -156,7 +156,7 @@ class LaunchConfig:
             log_style: the style of a format string, as in `logging.Formatter`; ``{`` by default.
         """
         override = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
-        self.file_formatter = _formatter(log_format, log_style, override, FILE_FORMATS, "log")
+        self.file_formatter = _create_formatter(log_format, log_style, override, FILE_FORMATS, "log")
         for handler in self.file_handlers.values():
             handler.setFormatter(self.file_formatter)
 
@@ -183,24 +183,24 @@ class LaunchConfig:
         return self.file_handlers[file_name]
 
 
-def _formatter(
-    wanted: str | None, style: Any, override: str | None, named: Mapping[str, str], kind: str
+def _create_formatter(
+    format_text: str | None, style: Any, override: str | None, named_formats: Mapping[str, str], kind: str
 ) -> logging.Formatter | None:
     if override:
-        wanted, style = override.encode("latin1").decode("unicode_escape"), "{"
-    if wanted is None:
+        format_text, style = override.encode("latin1").decode("unicode_escape"), "{"
+    if format_text is None:
         return None
-    if wanted in named:
+    if format_text in named_formats:
         if style is not None:
-            raise ValueError(f'Cannot set a custom format style for the "{wanted}" {kind} format.')
-        wanted = named[wanted]
-    return logging.Formatter(wanted, style=style or "{")
+            raise ValueError(f'Cannot set a custom format style for the "{format_text}" {kind} format.')
+        format_text = named_formats[format_text]
+    return logging.Formatter(format_text, style=style or "{")
 
 
 def _public_module() -> Any:
-    """Return the module ``launch.logging`` if it is loaded, else this module.
+    """Return the module ``launch.logging`` if it is loaded, otherwise this module.
 
-    Users and ROS's tests replace the functions that create log folders in ``launch.logging``.
+    Users and ROS's tests replace functions in ``launch.logging`` that create log folders.
     """
     return sys.modules.get("launch.logging") or sys.modules[__name__]
 
@@ -211,23 +211,23 @@ launch_config = LaunchConfig()
 def get_logger(name: str | None = None) -> logging.Logger:
     """Return a logger that writes to the screen and the main log file.
 
-    Its lines have the format of the launcher's lines.
+    Its lines have the format of launch lines.
     """
     logger = logging.getLogger(name)
     for handler in (launch_config.get_screen_handler(), launch_config.main_file):
         if handler not in logger.handlers and not _is_handled_by_parent(logger, handler):
             logger.addHandler(handler)
-    if not launch_config.level_chosen and logger.getEffectiveLevel() > logging.INFO:
+    if not launch_config.is_level_set and logger.getEffectiveLevel() > logging.INFO:
         logger.setLevel(logging.INFO)  # Python's default would hide lines that the launcher shows
     return logger
 
 
 def _is_handled_by_parent(logger: logging.Logger, handler: logging.Handler) -> bool:
-    """Return whether a logger's lines reach a handler through one of its parent loggers."""
-    above: logging.Logger | None = logger if logger.propagate else None
-    while above is not None and above.parent is not None:
-        above = above.parent
-        if handler in above.handlers:
+    """Return whether the lines of a logger reach a handler through one of its parent loggers."""
+    ancestor: logging.Logger | None = logger if logger.propagate else None
+    while ancestor is not None and ancestor.parent is not None:
+        ancestor = ancestor.parent
+        if handler in ancestor.handlers:
             return True
     return False
 
@@ -244,33 +244,33 @@ def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.L
 
     Args:
         process_name: the name of the process.
-        output_config: the destinations; see ``output`` of `linkwright.launch.model.actions.ExecuteProcess`.
+        output_config: the destinations, as for ``output`` of `linkwright.launch.model.actions.ExecuteProcess`.
 
     Raises:
         ValueError: the destinations are not valid.
     """
     config = _normalize_output_configuration(output_config)
     loggers = []
-    for source in _SOURCES[:2]:
+    for source in _STREAMS[:2]:
         logger = logging.getLogger(f"{process_name}-{source}")
         logger.propagate = False
         logger.setLevel(logging.INFO)
-        plain = logging.Formatter("{msg}", style="{")
-        stamped = logging.Formatter("{created:.7f} {msg}", style="{")
-        wanted = config[source] | config["both"]
-        if "screen" in wanted:
-            _add(logger, launch_config.get_screen_handler(), plain)
-        if "log" in wanted:
-            _add(logger, launch_config.get_log_file_handler(), stamped)
+        plain_formatter = logging.Formatter("{msg}", style="{")
+        timestamp_formatter = logging.Formatter("{created:.7f} {msg}", style="{")
+        destinations = config[source] | config["both"]
+        if "screen" in destinations:
+            _add_handler(logger, launch_config.get_screen_handler(), plain_formatter)
+        if "log" in destinations:
+            _add_handler(logger, launch_config.get_log_file_handler(), timestamp_formatter)
         if "own_log" in config[source]:
-            _add(logger, launch_config.get_log_file_handler(f"{process_name}-{source}.log"), plain)
+            _add_handler(logger, launch_config.get_log_file_handler(f"{process_name}-{source}.log"), plain_formatter)
         if "own_log" in config["both"]:
-            _add(logger, launch_config.get_log_file_handler(f"{process_name}.log"), plain)
+            _add_handler(logger, launch_config.get_log_file_handler(f"{process_name}.log"), plain_formatter)
         loggers.append(logger)
     return loggers[0], loggers[1]
 
 
-def _add(logger: logging.Logger, handler: logging.Handler, formatter: logging.Formatter) -> None:
+def _add_handler(logger: logging.Logger, handler: logging.Handler, formatter: logging.Formatter) -> None:
     if hasattr(handler, "setFormatterFor"):
         handler.setFormatterFor(logger, formatter)
     if handler not in logger.handlers:
@@ -278,7 +278,7 @@ def _add(logger: logging.Logger, handler: logging.Handler, formatter: logging.Fo
 
 
 def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
-    normalized: dict[str, set[str]] = {source: set() for source in _SOURCES}
+    normalized: dict[str, set[str]] = {source: set() for source in _STREAMS}
     if isinstance(config, str):
         if config not in _OUTPUTS:
             raise ValueError(f'{config} is not a valid standard output config i.e. "screen", "log" or "both"')
@@ -288,23 +288,23 @@ def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
     for source, destinations in config.items():
         if source not in normalized:
             raise ValueError(f"{source} is not a valid output source")
-        chosen = {destinations} if isinstance(destinations, str) else set(destinations)
-        if not chosen <= _DESTINATIONS:
-            raise ValueError(f"{chosen} is not a valid output sources configuration")
-        normalized[source] |= chosen
+        chosen_destinations = {destinations} if isinstance(destinations, str) else set(destinations)
+        if not chosen_destinations <= _DESTINATIONS:
+            raise ValueError(f"{chosen_destinations} is not a valid output sources configuration")
+        normalized[source] |= chosen_destinations
     return normalized
 
 
 def reset() -> None:
-    """Reset the configuration, and the loggers that have handlers of this package.
+    """Reset the configuration, and all loggers that have handlers of this package.
 
-    Their handlers are removed, and their levels are unset.
+    The handlers are removed from these loggers, and the levels of the loggers are unset.
     """
     for logger in list(logging.root.manager.loggerDict.values()):
         handlers = getattr(logger, "handlers", ())
-        kept = [handler for handler in handlers if not isinstance(handler, ForEachLogger)]
-        if len(kept) < len(handlers) and isinstance(logger, logging.Logger):
-            logger.handlers = kept
+        remaining_handlers = [handler for handler in handlers if not isinstance(handler, ForEachLogger)]
+        if len(remaining_handlers) < len(handlers) and isinstance(logger, logging.Logger):
+            logger.handlers = remaining_handlers
             logger.setLevel(logging.NOTSET)
     for handler in launch_config.file_handlers.values():
         handler.close()

@@ -1,4 +1,4 @@
-"""Actions, the entities that do something when they are visited."""
+"""Actions: entities that are executed when they are visited."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Action(LaunchDescriptionEntity):
     """An entity that is executed when it is visited and its condition holds.
 
     Args:
-        condition: determines at each visit whether `execute` runs.
+        condition: decides at each visit whether `execute` runs; None if it always runs.
     """
 
     def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
@@ -29,7 +29,7 @@ class Action(LaunchDescriptionEntity):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments of the action for an XML or YAML tag.
+        """Return the class and the keyword arguments for an XML or YAML tag of the action.
 
         This base class reads the attributes ``if`` and ``unless``.
 
@@ -48,7 +48,7 @@ class Action(LaunchDescriptionEntity):
         return list(self.get_sub_entities()) if self.condition is None else []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return a text with the condition, and the child entities.
+        """Return a pair of a text with the condition and the child entities, in a list.
 
         The list is empty if the action has no condition.
         """
@@ -57,15 +57,15 @@ class Action(LaunchDescriptionEntity):
         return [("Conditionally included: " + str(self.condition), list(self.get_sub_entities()))]
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Execute the action if the condition holds, and return the entities to visit next or None."""
+        """Execute the action if its condition holds, and return the entities to visit next, or None."""
         if self.condition is not None and not self.condition.evaluate(context):
             return None
-        following = self.execute(context)
+        next_entities = self.execute(context)
         self._emit_completion(context)
-        return None if following is None else as_entities(following)
+        return None if next_entities is None else as_entities(next_entities)
 
     def _emit_completion(self, context: LaunchContext) -> None:
-        """Emit the completion event, unless no handler accepts it.
+        """Emit the completion event, unless no handler would accept it.
 
         If the action has a future, the event is emitted when the future is done.
         """
@@ -85,7 +85,7 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the child entities, which are searched for declared arguments."""
+        """Return the child entities, which are also searched for declared arguments."""
         return []
 
 
@@ -98,10 +98,12 @@ def parse_condition(entity: Entity, parser: Parser) -> dict[str, Any]:
         RuntimeError: LAUNCH118, the tag has both attributes.
     """
     conditions = (("if", IfCondition), ("unless", UnlessCondition))
-    given = {kind: entity.get_attr(name, optional=True) for name, kind in conditions}
-    made = [kind(parser.parse_substitution(text)) for kind, text in given.items() if text is not None]
-    if len(made) > 1:
+    attribute_texts = {condition_class: entity.get_attr(name, optional=True) for name, condition_class in conditions}
+    created_conditions = [
+        kind(parser.parse_substitution(text)) for kind, text in attribute_texts.items() if text is not None
+    ]
+    if len(created_conditions) > 1:
         ros_error = RuntimeError("if and unless conditions can't be used simultaneously")
         message = phrase("'{type_name}' has both 'if' and 'unless'", type_name=entity.type_name)
         raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error)
-    return {"condition": made[0]} if made else {}
+    return {"condition": created_conditions[0]} if created_conditions else {}

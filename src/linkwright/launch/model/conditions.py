@@ -23,20 +23,20 @@ class InvalidConditionExpressionError(Exception):
     """Raised when the expression of a condition is neither true nor false.
 
     Args:
-        given: the expression's value, followed by the accepted true and false values; or only a message.
+        details: the text of the expression, the accepted true values and the accepted false values; or only a message.
     """
 
-    def __init__(self, *given: Any) -> None:
-        self.text = str(given[0]) if given else ""
-        if len(given) > 1:
-            accepted = f"true={list(given[1])}, false={list(given[2])}" if len(given) > 2 else str(given[1])
+    def __init__(self, *details: Any) -> None:
+        self.text = str(details[0]) if details else ""
+        if len(details) > 1:
+            accepted = f"true={list(details[1])}, false={list(details[2])}" if len(details) > 2 else str(details[1])
             super().__init__(f"invalid condition expression '{self.text}', expected one of: {accepted}")
         else:
-            super().__init__(*given)
+            super().__init__(*details)
 
 
 class Condition(Placed):
-    """Determines whether a visited action runs.
+    """Decides at each visit of an action whether the action runs.
 
     Args:
         predicate: called with the launch context; returns whether the condition holds. By default, the condition never
@@ -54,9 +54,9 @@ class Condition(Placed):
         return self.describe()
 
     def _predicate_func(self, context: LaunchContext) -> bool:
-        """Return whether the condition holds.
+        """Return the result of `evaluate`.
 
-        Some launch files call this method by its private name in ROS.
+        Some launch files call this method under its private name in ROS.
         """
         return self.evaluate(context)
 
@@ -69,15 +69,15 @@ class Condition(Placed):
         except LinkwrightError as error:
             raise located(error, self.place) from error
         except InvalidConditionExpressionError as error:
-            raise error_at(self.place, "LAUNCH127", _words(error.text), ros_error=error) from error
+            raise error_at(self.place, "LAUNCH127", _condition_message(error.text), ros_error=error) from error
 
 
 class _ExpressionCondition(Condition):
     """The base class of conditions that evaluate an expression."""
 
-    def __init__(self, predicate_expression: Any, wanted: bool) -> None:
+    def __init__(self, predicate_expression: Any, expected: bool) -> None:
         expression = normalize_to_list_of_substitutions(_text(predicate_expression))
-        super().__init__(predicate=lambda context: evaluate_condition_expression(context, expression) is wanted)
+        super().__init__(predicate=lambda context: evaluate_condition_expression(context, expression) is expected)
         self._expression = expression
 
     def describe(self) -> str:
@@ -106,7 +106,7 @@ class LaunchConfigurationEquals(Condition):
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        super().__init__(predicate=_equals(launch_configuration_name, expected_value))
+        super().__init__(predicate=_equality_predicate(launch_configuration_name, expected_value))
 
 
 class LaunchConfigurationNotEquals(Condition):
@@ -116,24 +116,24 @@ class LaunchConfigurationNotEquals(Condition):
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        equals = _equals(launch_configuration_name, expected_value)
-        super().__init__(predicate=lambda context: not equals(context))
+        is_equal = _equality_predicate(launch_configuration_name, expected_value)
+        super().__init__(predicate=lambda context: not is_equal(context))
 
 
-def _equals(name: str, expected: SomeSubstitutionsType | None) -> Callable[[LaunchContext], bool]:
-    wanted = None if expected is None else normalize_to_list_of_substitutions(expected)
+def _equality_predicate(name: str, expected: SomeSubstitutionsType | None) -> Callable[[LaunchContext], bool]:
+    expected_substitutions = None if expected is None else normalize_to_list_of_substitutions(expected)
 
     def evaluate(context: LaunchContext) -> bool:
         value = context.launch_configurations.get(name)
-        if value is None or wanted is None:
-            return value is None and wanted is None
-        return bool(value == perform_substitutions(context, wanted))
+        if value is None or expected_substitutions is None:
+            return value is None and expected_substitutions is None
+        return bool(value == perform_substitutions(context, expected_substitutions))
 
     return evaluate
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
-    """Evaluate an expression to a boolean.
+    """Return the boolean value of an expression.
 
     The accepted texts are ``true``, ``1``, ``false`` and ``0``, in upper or lower case.
 
@@ -141,10 +141,10 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
         InvalidConditionExpressionError: the expression evaluates to any other text.
     """
     text = perform_substitutions(context, normalize_to_list_of_substitutions(_text(expression)))
-    folded = text.strip().lower()
-    if folded in _TRUE:
+    normalized = text.strip().lower()
+    if normalized in _TRUE:
         return True
-    if folded in _FALSE:
+    if normalized in _FALSE:
         return False
     raise InvalidConditionExpressionError(text, _TRUE, _FALSE)
 
@@ -153,5 +153,5 @@ def _text(expression: Any) -> Any:
     return str(expression).lower() if isinstance(expression, bool) else expression
 
 
-def _words(text: str) -> Phrase:
-    return phrase("the condition is '{text}', which is neither 'true' or '1' nor 'false' or '0'", text=text)
+def _condition_message(text: str) -> Phrase:
+    return phrase("the condition evaluates to '{text}', but must be 'true', '1', 'false' or '0'", text=text)

@@ -1,4 +1,4 @@
-"""The context of a launch: configurations, environment, locals and event handlers."""
+"""The context of a launch: its configurations, environment, locals and event handlers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Performable(Protocol):
-    """The part of a substitution's interface that the context uses."""
+    """The interface of substitutions that the context uses."""
 
     place: Place | None
 
@@ -31,7 +31,7 @@ class Performable(Protocol):
 
 
 class Handler(Protocol):
-    """The part of an event handler's interface that the context uses."""
+    """The interface of event handlers that the context uses."""
 
     def matches(self, event: Any) -> bool:
         """Return whether the handler accepts the event."""
@@ -44,7 +44,7 @@ class EventQueue:
     """The queue of events that the launch has yet to handle.
 
     Attributes:
-        on_put: called when an event is added.
+        on_put: called after an event is added.
     """
 
     def __init__(self) -> None:
@@ -77,7 +77,7 @@ class EventQueue:
 
 
 class Locals:
-    """The locals of a launch context as read-only attributes."""
+    """Read-only access to the locals of a launch context by attribute."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         object.__setattr__(self, "_values", values)
@@ -85,8 +85,8 @@ class Locals:
     def __getattr__(self, name: str) -> Any:
         values = object.__getattribute__(self, "_values")
         if name not in values:
-            listed = ", ".join(values)
-            raise AttributeError(f"context.locals does not contain attribute '{name}', it contains: [{listed}]")
+            names_text = ", ".join(values)
+            raise AttributeError(f"context.locals does not contain attribute '{name}', it contains: [{names_text}]")
         return values[name]
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -94,13 +94,13 @@ class Locals:
 
 
 class LaunchContext:
-    """The state that actions and substitutions read and change.
+    """The state of a launch, which actions and substitutions read and change.
 
     Attributes:
         argv: the command-line arguments with which the launch was started.
-        launch_configurations: name -> value of the launch configurations in scope.
-        environment: the environment variables of this process, as in ROS. Changes are visible to processes started
-            later and to ``$(env ...)`` in xacro files.
+        launch_configurations: maps the names of the launch configurations in scope to their values.
+        environment: the environment variables of the launcher's process, as in ROS. Processes that start later and
+            ``$(env ...)`` in xacro files see its changes.
     """
 
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
@@ -122,7 +122,7 @@ class LaunchContext:
     def perform_substitution(self, substitution: Performable) -> str:
         """Evaluate a substitution, and return the resulting text.
 
-        An error gets the location of the substitution if it has none.
+        An error without a location receives the location of the substitution.
         """
         try:
             return substitution.perform(self)
@@ -139,10 +139,10 @@ class LaunchContext:
         return Locals(self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
-        """Return the locals of all scopes as a dictionary."""
+        """Return the globals and the locals of all scopes as a dictionary; inner scopes take precedence."""
         merged = dict(self._globals)
-        for layer in self._locals:
-            merged.update(layer)
+        for scope in self._locals:
+            merged.update(scope)
         return merged
 
     def extend_locals(self, extensions: dict[str, Any]) -> None:
@@ -152,11 +152,11 @@ class LaunchContext:
     def remove_locals(self, names: Iterable[str]) -> None:
         """Remove locals from every scope."""
         for name in names:
-            for layer in self._locals:
-                layer.pop(name, None)
+            for scope in self._locals:
+                scope.pop(name, None)
 
     def extend_globals(self, extensions: dict[str, Any]) -> None:
-        """Set locals that persist across scopes."""
+        """Set locals that remain when scopes are closed."""
         self._globals.update(extensions)
 
     def push_locals(self) -> None:
@@ -187,9 +187,9 @@ class LaunchContext:
         """
         if not self._configurations_stack:
             raise RuntimeError("launch_configurations stack unexpectedly empty")
-        restored = self._configurations_stack.pop()
+        configurations = self._configurations_stack.pop()
         self.launch_configurations.clear()
-        self.launch_configurations.update(restored)
+        self.launch_configurations.update(configurations)
 
     def push_environment(self) -> None:
         """Open a scope of environment variables."""
@@ -206,7 +206,7 @@ class LaunchContext:
         self.reset_environment(self._environment_stack.pop())
 
     def reset_environment(self, environment: dict[str, str] | None = None) -> None:
-        """Replace the environment, by default with the environment when the context was created."""
+        """Replace the environment, by default with the environment at the creation of the context."""
         if environment is None:
             environment = self._initial_environment
         for name in [name for name in self.environment if name not in environment]:
@@ -214,7 +214,7 @@ class LaunchContext:
         self.environment.update(environment)
 
     def snapshot(self) -> LaunchContext:
-        """Return a context with the current configurations and locals, for retrying an action later.
+        """Return a context with the current configurations and locals, for a later retry of an action.
 
         The copy shares the event queue and event handlers with this context.
         """
@@ -228,7 +228,7 @@ class LaunchContext:
         copy._event_handlers = self._event_handlers
         return copy
 
-    # users' entities and tests call these methods by their private names in ROS
+    # Users' entities and tests call these methods by their private names in ROS.
     _push_locals = push_locals
     _pop_locals = pop_locals
     _push_launch_configurations = push_launch_configurations
@@ -275,7 +275,7 @@ class LaunchContext:
         """Write a line to the log of the launch.
 
         Args:
-            name: the name of the source.
+            name: the name of the logger.
             level: the level, a number as in ``logging``.
             text: the line.
         """
@@ -294,7 +294,7 @@ class LaunchContext:
 
     @property
     def log_folder(self) -> Path:
-        """The folder of the launch's log files."""
+        """The folder that contains the log files of the launch."""
         if self._session is not None:
             return self._session.log.folder
         from linkwright.launch.log.loggers import launch_config
@@ -308,12 +308,12 @@ class LaunchContext:
         else:
             self._session.log.diagnostics([warning])
 
-    def report_findings(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description in the log and in the viewer."""
+    def report_findings(self, description: object, findings: Sequence[Diagnostic]) -> None:
+        """Report findings about a robot description in the log and the viewer."""
         if self._session is None:
             print_diagnostics(findings, sys.stderr)
         else:
-            self._session.report(about, findings)
+            self._session.report(description, findings)
 
     @property
     def is_shutdown(self) -> bool:
@@ -325,7 +325,7 @@ class LaunchContext:
 
     @property
     def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop on which the launch runs, or None if there is none."""
+        """The event loop on which the launch runs, or None if no loop is set."""
         return self._session.loop if self._session is not None and self._session.loop else self._loop
 
     def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
@@ -341,7 +341,8 @@ class LaunchContext:
 
         Args:
             event_handler: the handler.
-            append: whether the handler is called after the handlers registered earlier; otherwise before them.
+            append: whether to call the handler after the handlers that were registered before. If False, it is called
+                first.
         """
         if append:
             self._event_handlers.append(event_handler)

@@ -10,8 +10,8 @@ from linkwright.launch.model.actions.arguments import DeclareLaunchArgument
 from linkwright.launch.model.actions.configurations import ResetLaunchConfigurations
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 
-_DEEPEST = 100
-"""The maximum depth of the search: a file that includes itself under a condition has no end before it runs."""
+_MAX_DEPTH = 100
+"""The maximum depth of the search, because a file may include itself under a condition."""
 
 
 def declared_arguments(
@@ -19,20 +19,20 @@ def declared_arguments(
 ) -> list[DeclareLaunchArgument]:
     """Return the arguments that entities, their children and their includes declare.
 
-    Descriptions that cannot be read before the launch are not searched. The first declaration of a name counts.
-    Declarations under a condition are marked by ``conditionally_included``. Declarations after a
-    `ResetLaunchConfigurations` cannot be given from outside and are omitted.
+    The search omits descriptions that cannot be read before the launch. The first declaration of a name counts.
+    Declarations under a condition have `conditionally_included` set. Arguments that are declared after a
+    `ResetLaunchConfigurations` cannot be set from outside, so they are omitted.
     """
     return list(_Declarations.by(entities, conditional=conditional_inclusion).arguments.values())
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
-    """Return the names that a description does not declare.
+    """Return those of the given names that a launch description does not declare as arguments.
 
-    The result is empty if some included descriptions cannot be read before the launch.
+    The result is empty if the declarations of some included descriptions are unknown before the launch.
     """
-    found = _Declarations.by(entities)
-    return [] if found.incomplete else [name for name in names if name not in found.names]
+    declarations = _Declarations.by(entities)
+    return [] if declarations.is_incomplete else [name for name in names if name not in declarations.names]
 
 
 class _TooDeepError(Exception):
@@ -40,26 +40,26 @@ class _TooDeepError(Exception):
 
 
 class _Declarations:
-    """The declarations found in entities.
+    """The arguments that entities declare.
 
     Attributes:
-        arguments: name -> declaration, for arguments that can be given from outside.
-        names: all declared names, including names that an including file sets.
-        incomplete: whether some entities could not be searched.
+        arguments: maps names to declarations, for arguments that can be set from outside.
+        names: all declared names, including those that an including file sets.
+        is_incomplete: whether some entities could not be searched.
     """
 
     def __init__(self) -> None:
         self.arguments: dict[str, DeclareLaunchArgument] = {}
         self.names: set[str] = set()
-        self.incomplete = False
+        self.is_incomplete = False
 
     @classmethod
     def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declarations:
         """Return the declarations of entities and their descendants."""
-        found = cls()
+        declarations = cls()
         with suppress(_TooDeepError):
-            found.collect(entities, conditional=conditional)
-        return found
+            declarations.collect(entities, conditional=conditional)
+        return declarations
 
     def collect(
         self,
@@ -74,14 +74,14 @@ class _Declarations:
         Args:
             entities: the entities to search.
             conditional: whether the entities are visited under a condition.
-            set_outside: the names that an including file sets.
+            set_outside: the names of arguments that an including file sets.
             depth: the depth of the entities, from 1.
 
         Raises:
             _TooDeepError: the entities are nested too deeply.
         """
-        if depth > _DEEPEST:
-            self.incomplete = True
+        if depth > _MAX_DEPTH:
+            self.is_incomplete = True
             raise _TooDeepError
         for entity in entities:
             if isinstance(entity, ResetLaunchConfigurations):
@@ -92,14 +92,14 @@ class _Declarations:
                 if entity.name not in set_outside:
                     self.arguments.setdefault(entity.name, entity)
                 continue
-            inside = set_outside + entity.arguments_given_inside()
+            inner_set_names = set_outside + entity.arguments_given_inside()
             try:
-                below = entity.describe_sub_entities()
-                maybe = entity.describe_conditional_sub_entities()
-                self.incomplete |= entity.hides_entities()
+                children = entity.describe_sub_entities()
+                conditional_children = entity.describe_conditional_sub_entities()
+                self.is_incomplete |= entity.hides_entities()
             except LinkwrightError:
-                self.incomplete = True
+                self.is_incomplete = True
                 continue  # the launch reports this error when it visits the include
-            self.collect(below, conditional=conditional, set_outside=inside, depth=depth + 1)
-            for _, some in maybe:
-                self.collect(some, conditional=True, set_outside=inside, depth=depth + 1)
+            self.collect(children, conditional=conditional, set_outside=inner_set_names, depth=depth + 1)
+            for _, conditional_entities in conditional_children:
+                self.collect(conditional_entities, conditional=True, set_outside=inner_set_names, depth=depth + 1)

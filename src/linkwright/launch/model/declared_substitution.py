@@ -1,6 +1,6 @@
-"""Substitutions that are declared by a name, arguments and a function.
+"""A base class that generates a substitution from its name, its declared arguments and a function.
 
-A class declares its tag ``$(tag ...)``, its form in listings and its arguments::
+A class declares its tag ``$(tag ...)``, its text in listings, and its arguments::
 
     class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})"):
         name: Texts = Texts()
@@ -8,8 +8,8 @@ A class declares its tag ``$(tag ...)``, its form in listings and its arguments:
 
         def perform(self, context: LaunchContext) -> str: ...
 
-The constructor, the properties, the parser for XML and YAML, and the check of the number of arguments are generated
-from this declaration.
+From this declaration, the base class generates the constructor, the properties, the parser for XML and YAML, and the
+check of the number of arguments.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ _REQUIRED = object()
 
 
 class Texts:
-    """An argument that consists of texts and substitutions to be joined.
+    """An argument that is a list of texts and substitutions to be joined.
 
     Args:
-        default: the default value; the argument is required if it is omitted.
+        default: the default value; if it is omitted, the argument is required.
         kw_only: whether Python code must pass the argument by keyword.
         read: converts a value to a list of substitutions.
     """
@@ -83,7 +83,7 @@ class Texts:
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the form of a value in listings."""
+        """Return the text of a value in listings."""
         return describe(value)
 
 
@@ -100,7 +100,7 @@ class OptionalTexts(Texts):
         owner.__dict__[self.name] = None if value is None else self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the form of a value in listings; empty for None."""
+        """Return the text of a value in listings, which is empty for None."""
         return describe(value or [])
 
 
@@ -137,7 +137,7 @@ class TextLists(Texts):
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the form of a value in listings, with commas between the items."""
+        """Return the text of a value in listings, with commas between the items."""
         return ", ".join(map(describe, value))
 
 
@@ -146,9 +146,9 @@ class DeclaredSubstitution(Substitution):
     """The base class of declared substitutions.
 
     Class arguments:
-        tag: the name in ``$(name ...)``, or several names separated by slashes; empty if the substitution is available
-            in Python code only.
-        shown: the form in listings, with the arguments in braces and the class as ``{kind}``; by default the class and
+        tag: the name in ``$(name ...)``, or several names separated by slashes; empty for a substitution that only
+            Python code can use.
+        shown: the text in listings, with the arguments in braces and the class as ``{kind}``; by default the class and
             all arguments.
     """
 
@@ -158,11 +158,11 @@ class DeclaredSubstitution(Substitution):
 
     def __init_subclass__(cls, *, tag: str = "", shown: str | None = None, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        declared = tuple(texts for texts in vars(cls).values() if isinstance(texts, Texts))
-        if declared:
-            cls._arguments = declared
+        arguments = tuple(texts for texts in vars(cls).values() if isinstance(texts, Texts))
+        if arguments:
+            cls._arguments = arguments
             if "__init__" not in vars(cls):
-                type.__setattr__(cls, "__init__", _constructor(cls))
+                type.__setattr__(cls, "__init__", _create_constructor(cls))
         if shown is not None:
             cls._shown = shown
         if tag:
@@ -178,13 +178,13 @@ class DeclaredSubstitution(Substitution):
             data: the arguments, each a list of substitutions.
 
         Raises:
-            Exception: there are too many or too few arguments, see `wrong_count`.
+            Exception: the number of arguments is wrong; `wrong_count` returns the exception.
         """
         arguments = cls._arguments
-        least, most = sum(argument.is_required for argument in arguments), len(arguments)
-        if not least <= len(data) <= most:
-            expected = str(most) if least == most else f"{least} or {most}"
-            raise cls.wrong_count(f"{expected} argument{'' if most == 1 else 's'}", len(data))
+        min_count, max_count = sum(argument.is_required for argument in arguments), len(arguments)
+        if not min_count <= len(data) <= max_count:
+            expected = str(max_count) if min_count == max_count else f"{min_count} or {max_count}"
+            raise cls.wrong_count(f"{expected} argument{'' if max_count == 1 else 's'}", len(data))
         return cls, dict(zip((argument.name for argument in arguments), data, strict=False))
 
     @classmethod
@@ -196,29 +196,29 @@ class DeclaredSubstitution(Substitution):
         return TypeError(f"{cls._tag} substitution expects {expected}")
 
     def describe(self) -> str:
-        """Return the form of the substitution in listings."""
-        texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
+        """Return the text of the substitution in listings."""
+        argument_texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
         if self._shown is None:
-            return f"{type(self).__name__}({', '.join(texts.values())})"
-        return self._shown.format(kind=type(self).__name__, **texts)
+            return f"{type(self).__name__}({', '.join(argument_texts.values())})"
+        return self._shown.format(kind=type(self).__name__, **argument_texts)
 
 
-def _constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
-    """Generate a constructor whose parameters are the declared arguments.
+def _create_constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
+    """Return a generated constructor whose parameters are the declared arguments.
 
-    An explicit signature lets Python check calls, and editors show the parameters.
+    Because the signature is explicit, Python checks calls, and editors show the parameters.
     """
-    names: dict[str, Any] = {}
+    namespace: dict[str, Any] = {}
     parameters = ["self"]
-    for argument in sorted(cls._arguments, key=lambda each: each.kw_only):
+    for argument in sorted(cls._arguments, key=lambda declared: declared.kw_only):
         if argument.kw_only and "*" not in parameters:
             parameters.append("*")
         parameters.append(argument.name if argument.is_required else f"{argument.name}=_default_{argument.name}")
-        names[f"_default_{argument.name}"] = argument.default
+        namespace[f"_default_{argument.name}"] = argument.default
     lines = [f"    self.{argument.name} = {argument.name}" for argument in cls._arguments]
     code = f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines)
-    exec(compile(code, __file__, "exec"), names)  # noqa: S102 - made of the names of the class's own attributes
-    made: Callable[..., None] = names["__init__"]
-    made.__qualname__ = f"{cls.__qualname__}.__init__"
-    made.__module__ = cls.__module__
-    return made
+    exec(compile(code, __file__, "exec"), namespace)  # noqa: S102 - made of the names of the class's own attributes
+    constructor: Callable[..., None] = namespace["__init__"]
+    constructor.__qualname__ = f"{cls.__qualname__}.__init__"
+    constructor.__module__ = cls.__module__
+    return constructor

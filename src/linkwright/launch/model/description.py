@@ -22,7 +22,8 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     Args:
         initial_entities: the entities.
-        deprecated_reason: the reason for a deprecation, which is logged when the description is visited.
+        deprecated_reason: the reason why the description is deprecated, logged on a visit; None if it is not
+            deprecated.
     """
 
     def __init__(
@@ -31,12 +32,12 @@ class LaunchDescription(LaunchDescriptionEntity):
         *,
         deprecated_reason: str | None = None,
     ) -> None:
-        self._entities = [_checked(initial_entity) for initial_entity in initial_entities or ()]
+        self._entities = [_check_entity(initial_entity) for initial_entity in initial_entities or ()]
         self._deprecated_reason = deprecated_reason
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities of the description, in the order of their visits."""
+        """The entities in the order in which they are visited."""
         return self._entities
 
     @property
@@ -51,8 +52,8 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     def describe(self) -> str:
         """Return a text with the number of entities."""
-        number = len(self._entities)
-        return f"{type(self).__name__}({number} {'entity' if number == 1 else 'entities'})"
+        count = len(self._entities)
+        return f"{type(self).__name__}({count} {'entity' if count == 1 else 'entities'})"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the entities of the description."""
@@ -64,7 +65,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         Raises:
             AttributeError: LAUNCH147, the argument is not an entity.
         """
-        self._entities.append(_checked(entity))
+        self._entities.append(_check_entity(entity))
 
     def add_action(self, action: Action) -> None:
         """Append an action.
@@ -72,29 +73,29 @@ class LaunchDescription(LaunchDescriptionEntity):
         Raises:
             AttributeError: LAUNCH147, the argument is not an entity.
         """
-        self._entities.append(_checked(action))
+        self._entities.append(_check_entity(action))
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
         """Return the entities to visit next, and log a warning if the description is deprecated."""
         if self.deprecated:
             file = context.get_locals_as_dict().get("current_launch_file_path")
-            where = f"launch file [{file}] is" if file else "launch description is"
-            text = f"The {where} deprecated: {self._deprecated_reason}"
+            subject = f"launch file [{file}] is" if file else "launch description is"
+            text = f"The {subject} deprecated: {self._deprecated_reason}"
             if hasattr(context, "log"):
                 context.log("launch", logging.WARNING, text)
         return self._entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
-        """Return the arguments declared here and in included descriptions.
+        """Return the arguments that this description and the descriptions that it includes declare.
 
-        Descriptions that cannot be read before the launch are not searched. The first declaration of a name counts. A
-        declaration under a condition is marked by its attribute ``conditionally_included``.
+        The search omits descriptions that cannot be read before the launch. The first declaration of a name counts. A
+        declaration under a condition has its attribute ``conditionally_included`` set.
         """
         return declared_arguments(self.entities, conditional_inclusion)
 
 
-def _checked(entity: Any) -> Any:
-    """Check that an object can be visited, and return it.
+def _check_entity(entity: Any) -> Any:
+    """Return an object unchanged if it can be visited.
 
     ROS reports such a mistake only during the launch, without the line that added the object.
 
@@ -103,8 +104,8 @@ def _checked(entity: Any) -> Any:
     """
     if isinstance(entity, LaunchDescriptionEntity) or hasattr(entity, "visit"):
         return entity
-    kind = type(entity).__name__
-    message = phrase("a launch description accepts actions, not a value of type {kind}", kind=kind)
+    type_name = type(entity).__name__
+    message = phrase("a launch description accepts actions, not a value of type {kind}", kind=type_name)
     hint = phrase("add each action separately") if isinstance(entity, (list, tuple)) else None
-    text = f"'{kind}' object has no attribute 'visit'"
+    text = f"'{type_name}' object has no attribute 'visit'"
     raise error_at(Place.of_caller(), "LAUNCH147", message, hint, ros_error=AttributeError(text))

@@ -25,20 +25,20 @@ class LaunchDescriptionEntity(Placed):
         return f"{type(self).__name__}()"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the entities that are always visited after this one.
+        """Return the entities that are visited after this one without a condition.
 
-        Only entities that are known before the launch are included.
+        Only entities that are known before the launch are returned.
         """
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the entities that are visited under a condition, with a text for each condition."""
+        """Return pairs of a text that describes a condition and the entities that are visited under it."""
         return []
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """Return the names of launch arguments that the entity sets for its children.
+        """Return the names of the launch arguments that the entity sets for its children.
 
-        Only names that are known before the launch are included.
+        Only names that are known before the launch are returned.
         """
         return ()
 
@@ -50,7 +50,7 @@ class LaunchDescriptionEntity(Placed):
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Add notes on how a child entity was reached to an error in the child.
+        """Add notes to an error of a child entity that explain how the launch reached the child.
 
         Returns:
             The same error.
@@ -66,13 +66,13 @@ class LaunchDescriptionEntity(Placed):
 
 
 SomeEntitiesType = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
-"""One entity, or several."""
+"""An entity, or an iterable of entities."""
 
 SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 
 
 def as_entities(value: Any) -> list[LaunchDescriptionEntity]:
-    """Convert a single entity, several entities or None to a list of entities.
+    """Return an entity, an iterable of entities or None as a list of entities.
 
     Raises:
         TypeError: the argument is or contains an object that is not an entity.

@@ -31,7 +31,7 @@ class BaseEventHandler:
 
     @property
     def handle_once(self) -> bool:
-        """Whether the handler is unregistered after the first event."""
+        """Whether the handler is unregistered after the first event that it handles."""
         return self._handle_once
 
     @property
@@ -46,7 +46,7 @@ class BaseEventHandler:
 
     @property
     def entities(self) -> Any:
-        """The entities that the handler visits, if they are known before the event."""
+        """The entities that the handler visits; None if they are unknown before the event."""
         return None
 
     def matches(self, event: Any) -> bool:
@@ -62,9 +62,9 @@ class BaseEventHandler:
         return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Set the event as a local of the context, and unregister a handler for a single event.
+        """Set the event as a local of the context, and unregister the handler if it handles only one event.
 
-        Subclasses return the entities to visit.
+        Subclasses extend this method to return the entities to visit.
         """
         context.extend_locals({"event": event})
         if self.handle_once:
@@ -104,7 +104,7 @@ class _ReactionHandler(BaseEventHandler):
     Args:
         matcher: called with an event; returns whether the handler accepts the event.
         reaction: the entities, or a function of event and context that returns them.
-        name: the name of the reaction's argument in the user's code, for messages.
+        name: the name of the argument for the reaction in the user's code, for error messages.
         handle_once: whether the handler is unregistered after the first event.
 
     Raises:
@@ -164,8 +164,8 @@ class OnActionEventBase(_ReactionHandler):
                 return False
             if action_matcher is None:
                 return True
-            source = event.action  # type: ignore[attr-defined]  # the events of actions have it
-            return source is action_matcher if is_action else bool(action_matcher(source))
+            action = event.action  # type: ignore[attr-defined]  # the events of actions have it
+            return action is action_matcher if is_action else bool(action_matcher(action))
 
         super().__init__(matcher=matches, reaction=on_event, name="on_event", handle_once=handle_once)
         self._event_name = target_event_cls.__name__
@@ -179,16 +179,16 @@ class OnActionEventBase(_ReactionHandler):
         return f"event == {self._event_name} and {self._action_name}(event.action)"
 
 
-def _parse_reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
-    """Return the function of a reaction, or None, and the given entities.
+def _parse_reaction(reaction: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
+    """Return the function of a reaction or None, and the entities of the reaction.
 
     Raises:
         TypeError: the reaction is neither a function nor entities.
     """
-    if callable(given) and not isinstance(given, LaunchDescriptionEntity):
-        return given, []
+    if callable(reaction) and not isinstance(reaction, LaunchDescriptionEntity):
+        return reaction, []
     try:
-        return None, as_entities(given)
+        return None, as_entities(reaction)
     except TypeError as error:
         raise TypeError(f"'{name}' must be launch actions or a function that returns them: {error}") from error
 
@@ -202,14 +202,14 @@ def _as_iterable(entities: Any) -> Iterable[Any]:
 class OnExecutionComplete(OnActionEventBase):
     """Reacts when an action has completed.
 
-    An action that takes time, such as a process, has completed when it has ended. Without a target, the handler accepts
-    all actions except the actions that it returned itself, which would cause an endless loop.
+    A process has completed when it has ended. If no target is given, the handler accepts all actions except those that
+    it returned itself, because they would cause an endless loop.
     """
 
     def __init__(
         self, *, on_completion: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False
     ) -> None:
-        self._given: list[LaunchDescriptionEntity] = []
+        self._returned_entities: list[LaunchDescriptionEntity] = []
         super().__init__(
             action_matcher=self._is_foreign_action if target_action is None else target_action,
             on_event=on_completion,
@@ -222,12 +222,12 @@ class OnExecutionComplete(OnActionEventBase):
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
         """Return the entities to visit for the event."""
-        following = super().handle(event, context)
-        self._given += as_entities(following) if following is not None else ()
-        return following
+        entities = super().handle(event, context)
+        self._returned_entities += as_entities(entities) if entities is not None else ()
+        return entities
 
     def _is_foreign_action(self, action: Action) -> bool:
-        return not any(action is launch_description_entity for launch_description_entity in self._given)
+        return not any(action is entity for entity in self._returned_entities)
 
 
 class OnIncludeLaunchDescription(BaseEventHandler):

@@ -24,7 +24,7 @@ class ProcessAction(Protocol):
         """Store output that the process wrote to stdout (1) or stderr (2)."""
 
     def exited(self, event: ProcessExited, context: Any) -> list[Any]:
-        """Record the exit status, and return the entities to visit next."""
+        """Record that the process ended, and return the entities to visit next."""
 
 
 ProcessMatcher = Callable[[ProcessAction], bool]
@@ -56,7 +56,7 @@ class Shutdown(Event):
 
 
 class TimerEvent(Event):
-    """The event that a timer has expired."""
+    """Reports that a timer has expired."""
 
     name = "launch.events.TimerEvent"
 
@@ -66,7 +66,7 @@ class TimerEvent(Event):
 
 
 class ExecutionComplete(Event):
-    """The event that an action has completed."""
+    """Reports that an action has completed."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -75,14 +75,14 @@ class ExecutionComplete(Event):
 
 
 class RunningProcessEvent(Event):
-    """An event of a process, or of a node in the launcher's process.
+    """The base class of the events of a process, or of a node in the launcher's process.
 
     Attributes:
         action: the action that started the process.
         process_name: the name of the process in the log, such as ``talker-1``.
         cmd: the command as a list of arguments.
-        cwd: the working directory; None for the launcher's.
-        env: the environment; None for the launcher's.
+        cwd: the working directory; None if it is that of the launcher.
+        env: the environment; None if it is that of the launcher.
         pid: the process ID.
     """
 
@@ -112,17 +112,17 @@ class RunningProcessEvent(Event):
 
 
 class ProcessStarted(RunningProcessEvent):
-    """The event that a process has started."""
+    """Reports that a process has started."""
 
     name = "launch.events.process.ProcessStarted"
 
 
 class ProcessExited(RunningProcessEvent):
-    """The event that a process has ended.
+    """Reports that a process has ended.
 
     Args:
         returncode: the exit status; the negative signal number if a signal ended the process.
-        details: see `RunningProcessEvent`.
+        details: the arguments of `RunningProcessEvent`.
     """
 
     name = "launch.events.process.ProcessExited"
@@ -133,12 +133,12 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    """The event that a process wrote output.
+    """Reports that a process wrote output.
 
     Args:
         text: the bytes that the process wrote.
         fd: 1 for stdout, 2 for stderr.
-        details: see `RunningProcessEvent`.
+        details: the arguments of `RunningProcessEvent`, as for `ProcessExited`.
     """
 
     name = "launch.events.process.ProcessIO"
@@ -167,14 +167,14 @@ class ProcessIO(RunningProcessEvent):
 
 
 class ProcessStdout(ProcessIO):
-    """The event that a process wrote to stdout."""
+    """Reports that a process wrote to stdout."""
 
     name = "launch.events.process.ProcessStdout"
     fd = 1
 
 
 class ProcessStderr(ProcessIO):
-    """The event that a process wrote to stderr."""
+    """Reports that a process wrote to stderr."""
 
     name = "launch.events.process.ProcessStderr"
     fd = 2
@@ -229,22 +229,22 @@ class SignalProcess(ProcessTargetedEvent):
 
 
 def matches_action(target_action: object) -> ProcessMatcher:
-    """Return a matcher that accepts the process of an action."""
+    """Return a matcher that accepts the process that an action started."""
     return lambda action: action is target_action
 
 
 def matches_pid(pid: int) -> ProcessMatcher:
-    """Return a matcher that accepts the process with a process ID."""
+    """Return a matcher that accepts the process with the given ID."""
     return lambda action: action.process_details is not None and action.process_details["pid"] == pid
 
 
 def matches_name(name: str) -> ProcessMatcher:
-    """Return a matcher that accepts processes by their name in the log."""
+    """Return a matcher that accepts the process with the given name in the log."""
     return lambda action: action.process_details is not None and action.process_details["name"] == name
 
 
 def matches_executable(executable: str) -> ProcessMatcher:
-    """Return a matcher that accepts processes by the file name of their program."""
+    """Return a matcher that accepts processes whose program has the given file name."""
 
     def accepts(action: ProcessAction) -> bool:
         details = action.process_details

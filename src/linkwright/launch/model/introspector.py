@@ -17,38 +17,38 @@ class LaunchIntrospector:
     """Formats the contents of a launch description without running it."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
-        """Return the entities of a description as an indented tree, one per line."""
+        """Return the entities of a description as an indented tree with one entity per line."""
         return format_launch_description(launch_description)
 
 
 def format_launch_description(description: LaunchDescription) -> str:
-    """Return the entities of a description as an indented tree, one per line."""
-    return "\n".join([description.describe(), *_tree(description.entities)])
+    """Return the entities of a description as an indented tree with one entity per line."""
+    return "\n".join([description.describe(), *_tree_lines(description.entities)])
 
 
-def _tree(entities: Iterable[Any], depth: int = 1) -> list[str]:
-    listed = list(entities)
-    if depth > DEEPEST and listed:
-        raise endless_nesting_error(getattr(listed[0], "place", None))
+def _tree_lines(entities: Iterable[Any], depth: int = 1) -> list[str]:
+    entity_list = list(entities)
+    if depth > DEEPEST and entity_list:
+        raise endless_nesting_error(getattr(entity_list[0], "place", None))
     lines: list[str] = []
-    for number, entity in enumerate(listed):
-        last = number == len(listed) - 1
-        text, inside = _described(entity)
-        lines.append(("└── " if last else "├── ") + text)
-        lines += [(_INDENT if last else "│   ") + line for line in _tree(inside, depth + 1)]
+    for index, entity in enumerate(entity_list):
+        is_last = index == len(entity_list) - 1
+        text, children = _describe(entity)
+        lines.append(("└── " if is_last else "├── ") + text)
+        lines += [(_INDENT if is_last else "│   ") + line for line in _tree_lines(children, depth + 1)]
     return lines
 
 
-def _described(entity: Any) -> tuple[str, list[LaunchDescriptionEntity]]:
+def _describe(entity: Any) -> tuple[str, list[LaunchDescriptionEntity]]:
     """Return a text that describes an entity, and the entity's children."""
     if isinstance(entity, RegisterEventHandler):
-        text, inside = entity.event_handler.describe()
-        return f"RegisterEventHandler('{text}'):", inside
+        text, children = entity.event_handler.describe()
+        return f"RegisterEventHandler('{text}'):", children
     if isinstance(entity, (Log, EmitEvent)) or not isinstance(entity, LaunchDescriptionEntity):
         return entity.describe() if isinstance(entity, LaunchDescriptionEntity) else str(entity), []
-    inside = list(entity.describe_sub_entities())
-    for _, some in entity.describe_conditional_sub_entities():
-        inside += some
+    children = list(entity.describe_sub_entities())
+    for _, entities in entity.describe_conditional_sub_entities():
+        children += entities
     condition = getattr(entity, "condition", None)
     suffix = f" if {condition.describe()}" if condition is not None else ""
-    return entity.describe() + suffix, inside
+    return entity.describe() + suffix, children

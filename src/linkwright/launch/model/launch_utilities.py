@@ -18,7 +18,7 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Return whether an object is an instance of a class, which is always true in Python 3."""
+    """Return whether an object has a class, which is always true in Python 3."""
     return hasattr(obj, "__class__")
 
 
@@ -33,34 +33,36 @@ def is_a_subclass(obj: object, entity_type: type) -> bool:
 
 
 def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: str | None = None) -> None:
-    """Check that an argument has a type, or one of several types.
+    """Raise TypeError unless an argument has a type, or one of several types.
 
     Raises:
         TypeError: the argument has another type, or `types` is not valid.
     """
-    allowed = [types] if inspect.isclass(types) else types
-    listed: list[Any] = list(allowed) if isinstance(allowed, Iterable) and not isinstance(allowed, str) else [None]
-    if not all(inspect.isclass(kind) for kind in listed):
+    allowed_types = [types] if inspect.isclass(types) else types
+    type_list: list[Any] = (
+        list(allowed_types) if isinstance(allowed_types, Iterable) and not isinstance(allowed_types, str) else [None]
+    )
+    if not all(inspect.isclass(allowed_type) for allowed_type in type_list):
         raise TypeError(
             f"'ensure_argument_type()' expected 'types' to be of type "
             f"'type, collections.abc.Iterable of type', but got '{types}' of type '{type(types)}'"
         )
-    if isinstance(argument, tuple(listed)):
+    if isinstance(argument, tuple(type_list)):
         return
-    by = "" if caller is None else f"'{caller}' "
-    names = " or ".join(f"'{kind}'" for kind in listed)
+    prefix = "" if caller is None else f"'{caller}' "
+    names = " or ".join(f"'{kind}'" for kind in type_list)
     raise TypeError(
-        f"{by}expected '{argument_name}' to be one of {names}, but got '{argument}' of type '{type(argument)}'"
+        f"{prefix}expected '{argument_name}' to be one of {names}, but got '{argument}' of type '{type(argument)}'"
     )
 
 
 def create_future(loop: asyncio.AbstractEventLoop | None) -> asyncio.Future[Any]:
-    """Create a future for an event loop, by default the loop that `get_loop` returns."""
+    """Return a new future of an event loop, by default of the loop that `get_loop` returns."""
     return (loop or get_loop()).create_future()
 
 
 def get_loop() -> asyncio.AbstractEventLoop:
-    """Return the running event loop, else the open loop from an earlier call, else a new loop."""
+    """Return the running event loop, or the loop of an earlier call if it is open, or a new loop."""
     try:
         return asyncio.get_running_loop()
     except RuntimeError:
@@ -71,22 +73,22 @@ def get_loop() -> asyncio.AbstractEventLoop:
 
 
 _loops: list[asyncio.AbstractEventLoop] = []
-"""The loop for consecutive runs in one program, created on request."""
+"""The event loop that `get_loop` created last, if any."""
 
 
 def visit_all_entities_and_collect_futures(
     entity: LaunchDescriptionEntity, context: LaunchContext
 ) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
-    """Visit an entity and its descendants, and return their futures.
+    """Visit an entity and its descendants, and return pairs of an entity and its future.
 
     An entity has a future if it continues after its visit.
     """
-    following = entity.visit(context)
+    next_entities = entity.visit(context)
     future = entity.get_asyncio_future()
-    collected = [] if future is None else [(entity, future)]
-    for launch_description_entity in following or ():
-        collected += visit_all_entities_and_collect_futures(launch_description_entity, context)
-    return collected
+    futures = [] if future is None else [(entity, future)]
+    for next_entity in next_entities or ():
+        futures += visit_all_entities_and_collect_futures(next_entity, context)
+    return futures
 
 
 def shutdown_on_process_exit(process_action: Any) -> RegisterEventHandler:
@@ -95,5 +97,5 @@ def shutdown_on_process_exit(process_action: Any) -> RegisterEventHandler:
     from linkwright.launch.model.events import Shutdown
     from linkwright.launch.model.process_event_handlers import OnProcessExit
 
-    ended = EmitEvent(event=Shutdown(reason="process exited"))
-    return RegisterEventHandler(OnProcessExit(target_action=process_action, on_exit=[ended]))
+    shutdown_action = EmitEvent(event=Shutdown(reason="process exited"))
+    return RegisterEventHandler(OnProcessExit(target_action=process_action, on_exit=[shutdown_action]))

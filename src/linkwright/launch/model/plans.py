@@ -1,6 +1,6 @@
-"""The plans of processes, which actions create and the engine carries out.
+"""The plans of processes, which actions create and the engine executes.
 
-`linkwright.hosting.plans.HostedPlan` is the plan of one of Linkwright's own nodes.
+`linkwright.hosting.plans.HostedPlan` is the corresponding plan of one of Linkwright's own nodes.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from linkwright.launch.model.events import ProcessAction
 
 @dataclass(frozen=True)
 class ProcessPlan:
-    """The evaluated options of a process to start; see `ExecuteLocal`."""
+    """The evaluated options with which the engine starts a process; see `ExecuteLocal`."""
 
     action: ProcessAction
     name: str

@@ -12,8 +12,8 @@ from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.model.event_handlers import EntitiesOrCallable, OnActionEventBase
 
 
-def _check_target(target_action: Any, handler: str) -> None:
-    """Check that the target of a handler is a process action, a function or None.
+def _check_target(target_action: Any, handler_name: str) -> None:
+    """Raise TypeError unless the target of a handler is a process action, a function or None.
 
     Raises:
         TypeError: the target is another object.
@@ -21,8 +21,10 @@ def _check_target(target_action: Any, handler: str) -> None:
     if target_action is None or isinstance(target_action, ExecuteLocal):
         return
     if isinstance(target_action, LaunchDescriptionEntity) or not callable(target_action):
-        kind = type(target_action).__name__
-        raise TypeError(f"{handler}: target_action must be an ExecuteProcess or a function of one, got a {kind}")
+        type_name = type(target_action).__name__
+        raise TypeError(
+            f"{handler_name}: target_action must be an ExecuteProcess or a function of one, got a {type_name}"
+        )
 
 
 class _OnProcessEvent(OnActionEventBase):
@@ -65,10 +67,10 @@ class OnProcessIO(_OnProcessEvent):
     """Reacts when a process writes output.
 
     Args:
-        target_action: the action of the process; all processes by default.
-        on_stdin: a function of the event, for input to stdin.
-        on_stdout: a function of the event, for output to stdout.
-        on_stderr: a function of the event, for output to stderr.
+        target_action: the action of the process; None for all processes.
+        on_stdin: called with the event when text is sent to stdin.
+        on_stdout: called with the event when the process writes to stdout.
+        on_stderr: called with the event when the process writes to stderr.
         handle_once: whether the handler is unregistered after the first event.
     """
 
@@ -81,10 +83,10 @@ class OnProcessIO(_OnProcessEvent):
         on_stderr: Callable[[Any], Any] | None = None,
         handle_once: bool = False,
     ) -> None:
-        functions = (on_stdin, on_stdout, on_stderr)
+        callbacks = (on_stdin, on_stdout, on_stderr)
 
         def react(event: events.ProcessIO, _: LaunchContext) -> Any:
-            function = functions[event.fd]
-            return None if function is None else function(event)
+            callback = callbacks[event.fd]
+            return None if callback is None else callback(event)
 
         super().__init__(events.ProcessIO, react, target_action, handle_once)

@@ -1,7 +1,7 @@
-"""Programs that Linkwright's nodes replace if the programs are not installed.
+"""Programs that are replaced by Linkwright's nodes if they are not installed.
 
-Launch files start such programs as processes. The replacements are registered as entry points in the group
-``linkwright.replaced_programs``, by the name of the program. Each entry point refers to a `CommandParser`.
+Launch files start such programs as processes. The replacements are entry points in the group
+``linkwright.replaced_programs`` with the names of the programs. Each entry point refers to a `CommandParser`.
 """
 
 from __future__ import annotations
@@ -18,36 +18,36 @@ if TYPE_CHECKING:
     from linkwright.nodes.node_command import CommandParser, NodeCommand
 
 _INTERPRETERS = ("ruby",)
-"""Interpreters with which launch files run programs that are scripts."""
+"""Interpreters before the programs in launch files that are scripts."""
 
 
 def replaced_programs() -> Mapping[str, EntryPoint]:
-    """Return the entry points of the replaced programs' command-line parsers, by program name."""
+    """Return the entry points of the command-line parsers of replaced programs, by program name."""
     return extensions("linkwright.replaced_programs")
 
 
 def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> NodeCommand | None:
-    """Return the node that replaces a command.
+    """Return the node that replaces the program of a command.
 
     Args:
         words: the program and its arguments.
-        environment: the environment whose ``PATH`` is searched.
+        environment: the environment variables; programs are searched for on their ``PATH``.
 
     Returns:
-        The node; None if the program is installed or has no replacement.
+        The node, or None if the program is installed or has no replacement.
 
     Raises:
         LinkwrightError: NODE002, the package that provides the node cannot be imported.
     """
     if words and PurePath(words[0]).name in _INTERPRETERS:
         words = words[1:]
-    entry = replaced_programs().get(PurePath(words[0]).name) if words else None
-    if entry is None or shutil.which(words[0], path=environment.get("PATH")):
+    entry_point = replaced_programs().get(PurePath(words[0]).name) if words else None
+    if entry_point is None or shutil.which(words[0], path=environment.get("PATH")):
         return None
     try:
-        parse: CommandParser = entry.load()
+        parse_command: CommandParser = entry_point.load()
     except Exception as error:
-        message = phrase("the node that replaces '{program}' cannot be imported", program=entry.name)
-        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
+        message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
+        hint = phrase("it is part of '{place}': {problem}", place=entry_point.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
-    return parse(words)
+    return parse_command(words)

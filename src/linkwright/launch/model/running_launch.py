@@ -1,4 +1,4 @@
-"""The interface of the running launch for actions.
+"""The interface through which actions use the running launch.
 
 The engine (`linkwright.launch.engine`) implements this interface.
 """
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 class Scheduled(Protocol):
-    """The interface of a scheduled call."""
+    """A call that is scheduled for later."""
 
     def cancel(self) -> None:
         """Cancel the call."""
 
 
 Schedule = Callable[[float, Callable[[], None]], Scheduled]
-"""Calls a function once after some seconds."""
+"""Calls a function once, after a number of seconds; returns the scheduled call."""
 
 
 class NodeHosting(Protocol):
@@ -44,9 +44,9 @@ class NodeHosting(Protocol):
         """The launcher's own node for services and topics, which is created on first use."""
 
     def plan(self, plan: HostedPlan) -> None:
-        """Schedule the start of a node.
+        """Schedule the start of a node that is described by a plan.
 
-        This method has no effect once the launch is ending.
+        This method has no effect while the launch is ending.
         """
 
     def use_simulated_time(self, value: bool) -> None:
@@ -58,7 +58,7 @@ class RunningLaunch(Protocol):
 
     @property
     def finder(self) -> PackageFinder:
-        """The package finder."""
+        """The finder of ROS packages."""
 
     @property
     def log(self) -> LaunchLog:
@@ -78,7 +78,7 @@ class RunningLaunch(Protocol):
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop, or None if the launch is not running."""
+        """The event loop of the launch, or None if the launch is not running."""
 
     @property
     def ending(self) -> bool:
@@ -90,16 +90,16 @@ class RunningLaunch(Protocol):
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read.
+        """A folder for files that the processes of this launch read, which is deleted after the launch.
 
         The folder is deleted after the launch.
         """
 
     def number_process(self, base_name: str) -> str:
-        """Return the log name of a process, which is its base name and the next number."""
+        """Return the name of a process in the log, which is its base name with the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, monitor it until it ends, and respawn it if the plan requests a respawn."""
+        """Start a process, monitor it until it ends, and restart it if the plan requests a respawn."""
 
     def call_later(
         self,
@@ -110,25 +110,25 @@ class RunningLaunch(Protocol):
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Schedule an event and a visit to entities after a delay in seconds.
+        """Emit an event and visit entities after a delay in seconds.
 
-        Return a function that cancels them.
+        Return a function that cancels both.
         """
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Keep the launch running until an entity's future is done."""
+        """Keep the launch running until a future is done."""
 
-    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
+    def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background.
 
         The launch does not become idle until the coroutine has finished.
         """
 
-    def could_not_start(self, what: object, error: LinkwrightError) -> None:
+    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started; the launch continues without it."""
 
-    def fail(self, what: object) -> None:
-        """Record a failure; the launch exits with status 1 unless the failure is cleared."""
+    def fail(self, failure: object) -> None:
+        """Record a failure, which makes the launch exit with status 1 unless the failure is cleared."""
 
-    def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description in the log and in the viewer."""
+    def report(self, description: object, findings: Sequence[Diagnostic]) -> None:
+        """Report findings about a robot description in the log and the viewer."""

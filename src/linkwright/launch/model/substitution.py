@@ -19,7 +19,7 @@ class Substitution(Placed):
         return f"<{_public_name(type(self))} {self.describe()}>"
 
     def describe(self) -> str:
-        """Return the form of the substitution in listings such as ``ros2 launch --show-args``."""
+        """Return the text of the substitution in listings such as ``ros2 launch --show-args``."""
         return f"{type(self).__name__}()"
 
     def perform(self, context: LaunchContext) -> str:
@@ -45,13 +45,13 @@ class TextSubstitution(Substitution):
 
 
 SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
-"""A text, a substitution, or several of them to join."""
+"""A text, a substitution, or an iterable of these whose texts are joined."""
 
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 
 
 def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
-    """Convert a value of `SomeSubstitutionsType` to a list of substitutions.
+    """Return a value of `SomeSubstitutionsType` as a list of substitutions.
 
     A path is converted to its text.
 
@@ -68,12 +68,12 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:
-    """Evaluate substitutions, and return the concatenated texts."""
+    """Return the concatenated texts to which substitutions evaluate."""
     return "".join(context.perform_substitution(substitution) for substitution in substitutions)
 
 
 def describe(substitutions: Iterable[Substitution]) -> str:
-    """Return the form of substitutions in listings."""
+    """Return the text of substitutions in listings."""
     return " + ".join(substitution.describe() for substitution in substitutions)
 
 
@@ -86,11 +86,11 @@ def _as_substitution(value: Any) -> Substitution:
 
 
 def _public_name(kind: type) -> str:
-    """Return the full name under which users import a class.
+    """Return the full name with which users import a class.
 
-    Linkwright's own classes have the names in ``launch.substitutions``.
+    The names of Linkwright's own classes are those in ``launch.substitutions``.
     """
     if not kind.__module__.startswith("linkwright."):
         return f"{kind.__module__}.{kind.__qualname__}"
-    module = "".join("_" + letter.lower() if letter.isupper() else letter for letter in kind.__name__).lstrip("_")
-    return f"launch.substitutions.{module}.{kind.__name__}"
+    module_name = "".join("_" + letter.lower() if letter.isupper() else letter for letter in kind.__name__).lstrip("_")
+    return f"launch.substitutions.{module_name}.{kind.__name__}"

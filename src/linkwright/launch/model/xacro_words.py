@@ -1,4 +1,4 @@
-"""Parser for command lines of xacro in launch files."""
+"""Parser for the arguments of xacro in launch files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, 
 from linkwright.hosting.xacro_calls import XacroCall
 
 _OPTIONS_WITHOUT_EFFECT = frozenset({"--inorder", "-i", "-q"})
-_OPTIONS_WITH_A_VALUE = frozenset({"-v", "--verbosity"})
+_OPTIONS_WITH_VALUE = frozenset({"-v", "--verbosity"})
 
 
 def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
@@ -17,34 +17,34 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
 
     Args:
         words: the arguments of ``xacro``.
-        text: the arguments as written, before they were split.
+        text: the arguments as one text, before they were split.
         folder: the folder for relative paths.
 
     Returns:
-        The parsed arguments, and a remark for the user or None.
+        The model file with its arguments, and a warning for the user or None.
 
     Raises:
         LinkwrightError: LAUNCH128, the arguments do not name exactly one model file, or an option is not supported.
     """
     files: list[str] = []
     arguments: dict[str, str] = {}
-    waiting = iter(words)
-    for word in waiting:
-        name, separator, value = word.partition(":=")
+    remaining_arguments = iter(words)
+    for argument in remaining_arguments:
+        name, separator, value = argument.partition(":=")
         if separator:
             if value and not name.startswith("_"):
                 arguments[name] = value
-        elif word in _OPTIONS_WITH_A_VALUE:
-            next(waiting, None)
-        elif word.startswith("-") and len(word) > 1:
-            if word not in _OPTIONS_WITHOUT_EFFECT and not word.startswith(("-v", "--verbosity=")):
+        elif argument in _OPTIONS_WITH_VALUE:
+            next(remaining_arguments, None)
+        elif argument.startswith("-") and len(argument) > 1:
+            if argument not in _OPTIONS_WITHOUT_EFFECT and not argument.startswith(("-v", "--verbosity=")):
                 raise _usage_error(
-                    phrase("option '{word}' of xacro is not supported in a launch file", word=word),
-                    phrase("leave it out"),
+                    phrase("option '{word}' of xacro is not supported in a launch file", word=argument),
+                    phrase("remove the option"),
                 )
         else:
-            files.append(word)
-    remark = None
+            files.append(argument)
+    warning = None
     if len(files) > 1:
         joined_path = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
         if not (folder / joined_path.strip()).is_file():
@@ -57,13 +57,13 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
                 phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
             )
         files = [joined_path.strip()]
-        remark = phrase(
-            "the path '{files}' contains spaces and is not quoted: xacro itself would read it as several files",
+        warning = phrase(
+            "the path '{files}' contains spaces but is not quoted, so xacro itself would read it as several files",
             files=files[0],
         )
     if not files:
         raise _usage_error(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
-    return XacroCall(folder / files[0], tuple(arguments.items())), remark
+    return XacroCall(folder / files[0], tuple(arguments.items())), warning
 
 
 def _usage_error(message: Phrase, hint: Phrase) -> LinkwrightError:

@@ -1,4 +1,4 @@
-"""Builders for a package's parameters (``moveit_configs_utils``, ``launch_param_builder``)."""
+"""Builders for the parameters of a package (``moveit_configs_utils``, ``launch_param_builder``)."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from linkwright.packages import current_finder
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-_FOLDER = Path("config")
-_CONTROLLERS = "_controllers.yaml"
-_PLANNING = "_planning.yaml"
-_USUAL_PIPELINE = "ompl"
+_CONFIG_FOLDER = Path("config")
+_CONTROLLERS_SUFFIX = "_controllers.yaml"
+_PLANNING_SUFFIX = "_planning.yaml"
+_DEFAULT_PIPELINE = "ompl"
 _Mappings = Mapping[Any, Any] | None
 _Path = str | Path | None
 
 
 class ParameterBuilder:
-    """Collects parameters.
+    """Collects parameters, most of them from the files of a package.
 
-    Every method except `to_dict` returns the builder, so that calls can be chained.
+    Each method except `to_dict` returns the builder, so that calls can be chained.
 
     Args:
         package_name: the package that contains the files; relative paths refer to its share folder.
@@ -82,14 +82,14 @@ class ParameterBuilder:
 
 
 class MoveItConfigsBuilder(ParameterBuilder):
-    """Reads the files of a MoveIt configuration package.
+    """Collects parameters from the files of a MoveIt configuration package.
 
-    Each file is read from a given path, or from its usual path in the package.
+    The methods read a file from the path that they are given, or from the usual path in the package.
 
     Args:
         robot_name: the name of the robot.
-        robot_description: the parameter for the URDF, whose name is also the prefix of some other parameters.
-        package_name: the configuration package; by default the robot's name followed by ``_moveit_config``.
+        robot_description: the name of the parameter with the URDF, which is also the prefix of some other parameters.
+        package_name: the configuration package; by default the name of the robot followed by ``_moveit_config``.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -105,15 +105,15 @@ class MoveItConfigsBuilder(ParameterBuilder):
         self.__urdf, self.__srdf = self.__models()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
-        """Read the URDF, or warn if its file is missing.
+        """Read the URDF, or print a warning if its file does not exist.
 
-        Without this parameter, nodes read the URDF from the topic ``/robot_description``.
+        If the parameter is not set, nodes read the URDF from the topic ``/robot_description``.
         """
         path = self.__urdf if file_path is None else self._package_path / file_path
         try:
-            model = _model(path, mappings or self.__urdf_arguments)
+            model = _expand_description(path, mappings or self.__urdf_arguments)
         except ParameterBuilderFileNotFoundError as error:
-            _warn_without_model(error)
+            _warn_about_missing_urdf(error)
         else:
             self.__moveit_configs.robot_description = {self.__parameter: model}
         return self
@@ -121,7 +121,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
     def robot_description_semantic(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
         """Read the SRDF."""
         path = self.__srdf if file_path is None else self._package_path / file_path
-        self.__moveit_configs.robot_description_semantic = {f"{self.__parameter}_semantic": _model(path, mappings)}
+        self.__moveit_configs.robot_description_semantic = {
+            f"{self.__parameter}_semantic": _expand_description(path, mappings)
+        }
         return self
 
     def robot_description_kinematics(self, file_path: _Path = None) -> MoveItConfigsBuilder:
@@ -130,7 +132,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read joint limits that replace the limits in the URDF."""
+        """Read the joint limits that replace those in the URDF."""
         self.__moveit_configs.joint_limits = self.__below("_planning", file_path, "joint_limits.yaml")
         return self
 
@@ -147,9 +149,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
     def cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read Cartesian limits for the Pilz planner from ``cartesian_limits.yaml``.
 
-        This is the former name of `pilz_cartesian_limits`.
+        This method has the former name of `pilz_cartesian_limits`.
         """
-        return self.pilz_cartesian_limits(file_path or _FOLDER / "cartesian_limits.yaml")
+        return self.pilz_cartesian_limits(file_path or _CONFIG_FOLDER / "cartesian_limits.yaml")
 
     def trajectory_execution(
         self, file_path: _Path = None, moveit_manage_controllers: bool = True
@@ -157,13 +159,13 @@ class MoveItConfigsBuilder(ParameterBuilder):
         """Read the configuration of the controllers that execute trajectories.
 
         Raises:
-            RuntimeError: LAUNCH154, there are several such files, and none has a usual name.
+            RuntimeError: LAUNCH154, there are several such files, and none of them has a usual name.
         """
-        made: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
+        parameters: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
         path = self._package_path / file_path if file_path is not None else self.__controllers()
         if path is not None:
-            made.update(load_yaml(path) or {})
-        self.__moveit_configs.trajectory_execution = made
+            parameters.update(load_yaml(path) or {})
+        self.__moveit_configs.trajectory_execution = parameters
         return self
 
     def planning_scene_monitor(
@@ -187,7 +189,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the 3D sensors whose data forms the occupancy map, if any are configured."""
+        """Read the configuration of the 3D sensors for the occupancy map, if there are any."""
         path = self.__file(file_path, "sensors_3d.yaml")
         content = load_yaml(path) if path.exists() else None
         if content and any(content.get("sensors") or ()):
@@ -203,41 +205,47 @@ class MoveItConfigsBuilder(ParameterBuilder):
         """Read the configuration of the planning pipelines.
 
         Args:
-            default_planning_pipeline: the pipeline to use by default.
-            pipelines: the names of the pipelines; by default all pipelines for which the package has a file.
-            load_all: whether the default also includes the pipelines for which MoveIt's package
+            default_planning_pipeline: the name of the default pipeline; by default ``ompl``, or the first pipeline.
+            pipelines: the names of the pipelines; by default those for which the package has a file.
+            load_all: whether the default of `pipelines` includes those for which MoveIt's package
                 ``moveit_configs_utils`` has files, if this package is found.
 
         Raises:
-            RuntimeError: LAUNCH154, the default is not one of the pipelines.
+            RuntimeError: LAUNCH154, the default pipeline is not one of the pipelines.
         """
-        folders = [self._package_path / _FOLDER, *_default_folder()]
+        folders = [self._package_path / _CONFIG_FOLDER, *_default_folder()]
         names = (
-            list(pipelines) if pipelines is not None else _find_stems(folders if load_all else folders[:1], _PLANNING)
+            list(pipelines)
+            if pipelines is not None
+            else _find_stems(folders if load_all else folders[:1], _PLANNING_SUFFIX)
         )
-        names = names or [default_planning_pipeline or _USUAL_PIPELINE]
-        default = default_planning_pipeline or (_USUAL_PIPELINE if _USUAL_PIPELINE in names else names[0])
+        names = names or [default_planning_pipeline or _DEFAULT_PIPELINE]
+        default = default_planning_pipeline or (_DEFAULT_PIPELINE if _DEFAULT_PIPELINE in names else names[0])
         if default not in names:
-            listed = ",".join(names)
-            text = f"default_planning_pipeline: `{default}` doesn't name any of the input pipelines `{listed}`"
+            names_text = ",".join(names)
+            text = f"default_planning_pipeline: `{default}` doesn't name any of the input pipelines `{names_text}`"
             message = phrase(
-                "the default planning pipeline '{default}' is not one of the pipelines: {names}",
+                "the default planning pipeline '{default}' is not one of the pipelines {names}",
                 default=default,
                 names=joined(names),
             )
             raise error_at(Place.of_caller(), "LAUNCH154", message, ros_error=RuntimeError(text))
-        made: Parameters = {"planning_pipelines": names, "default_planning_pipeline": default}
+        parameters: Parameters = {"planning_pipelines": names, "default_planning_pipeline": default}
         for name in names:
-            file = next((path for folder in folders if (path := folder / f"{name}{_PLANNING}").exists()), None)
-            made[name] = (load_yaml(file) if file else None) or {}
-        defaults = next((path for folder in folders[1:] if (path := folder / "ompl_defaults.yaml").exists()), None)
-        if defaults is not None and _USUAL_PIPELINE in made and "planner_configs" not in made[_USUAL_PIPELINE]:
-            made[_USUAL_PIPELINE].update(load_yaml(defaults))
-        self.__moveit_configs.planning_pipelines = made
+            file = next((path for folder in folders if (path := folder / f"{name}{_PLANNING_SUFFIX}").exists()), None)
+            parameters[name] = (load_yaml(file) if file else None) or {}
+        ompl_defaults = next((path for folder in folders[1:] if (path := folder / "ompl_defaults.yaml").exists()), None)
+        if (
+            ompl_defaults is not None
+            and _DEFAULT_PIPELINE in parameters
+            and "planner_configs" not in parameters[_DEFAULT_PIPELINE]
+        ):
+            parameters[_DEFAULT_PIPELINE].update(load_yaml(ompl_defaults))
+        self.__moveit_configs.planning_pipelines = parameters
         return self
 
     def to_moveit_configs(self) -> MoveItConfigs:
-        """Return all parameters, after reading the files that were not read before.
+        """Return all parameters, after reading the files that have not been read yet.
 
         Optional files that do not exist are skipped.
         """
@@ -254,19 +262,19 @@ class MoveItConfigsBuilder(ParameterBuilder):
             self.planning_scene_monitor()
         if not configs.sensors_3d:
             self.sensors_3d()
-        for present, file, read in (
+        for existing, file, read_file in (
             (configs.robot_description_kinematics, "kinematics.yaml", self.robot_description_kinematics),
             (configs.joint_limits, "joint_limits.yaml", self.joint_limits),
             (configs.pilz_cartesian_limits, "pilz_cartesian_limits.yaml", self.pilz_cartesian_limits),
         ):
-            if not present and self.__file(None, file).exists():
-                read()
+            if not existing and self.__file(None, file).exists():
+                read_file()
         return configs
 
     def to_dict(self, include_moveit_configs: bool = True) -> Parameters:
-        """Return the parameters that were added one by one.
+        """Return the collected parameters.
 
-        By default, the parameters of `to_moveit_configs` are included.
+        By default, they include the parameters of `to_moveit_configs`.
         """
         if include_moveit_configs:
             self._parameters.update(self.to_moveit_configs().to_dict())
@@ -274,71 +282,76 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
     # --- locations of files -----------------------------------------------------------------------------------
 
-    def __file(self, given: _Path, usual: str) -> Path:
-        return self._package_path / (_FOLDER / usual if given is None else given)
+    def __file(self, file_path: _Path, default_name: str) -> Path:
+        return self._package_path / (_CONFIG_FOLDER / default_name if file_path is None else file_path)
 
-    def __below(self, ending: str, given: _Path, usual: str) -> Parameters:
-        return {self.__parameter + ending: load_yaml(self.__file(given, usual))}
+    def __below(self, suffix: str, file_path: _Path, default_name: str) -> Parameters:
+        return {self.__parameter + suffix: load_yaml(self.__file(file_path, default_name))}
 
     def __models(self) -> tuple[Path, Path]:
-        """Return the paths of the URDF and SRDF.
+        """Return the paths of the URDF and the SRDF.
 
-        The paths are those in the Setup Assistant's file, or else are derived from the robot's name.
+        The paths come from the file of MoveIt's Setup Assistant, or are derived from the name of the robot.
         """
         settings = self._package_path / ".setup_assistant"
-        noted = (load_yaml(settings) or {}).get("moveit_setup_assistant_config", {}) if settings.exists() else {}
-        urdf_noted, srdf_noted = (noted.get(kind) or noted.get(kind.upper()) or {} for kind in ("urdf", "srdf"))
-        urdf = self._package_path / _FOLDER / f"{self.__name}.urdf.xacro"
+        recorded_settings = (
+            (load_yaml(settings) or {}).get("moveit_setup_assistant_config", {}) if settings.exists() else {}
+        )
+        urdf_settings, srdf_settings = (
+            recorded_settings.get(description_kind) or recorded_settings.get(description_kind.upper()) or {}
+            for description_kind in ("urdf", "srdf")
+        )
+        urdf = self._package_path / _CONFIG_FOLDER / f"{self.__name}.urdf.xacro"
         if not urdf.exists():
-            urdf = self._package_path / _FOLDER / f"{self.__name}.urdf"
-            if urdf_noted.get("package") and urdf_noted.get("relative_path"):
-                urdf = current_finder().share(urdf_noted["package"]) / urdf_noted["relative_path"]
-        parts = (word.partition(":=") for word in str(urdf_noted.get("xacro_args") or "").split())
-        self.__urdf_arguments = {name: value for name, is_pair, value in parts if is_pair}
-        srdf = self._package_path / srdf_noted.get("relative_path", _FOLDER / f"{self.__name}.srdf")
+            urdf = self._package_path / _CONFIG_FOLDER / f"{self.__name}.urdf"
+            if urdf_settings.get("package") and urdf_settings.get("relative_path"):
+                urdf = current_finder().share(urdf_settings["package"]) / urdf_settings["relative_path"]
+        argument_parts = (argument.partition(":=") for argument in str(urdf_settings.get("xacro_args") or "").split())
+        self.__urdf_arguments = {name: value for name, is_pair, value in argument_parts if is_pair}
+        srdf = self._package_path / srdf_settings.get("relative_path", _CONFIG_FOLDER / f"{self.__name}.srdf")
         return urdf, srdf
 
     def __controllers(self) -> Path | None:
-        folder = self._package_path / _FOLDER
-        names = _find_stems([folder], _CONTROLLERS)
+        folder = self._package_path / _CONFIG_FOLDER
+        names = _find_stems([folder], _CONTROLLERS_SUFFIX)
         if len(names) > 1:
             names = [name for name in ("moveit", "moveit2", self.__name) if name in names] or names
             if names[0] not in ("moveit", "moveit2", self.__name):
-                listed = "\n - ".join(name + _CONTROLLERS for name in names)
-                text = f"trajectory_execution: Unable to guess which parameter file to load. Options:\n - {listed}"
+                names_text = "\n - ".join(name + _CONTROLLERS_SUFFIX for name in names)
+                text = f"trajectory_execution: Unable to guess which parameter file to load. Options:\n - {names_text}"
                 message = phrase(
-                    "several files of controllers are in '{folder}': {names}",
+                    "folder '{folder}' has several controller files: {names}",
                     folder=display_path(folder),
                     names=joined(names),
                 )
-                hint = phrase("choose one: .trajectory_execution(file_path='config/NAME_controllers.yaml')")
+                hint = phrase("select one with .trajectory_execution(file_path='config/NAME_controllers.yaml')")
                 raise error_at(Place.of_caller(), "LAUNCH154", message, hint, ros_error=RuntimeError(text))
-        return folder / (names[0] + _CONTROLLERS) if names else None
+        return folder / (names[0] + _CONTROLLERS_SUFFIX) if names else None
 
 
-def _warn_without_model(error: LookupError) -> None:
+def _warn_about_missing_urdf(error: LookupError) -> None:
     message = phrase("MoveIt's parameters have no URDF; nodes read it from the topic /robot_description")
-    for found in getattr(error, "diagnostics", ()):
-        warning = found.with_changes(severity=Severity.WARNING, notes=(*found.notes, Note(message)))
+    for diagnostic in getattr(error, "diagnostics", ()):
+        warning = diagnostic.with_changes(severity=Severity.WARNING, notes=(*diagnostic.notes, Note(message)))
         print_diagnostics([warning], sys.stderr)
 
 
-def _model(path: Path, mappings: _Mappings) -> Any:
-    """Return the expanded text of a model.
+def _expand_description(path: Path, mappings: _Mappings) -> Any:
+    """Return the expanded text of a robot description.
 
-    If the model's arguments contain substitutions, return a parameter value that is expanded during the launch.
+    If its arguments contain substitutions, return a parameter value that is expanded during the launch.
     """
-    if all(isinstance(word, str) for pair in (mappings or {}).items() for word in pair):
+    if all(isinstance(text, str) for pair in (mappings or {}).items() for text in pair):
         return load_xacro(path, mappings)
     from linkwright.launch.ros import ParameterValue
 
     return ParameterValue(Xacro(str(path), mappings=mappings), value_type=str)
 
 
-def _find_stems(folders: Sequence[Path], ending: str) -> list[str]:
-    """Return the names of files with a suffix in folders, without the suffix and duplicates."""
-    found = (path.name.removesuffix(ending) for folder in folders for path in sorted(folder.glob(f"*{ending}")))
-    return list(dict.fromkeys(found))
+def _find_stems(folders: Sequence[Path], suffix: str) -> list[str]:
+    """Return the file names with a suffix in some folders, without the suffix and without duplicates."""
+    stems = (path.name.removesuffix(suffix) for folder in folders for path in sorted(folder.glob(f"*{suffix}")))
+    return list(dict.fromkeys(stems))
 
 
 def _default_folder() -> list[Path]:

@@ -11,19 +11,19 @@ Parameters = dict[str, Any]
 
 @dataclass
 class MoveItConfigs:
-    """The parameters grouped by subject, each group a dictionary for a node's ``parameters``.
+    """The parameters in groups, each a dictionary for the ``parameters`` of a node.
 
     Attributes:
         package_path: the share folder of the configuration package.
         robot_description: the URDF.
         robot_description_semantic: the SRDF.
         robot_description_kinematics: the inverse kinematics solvers.
-        planning_pipelines: the planners.
-        trajectory_execution: the controllers and the execution of trajectories.
-        planning_scene_monitor: the published parts of the planning scene.
+        planning_pipelines: the planning pipelines and their planners.
+        trajectory_execution: the controllers that execute trajectories.
+        planning_scene_monitor: the parts of the planning scene that are published.
         sensors_3d: the sensors whose data forms the occupancy map.
         move_group_capabilities: additional capabilities of move_group.
-        joint_limits: the limits that replace the limits in the URDF.
+        joint_limits: the limits that replace those in the URDF.
         moveit_cpp: the parameters of MoveItCpp.
         pilz_cartesian_limits: the limits for the Pilz planner.
     """
@@ -49,8 +49,8 @@ class MoveItConfigs:
         return self.pilz_cartesian_limits
 
     def to_dict(self) -> Parameters:
-        """Return the parameters of all groups, except `move_group_capabilities`, in one dictionary."""
-        made: Parameters = {}
+        """Return the parameters of all groups except `move_group_capabilities` in one dictionary."""
+        parameters: Parameters = {}
         for group in (
             self.robot_description,
             self.robot_description_semantic,
@@ -62,8 +62,8 @@ class MoveItConfigs:
             self.joint_limits,
             self.moveit_cpp,
         ):
-            made.update(group)
+            parameters.update(group)
         for name, limits in self.pilz_cartesian_limits.items():
-            # Merge the values, because the Cartesian limits and the joint limits have the same parameter name.
-            made[name] = {**(made.get(name) or {}), **(limits or {})}
-        return made
+            # The values are merged, because the Cartesian limits and the joint limits have the same parameter name.
+            parameters[name] = {**(parameters.get(name) or {}), **(limits or {})}
+        return parameters

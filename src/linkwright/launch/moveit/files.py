@@ -1,6 +1,6 @@
 """Readers for the files of a MoveIt configuration (``launch_param_builder.utils``).
 
-The files are text, YAML or xacro. There is also a substitution for xacro.
+The files contain text, YAML or xacro. The substitution `Xacro` expands xacro files.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class ParameterBuilderFileNotFoundError(KeyError):
 
 
 def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
-    """Return the text of a file, rendered as a jinja2 template if mappings are given.
+    """Return the text of a file, which is rendered as a jinja2 template if mappings are given.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
@@ -49,7 +49,7 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
-        LinkwrightError: LAUNCH153, the file cannot be read or is not YAML.
+        LinkwrightError: LAUNCH153, the file cannot be read, or is not YAML.
     """
     import yaml
 
@@ -69,13 +69,13 @@ def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None)
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
-        DescriptionError: the errors in the file.
+        DescriptionError: the file has errors.
     """
     path = Path(file_path)
     _check_exists(path)
-    words = tuple((str(name), str(value)) for name, value in (mappings or {}).items())
+    arguments = tuple((str(name), str(value)) for name, value in (mappings or {}).items())
     descriptions = current_descriptions() or Descriptions(current_finder())
-    return descriptions.expand(XacroCall(Path.cwd() / path, words))
+    return descriptions.expand(XacroCall(Path.cwd() / path, arguments))
 
 
 def get_path(package_name: str, file_path: str | Path) -> str:
@@ -111,7 +111,7 @@ def _render_template(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
         import jinja2
     except ImportError as error:
         message = phrase(
-            "parameter file '{path}' is a template, and jinja2, which fills it in, is not installed",
+            "parameter file '{path}' is a jinja2 template, but jinja2 is not installed",
             path=display_path(path),
         )
         raise error_at(Place.of_caller(), "LAUNCH153", message, package_hint("jinja2")) from error
@@ -120,19 +120,17 @@ def _render_template(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
         template.globals.update(radians=math.radians, degrees=math.degrees)
         return str(template.render(mappings))
     except jinja2.TemplateError as error:
-        message = phrase(
-            "template '{path}' cannot be filled in: {error}", path=display_path(path), error=foreign(error)
-        )
+        message = phrase("template '{path}' cannot be rendered: {error}", path=display_path(path), error=foreign(error))
         raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 @expose_substitution("xacro")
 class Xacro(Substitution):
-    """The expanded text of a xacro or URDF file.
+    """Evaluates to the expanded text of a xacro or URDF file.
 
     Args:
         file_path: the path of the file.
-        mappings: name -> value of the model's arguments.
+        mappings: maps the names of xacro arguments to their values.
     """
 
     def __init__(
@@ -147,7 +145,7 @@ class Xacro(Substitution):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[type[Substitution], dict[str, Any]]:
-        """Return the class and its keyword arguments for a path.
+        """Return the class and keyword arguments for a path.
 
         Raises:
             TypeError: there is not exactly one argument.
@@ -163,25 +161,25 @@ class Xacro(Substitution):
 
     @property
     def mappings(self) -> dict[SomeSubstitutionsType, SomeSubstitutionsType]:
-        """The model's arguments, as given."""
+        """The values of the xacro arguments, as passed to the constructor."""
         return self._mappings
 
     def describe(self) -> str:
-        """Return a text with the file."""
+        """Return a text with the path of the file."""
         return f"Xacro({describe(self._file_path)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Expand the model, and return its text.
+        """Expand the file, and return the resulting text.
 
         Raises:
-            DescriptionError: the errors in the model.
+            DescriptionError: the file has errors.
         """
-        arguments = {_performed(context, name): _performed(context, value) for name, value in self._mappings.items()}
+        arguments = {_evaluate(context, name): _evaluate(context, value) for name, value in self._mappings.items()}
         try:
             return load_xacro(Path(perform_substitutions(context, self._file_path)), arguments)
         except LinkwrightError as error:
             raise located(error, self.place) from error
 
 
-def _performed(context: LaunchContext, value: Any) -> str:
+def _evaluate(context: LaunchContext, value: Any) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))

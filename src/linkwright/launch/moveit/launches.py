@@ -21,7 +21,7 @@ from linkwright.launch.ros import Node, ParameterValue
 
 
 def generate_rsp_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description of the robot state publisher."""
+    """Return a launch description that starts the robot state publisher."""
     frequency = "publish_frequency"
     node = Node(
         package="robot_state_publisher",
@@ -34,12 +34,14 @@ def generate_rsp_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
 
 
 def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description of the viewer with the parameters of MoveIt."""
-    made = LaunchDescription()
-    made.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
-    made.add_action(DeclareLaunchArgument("rviz_config", default_value=_path(moveit_config, "config/moveit.rviz")))
+    """Return a launch description that starts the viewer with the parameters of MoveIt."""
+    description = LaunchDescription()
+    description.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
+    description.add_action(
+        DeclareLaunchArgument("rviz_config", default_value=_package_file(moveit_config, "config/moveit.rviz"))
+    )
     add_debuggable_node(
-        made,
+        description,
         package="rviz2",
         executable="rviz2",
         output="log",
@@ -51,38 +53,38 @@ def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescripti
             moveit_config.joint_limits,
         ],
     )
-    return made
+    return description
 
 
 def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description of the Setup Assistant for the configuration package."""
-    made = LaunchDescription()
-    made.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
+    """Return a launch description that starts the Setup Assistant for the configuration package."""
+    description = LaunchDescription()
+    description.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
     name = "moveit_setup_assistant"
     arguments = [["--config_pkg=", str(moveit_config.package_path)]]
-    add_debuggable_node(made, package=name, executable=name, arguments=arguments)
-    return made
+    add_debuggable_node(description, package=name, executable=name, arguments=arguments)
+    return description
 
 
 def generate_static_virtual_joint_tfs_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description of static transforms for the virtual joints of the SRDF."""
+    """Return a launch description that publishes static transforms for the virtual joints of the SRDF."""
     frames = [pair for text in moveit_config.robot_description_semantic.values() for pair in _read_virtual_joints(text)]
     return LaunchDescription(
         [
             Node(
                 package="tf2_ros",
                 executable="static_transform_publisher",
-                name=f"static_transform_publisher{number}",
+                name=f"static_transform_publisher{index}",
                 output="log",
                 arguments=["--frame-id", parent, "--child-frame-id", child],
             )
-            for number, (parent, child) in enumerate(frames)
+            for index, (parent, child) in enumerate(frames)
         ]
     )
 
 
 def generate_spawn_controllers_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description that spawns each controller and the joint state broadcaster."""
+    """Return a launch description that spawns the controllers and the joint state broadcaster."""
     manager = moveit_config.trajectory_execution.get("moveit_simple_controller_manager") or {}
     controllers = [*(manager.get("controller_names") or ()), "joint_state_broadcaster"]
     return LaunchDescription(
@@ -94,9 +96,9 @@ def generate_spawn_controllers_launch(moveit_config: MoveItConfigs) -> LaunchDes
 
 
 def generate_warehouse_db_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description of the warehouse database."""
+    """Return a launch description that starts the warehouse database."""
     defaults = {
-        "moveit_warehouse_database_path": _path(moveit_config, "default_warehouse_mongo_db"),
+        "moveit_warehouse_database_path": _package_file(moveit_config, "default_warehouse_mongo_db"),
         "moveit_warehouse_port": "33829",
         "moveit_warehouse_host": "localhost",
     }
@@ -124,72 +126,72 @@ def generate_warehouse_db_launch(moveit_config: MoveItConfigs) -> LaunchDescript
 
 
 def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description of move_group."""
-    made = LaunchDescription()
+    """Return a launch description that starts move_group."""
+    description = LaunchDescription()
     for name, value in (
         ("debug", False),
         ("allow_trajectory_execution", True),
         ("publish_monitored_planning_scene", True),
         ("monitor_dynamics", False),
     ):
-        made.add_action(DeclareBooleanLaunchArg(name, default_value=value))
+        description.add_action(DeclareBooleanLaunchArg(name, default_value=value))
     for name in ("capabilities", "disable_capabilities"):
         value = moveit_config.move_group_capabilities.get(name, "")
-        made.add_action(DeclareLaunchArgument(name, default_value=value))
-    published = LaunchConfiguration("publish_monitored_planning_scene")
+        description.add_action(DeclareLaunchArgument(name, default_value=value))
+    is_published = LaunchConfiguration("publish_monitored_planning_scene")
     settings = {
         "publish_robot_description_semantic": True,
         "allow_trajectory_execution": LaunchConfiguration("allow_trajectory_execution"),
         "capabilities": ParameterValue(LaunchConfiguration("capabilities"), value_type=str),
         "disable_capabilities": ParameterValue(LaunchConfiguration("disable_capabilities"), value_type=str),
-        "publish_planning_scene": published,
-        "publish_geometry_updates": published,
-        "publish_state_updates": published,
-        "publish_transforms_updates": published,
+        "publish_planning_scene": is_published,
+        "publish_geometry_updates": is_published,
+        "publish_state_updates": is_published,
+        "publish_transforms_updates": is_published,
         "monitor_dynamics": False,
     }
     add_debuggable_node(
-        made,
+        description,
         package="moveit_ros_move_group",
         executable="move_group",
-        commands_file=_path(moveit_config, "launch/gdb_settings.gdb"),
+        commands_file=_package_file(moveit_config, "launch/gdb_settings.gdb"),
         output="screen",
         parameters=[moveit_config.to_dict(), settings],
         extra_debug_args=["--debug"],
         additional_env={"DISPLAY": ":0"},
     )
-    return made
+    return description
 
 
 def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path | None = None) -> LaunchDescription:
-    """Return a launch description of all programs for a demo with simulated joints.
+    """Return a launch description that starts all programs of a demo with simulated joints.
 
     Args:
-        moveit_config: the parameters.
-        launch_package_path: the share folder of the package whose launch files are included; by default the package of
-            the parameters.
+        moveit_config: the parameters of MoveIt.
+        launch_package_path: the share folder of the package whose launch files are included; None for the package of
+            `moveit_config`.
     """
-    folder = Path(launch_package_path or _folder(moveit_config)) / "launch"
+    folder = Path(launch_package_path or _package_folder(moveit_config)) / "launch"
 
     def include(file: str, **kwargs: Any) -> IncludeLaunchDescription:
         return IncludeLaunchDescription(PythonLaunchDescriptionSource(str(folder / file)), **kwargs)
 
-    made = LaunchDescription()
-    about = "By default, no database is started: it can be large."
-    made.add_action(DeclareBooleanLaunchArg("db", default_value=False, description=about))
-    about = "Whether nodes run inside of a debugger."
-    made.add_action(DeclareBooleanLaunchArg("debug", default_value=False, description=about))
-    made.add_action(DeclareBooleanLaunchArg("use_rviz", default_value=True))
+    description = LaunchDescription()
+    argument_description = "By default, no database is started: it can be large."
+    description.add_action(DeclareBooleanLaunchArg("db", default_value=False, description=argument_description))
+    argument_description = "Whether nodes run inside of a debugger."
+    description.add_action(DeclareBooleanLaunchArg("debug", default_value=False, description=argument_description))
+    description.add_action(DeclareBooleanLaunchArg("use_rviz", default_value=True))
     virtual_joints = "static_virtual_joint_tfs.launch.py"
     if (folder / virtual_joints).exists():
-        made.add_action(include(virtual_joints))
-    made.add_action(include("rsp.launch.py"))
-    made.add_action(include("move_group.launch.py"))
-    made.add_action(include("moveit_rviz.launch.py", condition=IfCondition(LaunchConfiguration("use_rviz"))))
-    made.add_action(include("warehouse_db.launch.py", condition=IfCondition(LaunchConfiguration("db"))))
-    controllers = _path(moveit_config, "config/ros2_controllers.yaml")
+        description.add_action(include(virtual_joints))
+    description.add_action(include("rsp.launch.py"))
+    description.add_action(include("move_group.launch.py"))
+    description.add_action(include("moveit_rviz.launch.py", condition=IfCondition(LaunchConfiguration("use_rviz"))))
+    description.add_action(include("warehouse_db.launch.py", condition=IfCondition(LaunchConfiguration("db"))))
+    controllers = _package_file(moveit_config, "config/ros2_controllers.yaml")
     remappings = [("/controller_manager/robot_description", "/robot_description")]
-    made.add_action(
+    description.add_action(
         Node(
             package="controller_manager",
             executable="ros2_control_node",
@@ -197,22 +199,22 @@ def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path
             remappings=remappings,
         )
     )
-    made.add_action(include("spawn_controllers.launch.py"))
-    return made
+    description.add_action(include("spawn_controllers.launch.py"))
+    return description
 
 
-def _folder(configs: MoveItConfigs) -> Path:
+def _package_folder(configs: MoveItConfigs) -> Path:
     return Path(configs.package_path or "")
 
 
-def _path(configs: MoveItConfigs, file: str) -> str:
-    return str(_folder(configs) / file)
+def _package_file(configs: MoveItConfigs, file: str) -> str:
+    return str(_package_folder(configs) / file)
 
 
 def _read_virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
     """Yield the parent frame and child link of each virtual joint in an SRDF.
 
-    An SRDF that is evaluated during the launch yields none.
+    For an SRDF that is evaluated only during the launch, nothing is yielded.
     """
     if not isinstance(text, str):
         return
@@ -243,15 +245,15 @@ def add_debuggable_node(
     extra_debug_args: list[Any] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Add a node that runs in gdb if a launch argument is true.
+    """Add a node to a launch description; the node runs in gdb if a launch argument is true.
 
     Args:
-        ld: the launch description to extend.
-        package: the node's package.
-        executable: the node's executable.
-        condition_name: the launch argument that selects gdb.
-        commands_file: the file with commands for gdb.
-        extra_debug_args: further arguments for the node in gdb, if the node has ``arguments``.
+        ld: the launch description.
+        package: the package of the node.
+        executable: the executable of the node.
+        condition_name: the launch argument that tells whether to use gdb.
+        commands_file: the path of a file with commands for gdb, or None.
+        extra_debug_args: further arguments of the node in gdb, which have an effect only if `arguments` is given.
         kwargs: see `Node`.
     """
     debug = LaunchConfiguration(condition_name)

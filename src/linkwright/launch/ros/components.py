@@ -43,11 +43,12 @@ class ComposableNode(Placed):
         package: the package of the node's library.
         plugin: the name of the node's class in the library, such as ``composition::Talker``.
         name: the name to give to the node.
-        namespace: the namespace of the node, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        namespace: the namespace of the node. Without a leading slash, it is relative to the namespaces of
+            `PushRosNamespace`.
         parameters: the parameters, as for a `Node`.
-        remappings: pairs of names.
-        extra_arguments: parameters for the container, such as ``use_intra_process_comms``.
-        condition: determines whether the node is loaded.
+        remappings: pairs of an original name and a new name.
+        extra_arguments: parameters that are passed to the container, such as ``use_intra_process_comms``.
+        condition: decides whether the node is loaded; None to load it always.
     """
 
     def __init__(
@@ -88,9 +89,9 @@ class ComposableNode(Placed):
         parameters = entity.get_attr("param", data_type=Entities, optional=True)
         if parameters is not None:
             kwargs["parameters"] = parse_parameters(parameters, parser)
-        extra = entity.get_attr("extra_arg", data_type=Entities, optional=True)
-        if extra is not None:
-            kwargs["extra_arguments"] = [_parse_extra_argument(tag, parser) for tag in extra]
+        extra_tags = entity.get_attr("extra_arg", data_type=Entities, optional=True)
+        if extra_tags is not None:
+            kwargs["extra_arguments"] = [_parse_extra_argument(tag, parser) for tag in extra_tags]
         entity.assert_entity_completely_parsed()
         return cls, kwargs
 
@@ -106,7 +107,7 @@ class ComposableNode(Placed):
 
     @property
     def node_name(self) -> Any:
-        """The node's name, as substitutions; None if the node's own code sets the name."""
+        """The name of the node, as substitutions; None if the node's code sets the name."""
         return self.__node_name
 
     @property
@@ -116,21 +117,21 @@ class ComposableNode(Placed):
 
     @property
     def parameters(self) -> tuple[Any, ...] | None:
-        """The node's parameters, normalized."""
+        """The normalized parameters of the node, or None."""
         return self.__parameters
 
     @property
     def remappings(self) -> list[RemapRule] | None:
-        """The node's remapping rules, as pairs of tuples of substitutions, or None."""
+        """The remapping rules of the node, as pairs of tuples of substitutions, or None."""
         return self.__remappings
 
     @property
     def extra_arguments(self) -> tuple[Any, ...] | None:
-        """The parameters for the container, normalized."""
+        """The normalized parameters for the container, or None."""
         return self.__extra_arguments
 
     def condition(self) -> Condition | None:
-        """Return the condition that determines whether the node is loaded, or None."""
+        """Return the condition that decides whether the node is loaded, or None."""
         return self.__condition
 
 
@@ -156,21 +157,21 @@ class ComposableLifecycleNode(ComposableNode):
 
     @property
     def node_name(self) -> Any:
-        """The node's name as substitutions, or its full name after the node was loaded."""
+        """The name of the node, as substitutions; its full name after it was loaded."""
         return super().node_name if self.__full_name is None else self.__full_name
 
     def record_full_name(self, full_name: str) -> None:
-        """Record the full name of the node after it was loaded."""
+        """Record the full name with which the node was loaded."""
         self.__full_name = full_name
 
 
 def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
-    """Return the request to load a node into a container.
+    """Return the request to load a node into a container, or None if the node's condition does not hold.
 
     The result is None if the node's condition does not hold.
 
     Raises:
-        LinkwrightError: the errors in the node's parameters.
+        LinkwrightError: the parameters of the node have errors.
     """
     condition = description.condition()
     if condition is not None and not condition.evaluate(context):
@@ -182,9 +183,9 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
     request.plugin_name = perform_substitutions(context, description.node_plugin)
     if description.node_name is not None:
         request.node_name = perform_substitutions(context, description.node_name)
-    own = description.node_namespace
-    inner = None if own is None else perform_substitutions(context, own)
-    namespace = make_namespace_absolute(prefix_namespace(context.launch_configurations.get(NAMESPACE), inner))
+    node_namespace = description.node_namespace
+    inner_namespace = None if node_namespace is None else perform_substitutions(context, node_namespace)
+    namespace = make_namespace_absolute(prefix_namespace(context.launch_configurations.get(NAMESPACE), inner_namespace))
     if namespace is not None:
         request.node_namespace = namespace
     rules = [
@@ -195,11 +196,11 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
     full_name = f"{(namespace or '').rstrip('/')}/{request.node_name}"
     try:
         scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        given = own_parameters(description.parameters or (), context)
-        parameters = NodeParameters([*scope.sources, *given.sources])
-        request.parameters = _messages(context, full_name, parameters.sources)
+        node_parameters = own_parameters(description.parameters or (), context)
+        parameters = NodeParameters([*scope.sources, *node_parameters.sources])
+        request.parameters = _parameter_messages(context, full_name, parameters.sources)
         parameters.check(context, full_name if request.node_name else None, description.place)
-        request.extra_arguments = _messages(
+        request.extra_arguments = _parameter_messages(
             context, full_name, own_parameters(description.extra_arguments or (), context).sources
         )
     except LinkwrightError as error:
@@ -212,21 +213,21 @@ def to_parameters_list(
 ) -> list[Any]:
     """Return evaluated parameters as ``rclpy.parameter.Parameter`` objects.
 
-    The values in parameter files are selected by the node's full name.
+    A parameter file may have values for several nodes; the full name of the node selects its own.
     """
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"
     return _parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
 
 
-def _messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
+def _parameter_messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
     return [parameter.to_parameter_msg() for parameter in _parameters(context, full_name, sources)]
 
 
 def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
     from linkwright.graph import Parameter
 
-    found: list[Any] = []
+    parameters: list[Any] = []
     for source in sources:
         if isinstance(source, FileSource):
             values = _file_values(source, context, full_name)
@@ -234,14 +235,14 @@ def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) 
             values = dict([source])
         else:
             values = source
-        found += [
+        parameters += [
             Parameter(name, value=list(value) if isinstance(value, tuple) else value) for name, value in values.items()
         ]
-    return found
+    return parameters
 
 
 def _file_values(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
-    """Return the values in a parameter file for a node.
+    """Return the values that a parameter file has for a node.
 
     As in launch_ros, values under the node's full name override values under patterns.
     """
@@ -249,8 +250,8 @@ def _file_values(source: FileSource, context: LaunchContext, full_name: str) -> 
         rules = source.file.rules(context)
     except LinkwrightError as error:
         raise _as_runtime_error(error, source.path) from error
-    exact = {name: value for pattern, values in rules if pattern == full_name for name, value in values.items()}
-    return {**rules.for_node(full_name), **exact}
+    exact_values = {name: value for pattern, values in rules if pattern == full_name for name, value in values.items()}
+    return {**rules.for_node(full_name), **exact_values}
 
 
 def _as_runtime_error(error: LinkwrightError, path: Path) -> LinkwrightError:

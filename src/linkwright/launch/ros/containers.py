@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
     from linkwright.packages import PackageFinder
 
-_LOGGER = "launch_ros.actions.load_composable_nodes"
+_LOGGER_NAME = "launch_ros.actions.load_composable_nodes"
 _CONFIGURE, _ACTIVATE = 1, 3
 
 
@@ -42,7 +42,7 @@ class LoadComposableNodes(Action):
 
     Args:
         composable_node_descriptions: the nodes to load.
-        target_container: the container's action, or its full name.
+        target_container: the action of the container, or the container's full name.
     """
 
     def __init__(
@@ -67,17 +67,17 @@ class LoadComposableNodes(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attribute ``target`` and the ``composable_node`` tags inside."""
+        """Return the class and keyword arguments for the tag, with the ``composable_node`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["target_container"] = parser.parse_substitution(entity.get_attr("target", data_type=str))
-        kwargs["composable_node_descriptions"] = _described(entity, parser)
+        kwargs["composable_node_descriptions"] = _parse_descriptions(entity, parser)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
         """Start to load the nodes in the background.
 
         Raises:
-            LinkwrightError: the errors in the nodes' parameters.
+            LinkwrightError: the parameters of a node have errors.
         """
         requests = []
         for description in self.__composable_node_descriptions:
@@ -119,23 +119,23 @@ class LoadComposableNodes(Action):
         log = context.session.log
         name = response.full_node_name or request.node_name
         if not response.success:
-            problem = phrase(
+            message = phrase(
                 "Failed to load node '{name}' of type '{plugin}' in container '{container}': {reason}",
                 name=name,
                 plugin=request.plugin_name,
                 container=container,
                 reason=foreign(response.error_message),
             )
-            error = located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place)
+            error = located(LinkwrightError(Diagnostic("LAUNCH139", message)), description.place)
             if _is_third_party(context.session.finder, request.package_name, request.plugin_name):
                 mark_unavailable(error)
                 record_skipped_node(context, request.node_name)
             context.session.could_not_start(description, error)
             return
-        remark = record_node_start(context, name)
-        if remark is not None:
-            log.warning_line(container, remark)
-        log.info_line(_LOGGER, f"Loaded node '{name}' in container '{container}'")
+        warning = record_node_start(context, name)
+        if warning is not None:
+            log.warning_line(container, warning)
+        log.info_line(_LOGGER_NAME, f"Loaded node '{name}' in container '{container}'")
         if isinstance(description, ComposableLifecycleNode):
             _monitor_lifecycle_node(context, description, name)
 
@@ -146,8 +146,8 @@ class ComposableNodeContainer(Node):
     """Starts a container, and loads nodes into it.
 
     Args:
-        name: the container's name.
-        namespace: the container's namespace.
+        name: the name of the container.
+        namespace: the namespace of the container.
         composable_node_descriptions: the nodes to load.
         kwargs: see `Node`.
     """
@@ -168,35 +168,36 @@ class ComposableNodeContainer(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of a node's tag, and the ``composable_node`` tags inside."""
+        """Return the class and keyword arguments for the tag, with the ``composable_node`` tags inside."""
         _, kwargs = super().parse(entity, parser, ignore)
-        kwargs["composable_node_descriptions"] = _described(entity, parser, optional=True)
+        kwargs["composable_node_descriptions"] = _parse_descriptions(entity, parser, optional=True)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start the container, and return the action that loads the nodes, to be visited next.
+        """Start the container, and return the action that loads the nodes, which is visited next.
 
         Raises:
             LinkwrightError: see `Node.execute`.
         """
-        loading: list[Any] = []
-        valid = [
+        load_actions: list[Any] = []
+        enabled_descriptions = [
             description
             for description in self.__composable_node_descriptions or ()
             if (condition := description.condition()) is None or condition.evaluate(context)
         ]
-        if valid:
-            # Let the container's own scope apply to the nodes: the action is visited right after the container.
-            load = LoadComposableNodes(composable_node_descriptions=valid, target_container=self)
-            load.place = self.place
-            loading = [load]
-        following = super().execute(context)
-        return [*(following or ()), *loading] or None
+        if enabled_descriptions:
+            # The nodes must be loaded in the same scope as the container, so the action is visited right after the
+            # container.
+            load_action = LoadComposableNodes(composable_node_descriptions=enabled_descriptions, target_container=self)
+            load_action.place = self.place
+            load_actions = [load_action]
+        next_entities = super().execute(context)
+        return [*(next_entities or ()), *load_actions] or None
 
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
         """Return whether the container can run in the launcher's process.
 
-        A container with third-party components cannot, if its program is installed.
+        A container with third-party components runs in a separate process if its program is installed.
         """
         return super()._may_be_hosted(context, package, executable) and self._find_installed_container(context) is None
 
@@ -207,14 +208,14 @@ class ComposableNodeContainer(Node):
         from linkwright.nodes.options import COMPONENTS
 
         self.__real = None
-        wanted = [
+        components = [
             tuple(
-                perform_substitutions(context, part)
-                for part in (composable_node_description.package, composable_node_description.node_plugin)
+                perform_substitutions(context, substitutions)
+                for substitutions in (composable_node_description.package, composable_node_description.node_plugin)
             )
             for composable_node_description in self.__composable_node_descriptions or ()
         ]
-        if not all(text in COMPONENTS for text in wanted):
+        if not all(component in COMPONENTS for component in components):
             package, executable = (
                 perform_substitutions(context, normalize_to_list_of_substitutions(text))
                 for text in (self.node_package, self.node_executable)
@@ -224,32 +225,32 @@ class ComposableNodeContainer(Node):
 
 
 def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
-    """Return whether a component is from third-party software that is not built here.
+    """Return whether a component comes from third-party software that is not built here.
 
-    The result is False for a misspelt name of one of Linkwright's components.
+    A name that is a misspelling of one of Linkwright's components is not third-party.
     """
     from linkwright.nodes.options import COMPONENTS
 
     share = finder.find(package)
-    ours = [f"{owner}/{name}" for owner, name in COMPONENTS]
+    own_components = [f"{owner}/{name}" for owner, name in COMPONENTS]
     component = f"{package}/{plugin}"
     was_built = share is not None and is_installed(share) and not is_substitute(share)
-    return not (was_built or component in ours or is_misspelt(component, ours))
+    return not (was_built or component in own_components or is_misspelt(component, own_components))
 
 
-def _described(entity: Entity, parser: Parser, *, optional: bool = False) -> list[ComposableNode]:
+def _parse_descriptions(entity: Entity, parser: Parser, *, optional: bool = False) -> list[ComposableNode]:
     tags = entity.get_attr("composable_node", data_type=Entities, optional=optional)
-    described = []
+    descriptions = []
     for tag in tags or ():
         cls, kwargs = ComposableNode.parse(parser, tag)
-        described.append(cls(**kwargs))
-    return described
+        descriptions.append(cls(**kwargs))
+    return descriptions
 
 
 def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Monitor the state of a loaded lifecycle node.
+    """Monitor the state of a loaded lifecycle node, and start it if ``autostart`` requests that.
 
-    If ``autostart`` requests it, the node is also configured and activated.
+    To start it, the node is configured, and then activated.
     """
     description.record_full_name(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
@@ -258,11 +259,13 @@ def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifec
     from linkwright.launch.model.actions import EmitEvent
     from linkwright.launch.ros.lifecycle_events import OnStateTransition
 
-    def change(number: int) -> ChangeState:
-        return ChangeState(lifecycle_node_matcher=events.matches_action(description), transition_id=number)
+    def change(transition_id: int) -> ChangeState:
+        return ChangeState(lifecycle_node_matcher=events.matches_action(description), transition_id=transition_id)
 
-    active = EmitEvent(event=change(_ACTIVATE))
+    activation = EmitEvent(event=change(_ACTIVATE))
     context.register_event_handler(
-        OnStateTransition(target_lifecycle_node=description, goal_state="inactive", entities=[active], handle_once=True)
+        OnStateTransition(
+            target_lifecycle_node=description, goal_state="inactive", entities=[activation], handle_once=True
+        )
     )
     context.emit_event_sync(change(_CONFIGURE))

@@ -11,7 +11,7 @@ from linkwright.launch.model.substitutions import LaunchConfiguration, PythonExp
 from linkwright.launch.ros.node import Node
 
 _MANAGER = "controller_manager"
-_UNLOAD = "unload_on_kill"
+_UNLOAD_ARGUMENT = "unload_on_kill"
 
 
 def generate_controllers_spawner_launch_description(
@@ -21,26 +21,38 @@ def generate_controllers_spawner_launch_description(
 ) -> LaunchDescription:
     """Return a launch description that spawns controllers.
 
-    The description declares arguments for the name of the controller manager, and for whether the controllers are
-    unloaded at the end.
+    The description declares an argument for the name of the controller manager, and one that tells whether the
+    controllers are unloaded at the end.
 
     Args:
         controller_names: the names of the controllers.
-        controller_params_files: the parameter files of the controllers; empty names are skipped.
+        controller_params_files: the parameter files of the controllers; empty paths are ignored.
         extra_spawner_args: further arguments of the spawner.
     """
-    files = [word for file in controller_params_files or () if file for word in ("--param-file", file)]
-    unload = PythonExpression(['"--unload-on-kill" if "true" == "', LaunchConfiguration(_UNLOAD), '" else ""'])
-    manager = f"{_MANAGER}_name"
-    words = [*controller_names, "--controller-manager", LaunchConfiguration(manager), *files, unload]
+    file_arguments = [argument for file in controller_params_files or () if file for argument in ("--param-file", file)]
+    unload_argument = PythonExpression(
+        ['"--unload-on-kill" if "true" == "', LaunchConfiguration(_UNLOAD_ARGUMENT), '" else ""']
+    )
+    manager_argument = f"{_MANAGER}_name"
+    spawner_arguments = [
+        *controller_names,
+        "--controller-manager",
+        LaunchConfiguration(manager_argument),
+        *file_arguments,
+        unload_argument,
+    ]
     return LaunchDescription(
         [
-            DeclareLaunchArgument(manager, default_value=_MANAGER, description="Name of the controller manager's node"),
-            DeclareLaunchArgument(_UNLOAD, default_value="false", description="Unload the controllers at the end"),
+            DeclareLaunchArgument(
+                manager_argument, default_value=_MANAGER, description="Name of the controller manager's node"
+            ),
+            DeclareLaunchArgument(
+                _UNLOAD_ARGUMENT, default_value="false", description="Unload the controllers at the end"
+            ),
             Node(  # noqa: S604 - an argument may be empty, which only a shell drops
                 package=_MANAGER,
                 executable="spawner",
-                arguments=[*words, *extra_spawner_args],
+                arguments=[*spawner_arguments, *extra_spawner_args],
                 shell=True,
                 output="screen",
             ),
@@ -51,22 +63,22 @@ def generate_controllers_spawner_launch_description(
 def generate_controllers_spawner_launch_description_from_dict(
     controller_info_dict: Mapping[str, Any], extra_spawner_args: Sequence[Any] = ()
 ) -> LaunchDescription:
-    """Return a launch description that spawns the controllers in a mapping.
+    """Return a launch description that spawns the controllers of a mapping.
 
     Args:
-        controller_info_dict: controller -> its parameter file, a list of parameter files, or None.
+        controller_info_dict: maps each controller to its parameter file, a list of parameter files, or None.
         extra_spawner_args: further arguments of the spawner.
 
     Raises:
-        ValueError: the argument is not a mapping, or a file has another type.
+        ValueError: the argument is not a mapping, or the value of a controller has another type.
     """
     if not isinstance(controller_info_dict, Mapping):
         raise ValueError(f"Invalid controller_info_dict type parsed {controller_info_dict}")  # noqa: TRY004 - as in controller_manager
     files: list[Any] = []
-    for given in controller_info_dict.values():
-        if given and not isinstance(given, (str, list)):
-            raise ValueError(f"Invalid controller_params_file type parsed in the dict {given}")
-        files += given if isinstance(given, list) else [given]
+    for controller_files in controller_info_dict.values():
+        if controller_files and not isinstance(controller_files, (str, list)):
+            raise ValueError(f"Invalid controller_params_file type parsed in the dict {controller_files}")
+        files += controller_files if isinstance(controller_files, list) else [controller_files]
     return generate_controllers_spawner_launch_description(list(controller_info_dict), files, extra_spawner_args)
 
 
@@ -78,13 +90,15 @@ def generate_load_controller_launch_description(
 ) -> LaunchDescription:
     """Return a launch description that spawns one controller.
 
-    The order of the arguments is that of Humble.
+    The parameters have the order that they have in ROS 2 Humble.
 
     Args:
         controller_name: the name of the controller.
-        controller_type: the controller's plugin, if its parameters do not set it.
+        controller_type: the plugin of the controller, if its parameters do not name it.
         controller_params_file: the controller's parameter file.
         extra_spawner_args: further arguments of the spawner.
     """
-    words = [controller_name, *(("--controller-type", controller_type) if controller_type else ())]
-    return generate_controllers_spawner_launch_description(words, [controller_params_file], extra_spawner_args)
+    controller_arguments = [controller_name, *(("--controller-type", controller_type) if controller_type else ())]
+    return generate_controllers_spawner_launch_description(
+        controller_arguments, [controller_params_file], extra_spawner_args
+    )

@@ -1,7 +1,6 @@
-"""Support for the names that keyword arguments had up to ROS 2 Foxy.
+"""Support for the names that some keyword arguments had until ROS 2 Foxy.
 
-An example is ``node_executable`` for ``executable``. Launch files from that time are still in use, and their other
-contents are still valid.
+An example is ``node_executable`` for ``executable``. Launch files from that time are still in use.
 """
 
 from __future__ import annotations
@@ -15,12 +14,12 @@ _Class = TypeVar("_Class", bound=type)
 
 
 def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
-    """Make a class accept former names of keyword arguments.
+    """Return a decorator for a class that also accepts former names of its keyword arguments.
 
-    Their use causes a warning that gives the current names.
+    The use of a former name causes a warning with the current name.
 
     Args:
-        present: former name -> current name.
+        **present: maps former names to current names.
     """
 
     def extend(kind: _Class) -> _Class:
@@ -28,13 +27,17 @@ def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
 
         @functools.wraps(initialize)
         def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807 - becomes the method of that name
-            for former, name in present.items():
-                if former not in kwargs:
+            for former_name, current_name in present.items():
+                if former_name not in kwargs:
                     continue
-                if name in kwargs:
-                    raise TypeError(f"{kind.__name__} is given both '{former}' and '{name}', which is its name now")
-                warnings.warn(f"'{former}' of {kind.__name__} is called '{name}' now", UserWarning, stacklevel=2)
-                kwargs[name] = kwargs.pop(former)
+                if current_name in kwargs:
+                    raise TypeError(
+                        f"{kind.__name__} is given both '{former_name}' and '{current_name}', which is its name now"
+                    )
+                warnings.warn(
+                    f"'{former_name}' of {kind.__name__} is called '{current_name}' now", UserWarning, stacklevel=2
+                )
+                kwargs[current_name] = kwargs.pop(former_name)
             initialize(self, *args, **kwargs)
 
         kind.__init__ = __init__  # type: ignore[misc]  # on purpose

@@ -1,4 +1,4 @@
-"""Executables of packages: Linkwright's own, installed ones, and those in sources."""
+"""Executables of packages: Linkwright's own, those in installed packages, and those in sources."""
 
 from __future__ import annotations
 
@@ -30,31 +30,30 @@ from linkwright.packages.programs.child_python import python_command
 if TYPE_CHECKING:
     from linkwright.packages.readers.entry_points import EntryPoint
 
-# The readers of sources and scripts are imported where they are used, because a launch of Linkwright's own nodes does
-# not
-# need them.
+# The readers of sources and scripts are imported only where they are used. A launch of Linkwright's own nodes does
+# not need them.
 
 BUILT_IN = "built into Linkwright"
 
 
 class Origin(Enum):
-    """The origin of an executable."""
+    """Where an executable comes from: Linkwright, an installed package, or the sources of a package."""
 
-    OURS = "ours"
+    LINKWRIGHT = "ours"
     INSTALLED = "installed"
     SOURCE = "source"
 
 
 @dataclass(frozen=True)
 class Executable:
-    """A program of a package.
+    """An executable program of a package.
 
     Attributes:
         package: the name of the package.
         name: the name of the program in the package.
-        origin: the origin of the program.
-        path: the path of the program; None for one of Linkwright's own, and for an entry point that has no script yet.
-        entry_point: the function of an entry point in sources.
+        origin: where the program comes from.
+        path: the path of the program; None for Linkwright's own programs, and for an entry point without a script.
+        entry_point: the entry point in sources; None for other programs.
     """
 
     package: str
@@ -74,15 +73,15 @@ class Executable:
             return python_command([str(self.path)])
         if os.access(self.path, os.X_OK):
             return [str(self.path)]
-        words = interpreter_words(self.path)  # scripts in sources need not be executable
-        return [*words, str(self.path)] if words else python_command([str(self.path)])
+        interpreter_command = interpreter_words(self.path)  # scripts in sources need not be executable
+        return [*interpreter_command, str(self.path)] if interpreter_command else python_command([str(self.path)])
 
     def __str__(self) -> str:
-        return BUILT_IN if self.origin is Origin.OURS else str(self.path or self.entry_point)
+        return BUILT_IN if self.origin is Origin.LINKWRIGHT else str(self.path or self.entry_point)
 
 
 def is_hosted(package: str | None, executable: str) -> bool:
-    """Return whether an executable is one of Linkwright's nodes, which can run in this process."""
+    """Return whether an executable is one of Linkwright's nodes, which can run in the launcher's process."""
     if is_viewer(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
@@ -91,7 +90,7 @@ def is_hosted(package: str | None, executable: str) -> bool:
 
 
 def hosted_executables() -> list[tuple[str, str]]:
-    """Return the package and executable of every node that can run in this process."""
+    """Return the package and executable of each node that can run in the launcher's process."""
     from linkwright.nodes import EXECUTABLES
 
     return [*EXECUTABLES, VIEWER]
@@ -103,90 +102,93 @@ def builtin_packages() -> set[str]:
 
 
 def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
-    """Return the programs of a package by name.
+    """Return the programs of a package, by name.
 
-    Of programs with the same name, Linkwright's own takes precedence, then the built one, then the one in sources.
+    Of programs with the same name, Linkwright's own comes first, then the installed one, then the one in sources.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
     """
-    ours = {name: Executable(package, name, Origin.OURS) for owner, name in hosted_executables() if owner == package}
-    share = finder.find(package) if ours else finder.share(package)
+    own_executables = {
+        name: Executable(package, name, Origin.LINKWRIGHT) for owner, name in hosted_executables() if owner == package
+    }
+    share = finder.find(package) if own_executables else finder.share(package)
     if share is None:
-        return ours
-    found: dict[str, Executable] = {}
+        return own_executables
+    executables: dict[str, Executable] = {}
     if not is_installed(share):
         from linkwright.packages.programs.source_programs import source_programs
 
         programs = source_programs(share)
-        found = {
-            name: Executable(package, name, Origin.SOURCE, entry_point=entry)
-            for name, entry in programs.entry_points.items()
+        executables = {
+            name: Executable(package, name, Origin.SOURCE, entry_point=entry_point)
+            for name, entry_point in programs.entry_points.items()
         }
         for name, path in programs.scripts.items():
-            found[name] = Executable(package, name, Origin.SOURCE, path)
-    found.update((executable.name, executable) for executable in _installed(package, share))
-    return dict(sorted({**found, **ours}.items()))
+            executables[name] = Executable(package, name, Origin.SOURCE, path)
+    executables.update((executable.name, executable) for executable in _installed_executables(package, share))
+    return dict(sorted({**executables, **own_executables}.items()))
 
 
 def find_installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
-    """Return a built program of a package, or None if there is none.
+    """Return an installed program of a package, or None if there is none.
 
-    Unlike in `executables_of`, Linkwright's own programs do not take precedence.
+    Unlike `executables_of`, this function does not prefer Linkwright's own programs.
     """
     share = finder.find(package)
     return (
         None
         if share is None
-        else next((executable for executable in _installed(package, share) if executable.name == name), None)
+        else next(
+            (executable for executable in _installed_executables(package, share) if executable.name == name), None
+        )
     )
 
 
 def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
     """Return a program of a package.
 
-    The program has a path, unless it is one of Linkwright's own.
+    The program has a path unless it is one of Linkwright's own.
 
     Raises:
-        LinkwrightError: LAUNCH131, with the searched paths and similar names. The error is also a LookupError, because
-            launch_ros raises PackageNotFoundError (PKG101). Errors about third-party programs are marked, see
-            `mark_unavailable`.
+        LinkwrightError: LAUNCH131, there is no such package or executable. The error is also a LookupError, because
+            launch_ros raises one. Errors about third-party programs are marked, see `mark_unavailable`.
     """
     try:
-        present = executables_of(finder, package)
+        executables = executables_of(finder, package)
     except PackageNotFoundError as error:
         raise _missing_package_error(finder, package, name, error) from error
-    found = present.get(name)
-    if found is None:
-        raise _missing_executable_error(finder, package, name, present)
-    if found.entry_point is not None and found.path is None:
-        return replace(found, path=_script(finder, found))
-    return found
+    executable = executables.get(name)
+    if executable is None:
+        raise _missing_executable_error(finder, package, name, executables)
+    if executable.entry_point is not None and executable.path is None:
+        return replace(executable, path=_create_script(finder, executable))
+    return executable
 
 
-def _installed(package: str, share: Path) -> Iterable[Executable]:
+def _installed_executables(package: str, share: Path) -> Iterable[Executable]:
     folder = install_prefix(share) / "lib" / package
-    for base, folders, files in os.walk(folder):
+    for parent, folders, files in os.walk(folder):
         folders[:] = sorted(folder for folder in folders if not folder.startswith(".") and folder != "__pycache__")
         for name in sorted(files):
-            path = Path(base, name)
+            path = Path(parent, name)
             if os.access(path, os.X_OK) and path.suffix not in (".so", ".dylib"):
                 yield Executable(package, name, Origin.INSTALLED, path)
 
 
-def _script(finder: PackageFinder, executable: Executable) -> Path:
+def _create_script(finder: PackageFinder, executable: Executable) -> Path:
     from linkwright.packages.programs.entry_scripts import script_for
     from linkwright.packages.programs.source_programs import python_root
 
-    entry = executable.entry_point
+    entry_point = executable.entry_point
     share = finder.share(executable.package)
     root = python_root(share, executable.package) or share
-    assert entry is not None
-    _check_module(executable, entry, root)
-    others = (python_root(folder, name) for name, folder in finder.packages().items() if not is_installed(folder))
-    roots = dict.fromkeys([root, *(other for other in others if other is not None)])
+    assert entry_point is not None
+    _check_module(executable, entry_point, root)
+    other_roots = (python_root(folder, name) for name, folder in finder.packages().items() if not is_installed(folder))
+    roots = dict.fromkeys([root, *(candidate for candidate in other_roots if candidate is not None)])
     try:
-        return script_for(executable.package, executable.name, entry, list(roots))
+        return script_for(executable.package, executable.name, entry_point, list(roots))
     except OSError as error:
         message = phrase(
             "cannot create a file for executable '{name}': {strerror}",
@@ -197,32 +199,34 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
         raise LinkwrightError(Diagnostic("LAUNCH131", message, hint=hint)) from error
 
 
-def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
-    """Check that the module of an entry point exists, before a process is started.
+def _check_module(executable: Executable, entry_point: EntryPoint, root: Path) -> None:
+    """Raise an error if the module of an entry point does not exist.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such module.
     """
     from linkwright.packages.programs.source_programs import module_file
 
-    top = entry.module.partition(".")[0]
-    if module_file(root, entry.module) is not None or not (root / top).is_dir():
+    top_package = entry_point.module.partition(".")[0]
+    if module_file(root, entry_point.module) is not None or not (root / top_package).is_dir():
         return
-    folder = root.joinpath(*entry.module.split(".")[:-1])
+    folder = root.joinpath(*entry_point.module.split(".")[:-1])
     modules = [path.stem for path in folder.glob("*.py")] if folder.is_dir() else []
-    near = did_you_mean(entry.module.rpartition(".")[2], modules)
+    suggestion = did_you_mean(entry_point.module.rpartition(".")[2], modules)
     message = phrase(
-        "executable '{name}' of package '{package}' is the entry point '{entry}', and there is no module '{module}'",
+        "executable '{name}' of package '{package}' is the entry point '{entry}', but module '{module}' does not exist",
         name=executable.name,
         package=executable.package,
-        entry=entry,
-        module=entry.module,
+        entry=entry_point,
+        module=entry_point.module,
     )
     notes = (
-        Note(phrase("searched for {joinpath}.py", joinpath=display_path(root.joinpath(*entry.module.split("."))))),
+        Note(
+            phrase("searched for {joinpath}.py", joinpath=display_path(root.joinpath(*entry_point.module.split("."))))
+        ),
     )
     raise LinkwrightError(
-        Diagnostic("LAUNCH131", message, notes=notes, hint=near or phrase("check entry_points in setup.py"))
+        Diagnostic("LAUNCH131", message, notes=notes, hint=suggestion or phrase("check entry_points in setup.py"))
     )
 
 
@@ -236,12 +240,14 @@ _NO_EXECUTABLES = phrase(
 def _missing_package_error(
     finder: PackageFinder, package: str, name: str, error: PackageNotFoundError
 ) -> LinkwrightError:
-    ours, theirs = builtin_packages(), finder.packages()
-    hint = did_you_mean(package, (*ours, *theirs)) or error.diagnostics[0].hint
-    message = phrase("package '{package}' of node executable '{name}' not found", package=package, name=name)
+    own_packages, workspace_packages = builtin_packages(), finder.packages()
+    hint = did_you_mean(package, (*own_packages, *workspace_packages)) or error.diagnostics[0].hint
+    message = phrase("package '{package}' of node executable '{name}' was not found", package=package, name=name)
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
-    missing = as_ros_error(KeyError(message), diagnostic)
-    return missing if is_misspelt(package, (*ours, *theirs)) else mark_unavailable(missing)
+    launch_error = as_ros_error(KeyError(message), diagnostic)
+    return (
+        launch_error if is_misspelt(package, (*own_packages, *workspace_packages)) else mark_unavailable(launch_error)
+    )
 
 
 def _missing_executable_error(
@@ -251,8 +257,8 @@ def _missing_executable_error(
     message = phrase("package '{package}' has no executable '{name}'", package=package, name=name)
     notes: tuple[Note, ...] = ()
     hint = did_you_mean(name, present)
-    is_ours = share is None or is_substitute(share)
-    if is_ours:
+    runs_without_ros = share is None or is_substitute(share)
+    if runs_without_ros:
         message = phrase(
             "package '{package}' has no executable '{name}' that runs without ROS", package=package, name=name
         )
@@ -270,7 +276,7 @@ def _missing_executable_error(
     if hint is None:
         hint = phrase("the package has {present}", present=joined(present)) if present else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
-    return mark_unavailable(error) if is_ours and not is_misspelt(name, present) else error
+    return mark_unavailable(error) if runs_without_ros and not is_misspelt(name, present) else error
 
 
 def _missing_in_sources_error(package: str, name: str, share: Path) -> LinkwrightError:
@@ -283,12 +289,12 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
             name=name,
             package=package,
         )
-        advice = phrase(
+        build_hint = phrase(
             "build it with 'colcon build --packages-select {package}' and source install/setup.bash;"
             " that needs a C++ compiler and the ROS 2 libraries it uses",
             package=package,
         )
-        return mark_unavailable(_lookup_error(message, (), advice))
+        return mark_unavailable(_lookup_error(message, (), build_hint))
     if not programs.is_complete and not is_misspelt(name, programs.names()):
         return mark_unavailable(_unknown_program_error(package, name, share))
     notes = (Note(phrase("searched the entry points and installed programs of {share}", share=display_path(share))),)
@@ -303,14 +309,14 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
 
 
 def _unknown_program_error(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that a package's sources do not show but may build."""
+    """Return the error for a program that the package may build, although its sources do not show it."""
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
-    advice = phrase(
+    build_hint = phrase(
         "build it with 'colcon build --packages-select {package}' in a workspace with all of its sources",
         package=package,
     )
-    return _lookup_error(message, (note,), advice)
+    return _lookup_error(message, (note,), build_hint)
 
 
 def _lookup_error(message: Phrase, notes: tuple[Note, ...], hint: Phrase) -> LinkwrightError:

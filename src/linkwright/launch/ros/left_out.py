@@ -1,6 +1,6 @@
-"""The nodes that a launch skips.
+"""Removal of the nodes that a launch skips from nav2's lifecycle managers.
 
-These nodes are removed from nav2's lifecycle managers, which would wait for them forever.
+A lifecycle manager would wait forever for a skipped node.
 """
 
 from __future__ import annotations
@@ -10,39 +10,39 @@ from typing import Any
 
 from linkwright.launch.model.context import LaunchContext
 
-_MANAGER = "nav2_lifecycle_manager"
-_MANAGED = "node_names"
+_MANAGER_PACKAGE = "nav2_lifecycle_manager"
+_NODES_PARAMETER = "node_names"
 
 
 def record_skipped_node(context: LaunchContext, name: str) -> None:
-    """Record a skipped node by its name without the namespace."""
+    """Record the name, without the namespace, of a node that is skipped."""
     context.session.left_out.add(name)
 
 
 def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a node, without skipped nodes if it is a lifecycle manager."""
-    if package != _MANAGER or not isinstance(parameters.get(_MANAGED), Iterable):
+    """Return the parameters of a node; if it is a lifecycle manager, skipped nodes are removed from them."""
+    if package != _MANAGER_PACKAGE or not isinstance(parameters.get(_NODES_PARAMETER), Iterable):
         return parameters
-    return {**parameters, _MANAGED: _without_skipped(context, parameters[_MANAGED])}
+    return {**parameters, _NODES_PARAMETER: _without_skipped(context, parameters[_NODES_PARAMETER])}
 
 
 def remove_skipped_nodes(context: LaunchContext, request: Any) -> None:
-    """Remove the skipped nodes from a request to load a lifecycle manager into a container.
+    """Remove the skipped nodes from a request that loads a lifecycle manager into a container.
 
-    Other requests are unchanged.
+    Other requests remain unchanged.
     """
-    if request.package_name != _MANAGER:
+    if request.package_name != _MANAGER_PACKAGE:
         return
     for parameter in request.parameters:
-        if parameter.name == _MANAGED:
+        if parameter.name == _NODES_PARAMETER:
             parameter.value.string_array_value = _without_skipped(context, parameter.value.string_array_value)
 
 
 def _without_skipped(context: LaunchContext, names: Iterable[str]) -> list[str]:
-    kept = []
+    remaining_names = []
     for name in names:
         if name.rpartition("/")[2] in context.session.left_out:
             context.session.log.warning_line("launch", f"'{name}' is left out, and no lifecycle manager waits for it")
         else:
-            kept.append(name)
-    return kept
+            remaining_names.append(name)
+    return remaining_names

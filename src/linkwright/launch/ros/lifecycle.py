@@ -1,4 +1,4 @@
-"""Lifecycle nodes of a launch, whose transitions the launcher requests and monitors."""
+"""Lifecycle nodes of a launch. The launcher requests and monitors their transitions."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
 
 _CONFIGURE, _ACTIVATE = 1, 3
-_LOOK_SECONDS = 0.2
-_DEPTH = 10
+_POLL_SECONDS = 0.2
+_QUEUE_DEPTH = 10
 
 
 class LifecycleEventManager:
-    """Emits `StateTransition` events of a lifecycle node, and handles `ChangeState` events.
+    """Monitors a lifecycle node, and requests its transitions.
 
-    For each `ChangeState` event, the manager requests the transition from the node.
+    The manager emits a `StateTransition` event after each transition, and handles `ChangeState` events.
 
     Args:
-        lifecycle_node: the action or description of the node, whose ``node_name`` is the full name.
+        lifecycle_node: the action or description of the node; its ``node_name`` is the full name.
     """
 
     def __init__(self, lifecycle_node: Any) -> None:
@@ -54,52 +54,52 @@ class LifecycleEventManager:
         return str(self._node.node_name)
 
     def setup_lifecycle_manager(self, context: LaunchContext) -> None:
-        """Start to monitor the node and to handle requests for its transitions."""
+        """Start to monitor the node, and to handle requests for its transitions."""
         launcher = context.session.host.launcher_node
         launcher.create_subscription(
             "lifecycle_msgs/msg/TransitionEvent",
             f"{self.node_name}/transition_event",
-            lambda message: self._changed(context, message),
-            _DEPTH,
+            lambda message: self._handle_transition(context, message),
+            _QUEUE_DEPTH,
         )
         self._client = launcher.create_client("lifecycle_msgs/srv/ChangeState", f"{self.node_name}/change_state")
         context.register_event_handler(
             EventHandler(
                 matcher=lambda event: isinstance(event, ChangeState),
-                entities=[OpaqueFunction(function=self._asked)],
+                entities=[OpaqueFunction(function=self._handle_request)],
             )
         )
 
-    def _changed(self, context: LaunchContext, message: Any) -> None:
+    def _handle_transition(self, context: LaunchContext, message: Any) -> None:
         self.current_state = STATES.get(message.goal_state.id, STATES[0])
         context.emit_event_sync(StateTransition(action=self._node, msg=message))
 
-    def _asked(self, context: LaunchContext) -> None:
+    def _handle_request(self, context: LaunchContext) -> None:
         event = context.locals.event
         if event.lifecycle_node_matcher(self._node):
             context.session.spawn(self._change_state(context, event.transition_id))
 
-    async def _change_state(self, context: LaunchContext, transition: int) -> None:
+    async def _change_state(self, context: LaunchContext, transition_id: int) -> None:
         request = self._client.srv_type.Request()
-        request.transition.id = transition
+        request.transition.id = transition_id
         response = await call_service(context, self._client, request)
         if response is not None and not response.success:
-            name = TRANSITIONS[transition]
+            name = TRANSITIONS[transition_id]
             text = f"Failed to make transition '{name}' for LifecycleNode '{self.node_name}'"
             context.session.log.error_line("launch_ros.actions.lifecycle_node", text)
 
 
 async def call_service(context: LaunchContext, client: Any, request: Any) -> Any:
-    """Wait for a service, call it, and return the response.
+    """Wait until a service is available, call it, and return the response.
 
     Returns:
-        The response; None if the launch ends before the response arrives.
+        The response, or None if the launch ends before the response arrives.
     """
     future = client.call_async(request)
     while not future.done():
         if context.is_shutdown:
-            waited_for = "service response" if client.service_is_ready() else "service"
-            text = f"Abandoning wait for the '{client.srv_name}' {waited_for}, due to shutdown."
+            awaited = "service response" if client.service_is_ready() else "service"
+            text = f"Abandoning wait for the '{client.srv_name}' {awaited}, due to shutdown."
             context.session.log.warning_line("launch_ros", text)
             client.remove_pending_request(future)
             return None
@@ -108,18 +108,18 @@ async def call_service(context: LaunchContext, client: Any, request: Any) -> Any
 
 
 async def _wait_briefly(future: Any) -> None:
-    """Wait for a future for a short time."""
+    """Wait for a future for a short time, so that the caller can check for a shutdown."""
     loop = asyncio.get_running_loop()
-    woken = loop.create_future()
+    wake_up = loop.create_future()
 
     def wake(_: Any = None) -> None:
-        if not woken.done():
-            woken.set_result(None)
+        if not wake_up.done():
+            wake_up.set_result(None)
 
     future.add_done_callback(lambda _: loop.call_soon_threadsafe(wake))
-    handle = loop.call_later(_LOOK_SECONDS, wake)
+    handle = loop.call_later(_POLL_SECONDS, wake)
     try:
-        await woken
+        await wake_up
     finally:
         handle.cancel()
 
@@ -147,7 +147,7 @@ class LifecycleNode(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of a node's tag and the attribute ``autostart``."""
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser, ignore)
         autostart = entity.get_attr("autostart", data_type=bool, optional=True)
         if autostart is not None:
@@ -161,7 +161,7 @@ class LifecycleNode(Node):
 
     @property
     def current_state(self) -> str:
-        """The name of the node's last known state."""
+        """The name of the last state that the node reported."""
         return self.__manager.current_state
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
@@ -174,38 +174,43 @@ class LifecycleNode(Node):
             return None
         self._expand_names(context)
         self.__manager.setup_lifecycle_manager(context)
-        following = list(super().execute(context) or [])
+        next_entities = list(super().execute(context) or [])
         if is_autostarted(context, self.__autostart):
-            following += autostart_actions(self)
-        return following
+            next_entities += autostart_actions(self)
+        return next_entities
 
 
 def is_autostarted(context: LaunchContext, value: Any) -> bool:
-    """Return whether the ``autostart`` of a lifecycle node is true."""
+    """Return whether the argument ``autostart`` of a lifecycle node evaluates to true."""
     from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 
     return bool(perform_typed_substitution(context, normalize_typed_substitution(value, bool), bool))
 
 
 def autostart_actions(action: Any) -> list[Any]:
-    """Return actions that register event handlers to configure and activate a lifecycle node.
+    """Return actions that configure and activate a lifecycle node after its start.
 
-    The node is configured when it has started, and activated when it is configured.
+    The node is configured when it has started, and activated when it has been configured.
     """
-    change = {
-        number: EmitEvent(event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=number))
-        for number in (_CONFIGURE, _ACTIVATE)
+    change_actions = {
+        transition_id: EmitEvent(
+            event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=transition_id)
+        )
+        for transition_id in (_CONFIGURE, _ACTIVATE)
     }
-    configured = OnStateTransition(
-        target_lifecycle_node=action, start_state="configuring", goal_state="inactive", entities=[change[_ACTIVATE]]
+    on_configured = OnStateTransition(
+        target_lifecycle_node=action,
+        start_state="configuring",
+        goal_state="inactive",
+        entities=[change_actions[_ACTIVATE]],
     )
     return [
-        RegisterEventHandler(OnProcessStart(target_action=action, on_start=[change[_CONFIGURE]])),
-        RegisterEventHandler(configured),
+        RegisterEventHandler(OnProcessStart(target_action=action, on_start=[change_actions[_CONFIGURE]])),
+        RegisterEventHandler(on_configured),
     ]
 
 
 def unknown_transition_error(place: Any, text: str) -> Exception:
-    """Return the error for a transition that is not a number."""
+    """Return the error for a transition ID that is not a number."""
     message = phrase("expected integer for lifecycle transition, got {text}", text=text)
     return error_at(place, "LAUNCH138", message, ros_error=ValueError(message))

@@ -24,7 +24,7 @@ TRANSITIONS = OrderedDict(
         (8, "TRANSITION_DESTROY"),
     )
 )
-"""The transitions of ``lifecycle_msgs/msg/Transition`` by number."""
+"""Maps the IDs of transitions in ``lifecycle_msgs/msg/Transition`` to their names."""
 
 STATES = OrderedDict(
     (
@@ -41,17 +41,17 @@ STATES = OrderedDict(
         (15, "TRANSITION_STATE_ERRORPROCESSING"),
     )
 )
-"""The states of ``lifecycle_msgs/msg/State`` by number."""
+"""Maps the IDs of states in ``lifecycle_msgs/msg/State`` to their names."""
 
 NodeMatcher = Callable[[Any], bool]
 
 
 class ChangeState(Event):
-    """A request for a transition to the lifecycle nodes that the matcher accepts.
+    """A request for a transition of the lifecycle nodes that a matcher accepts.
 
     Args:
-        lifecycle_node_matcher: called with the action of each lifecycle node; returns whether the request applies to
-            the node.
+        lifecycle_node_matcher: called with the action of each lifecycle node; returns whether the request is for that
+            node.
         transition_id: the ID of the transition, see `TRANSITIONS`.
     """
 
@@ -62,14 +62,16 @@ class ChangeState(Event):
     def __init__(self, *, lifecycle_node_matcher: NodeMatcher, transition_id: int) -> None:
         super().__init__()
         if transition_id not in TRANSITIONS:
-            listed = ", ".join(f"{name}: {number}" for number, name in TRANSITIONS.items())
-            ros_error = ValueError(f"given transition_id of '{transition_id}', expected one of {{{listed}}}")
-            message = phrase("there is no lifecycle transition {transition_id}", transition_id=repr(transition_id))
+            transitions_text = ", ".join(f"{name}: {number}" for number, name in TRANSITIONS.items())
+            ros_error = ValueError(f"given transition_id of '{transition_id}', expected one of {{{transitions_text}}}")
+            message = phrase(
+                ("there is no lifecycle transition with the ID {transition_id}"), transition_id=repr(transition_id)
+            )
             raise error_at(
                 Place.of_caller(),
                 "LAUNCH138",
                 message,
-                phrase("the available transitions are {listed}", listed=listed),
+                phrase("the available transitions are {listed}", listed=transitions_text),
                 ros_error=ros_error,
             )
         self.lifecycle_node_matcher = lifecycle_node_matcher
@@ -77,11 +79,11 @@ class ChangeState(Event):
 
 
 class StateTransition(Event):
-    """The event that a lifecycle node has made a transition.
+    """Reports that a lifecycle node has made a transition.
 
     Args:
         action: the action of the node.
-        msg: the node's message, a ``lifecycle_msgs/msg/TransitionEvent``.
+        msg: the ``lifecycle_msgs/msg/TransitionEvent`` that the node published.
     """
 
     name = "launch_ros.events.lifecycle.StateTransition"
@@ -98,24 +100,24 @@ class StateTransition(Event):
 
     @property
     def transition(self) -> str:
-        """The transition's name, such as ``configure``."""
+        """The name of the transition, such as ``configure``."""
         return str(self.msg.transition.label)
 
     @property
     def start_state(self) -> str:
-        """The state before the transition, such as ``unconfigured``."""
+        """The name of the state before the transition, such as ``unconfigured``."""
         return str(self.msg.start_state.label)
 
     @property
     def goal_state(self) -> str:
-        """The state after the transition, such as ``inactive``."""
+        """The name of the state after the transition, such as ``inactive``."""
         return str(self.msg.goal_state.label)
 
 
 class OnStateTransition(EventHandler):
     """Visits entities when a lifecycle node has made a transition.
 
-    Omitted arguments match any value.
+    An argument that is omitted matches any value.
 
     Args:
         entities: the entities to visit.
@@ -123,7 +125,7 @@ class OnStateTransition(EventHandler):
         transition: the name of the transition.
         start_state: the name of the state before the transition.
         goal_state: the name of the state after the transition.
-        matcher: called with the event instead of a comparison with the target, transition and states.
+        matcher: called with the event; replaces the comparison with the target, transition and states.
     """
 
     def __init__(
@@ -145,14 +147,14 @@ class OnStateTransition(EventHandler):
             )
             raise error_at(Place.of_caller(), "LAUNCH138", message, ros_error=RuntimeError(text))
         self._target = target_lifecycle_node
-        wanted = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
+        expected_values = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
 
         def matches(event: Event) -> bool:
             if not isinstance(event, StateTransition):
                 return False
             if target_lifecycle_node is not None and event.action is not target_lifecycle_node:
                 return False
-            return all(value is None or getattr(event, name) == value for name, value in wanted.items())
+            return all(value is None or getattr(event, name) == value for name, value in expected_values.items())
 
         super().__init__(matcher=matcher or matches, entities=entities, **kwargs)
 
@@ -170,9 +172,9 @@ class OnStateTransition(EventHandler):
 
 
 def matches_node_name(node_name: str) -> NodeMatcher:
-    """Return a matcher that accepts the action of the node with a full name.
+    """Return a matcher that accepts the action of the node with the given full name.
 
-    A missing leading slash is added to the name.
+    If the name has no leading slash, one is added.
     """
     full_name = node_name if node_name.startswith("/") else f"/{node_name}"
     return lambda action: action.node_name == full_name

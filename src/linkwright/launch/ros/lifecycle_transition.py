@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
     from linkwright.launch.model.events import Event
 
-_GOALS = {
+_STATES_BY_TRANSITION = {
     1: ("configuring", "inactive"),
     2: ("cleaningup", "unconfigured"),
     3: ("activating", "active"),
@@ -33,13 +33,13 @@ _GOALS = {
     6: ("shuttingdown", "finalized"),
     7: ("shuttingdown", "finalized"),
 }
-"""The states during and after a transition, by its number."""
+"""Maps the ID of a transition to the states during and after it."""
 
 
 class LifecycleTransition(Action):
     """Requests transitions of lifecycle nodes, one after another.
 
-    An error ends the sequence of the node.
+    An error ends the sequence of transitions of the node.
 
     Args:
         lifecycle_node_names: the names of the nodes; a missing leading slash is added.
@@ -47,16 +47,22 @@ class LifecycleTransition(Action):
     """
 
     transition_targets: ClassVar[dict[int, dict[str, str]]] = {
-        number: {"start_state": start, "goal_state": goal} for number, (start, goal) in _GOALS.items()
+        number: {"start_state": start, "goal_state": goal} for number, (start, goal) in _STATES_BY_TRANSITION.items()
     }
 
     def __init__(self, *, lifecycle_node_names: Sequence[Any], transition_ids: Sequence[Any], **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        for what, given in (("transition_ids", transition_ids), ("lifecycle_node_names", lifecycle_node_names)):
-            if len(given) == 0:
-                text = f"No {what} provided."
+        for argument_name, values in (
+            ("transition_ids", transition_ids),
+            ("lifecycle_node_names", lifecycle_node_names),
+        ):
+            if len(values) == 0:
+                text = f"No {argument_name} provided."
                 raise error_at(
-                    self.place, "LAUNCH138", phrase("No {what} provided", what=what), ros_error=ValueError(text)
+                    self.place,
+                    "LAUNCH138",
+                    phrase(("'{what}' is empty"), what=argument_name),
+                    ros_error=ValueError(text),
                 )
         self._names = [normalize_to_list_of_substitutions(name) for name in lifecycle_node_names]
         self._ids = [
@@ -66,45 +72,47 @@ class LifecycleTransition(Action):
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
     def execute(self, context: LaunchContext) -> list[Action]:
-        """Return actions that request the first transition of each node and handle the later ones.
+        """Return actions that request the first transition of each node, and then the later ones.
 
         Raises:
-            LinkwrightError: LAUNCH138, a transition ID is not a number, or its transition has no known goal state.
+            LinkwrightError: LAUNCH138, a transition ID is not a number, or the state after the transition is unknown.
         """
         names = [perform_substitutions(context, name) for name in self._names]
-        numbers = [self._number(perform_substitutions(context, text)) for text in self._ids]
-        registering: list[Action] = []
-        asking: list[Action] = []
+        transition_ids = [self._number(perform_substitutions(context, text)) for text in self._ids]
+        register_actions: list[Action] = []
+        request_actions: list[Action] = []
         for name in names:
-            wishes = [_wish(name, number) for number in numbers]
-            asking.append(wishes[0])
-            for number, following in zip(numbers, [*wishes[1:], self._ending(name)], strict=True):
-                start, goal = _GOALS[number]
+            requests = [_create_request(name, number) for number in transition_ids]
+            request_actions.append(requests[0])
+            for transition_id, next_action in zip(
+                transition_ids, [*requests[1:], self._create_end_action(name)], strict=True
+            ):
+                start, goal = _STATES_BY_TRANSITION[transition_id]
                 handler = OnStateTransition(
-                    matcher=_transition_matcher(name, start, goal), entities=[following], handle_once=True
+                    matcher=_transition_matcher(name, start, goal), entities=[next_action], handle_once=True
                 )
                 self._handlers.setdefault(name, []).append(handler)
-                registering.append(RegisterEventHandler(handler))
-            failing = EventHandler(
+                register_actions.append(RegisterEventHandler(handler))
+            error_handler = EventHandler(
                 matcher=_transition_matcher(name, None, "errorprocessing"),
-                entities=[self._ending(name, "error occured during transitions")],
+                entities=[self._create_end_action(name, "error occured during transitions")],
                 handle_once=True,
             )
-            self._handlers[name].append(failing)
-            context.register_event_handler(failing)
-        return [*registering, *asking]
+            self._handlers[name].append(error_handler)
+            context.register_event_handler(error_handler)
+        return [*register_actions, *request_actions]
 
     def _number(self, text: str) -> int:
         try:
-            number = int(text)
+            transition_id = int(text)
         except ValueError:
             raise unknown_transition_error(self.place, text) from None
-        if number not in _GOALS:
-            message = phrase("transition {number} does not end in a state to wait for", number=number)
-            raise error_at(self.place, "LAUNCH138", message, ros_error=KeyError(number))
-        return number
+        if transition_id not in _STATES_BY_TRANSITION:
+            message = phrase("the goal state of transition {number} is unknown", number=transition_id)
+            raise error_at(self.place, "LAUNCH138", message, ros_error=KeyError(transition_id))
+        return transition_id
 
-    def _ending(self, name: str, reason: str | None = None) -> OpaqueFunction:
+    def _create_end_action(self, name: str, reason: str | None = None) -> OpaqueFunction:
         def end(context: LaunchContext) -> None:
             if reason is not None:
                 text = f"Stopping transitions for {name} because '{reason}'"
@@ -116,8 +124,8 @@ class LifecycleTransition(Action):
         return OpaqueFunction(function=end)
 
 
-def _wish(name: str, number: int) -> EmitEvent:
-    return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=number))
+def _create_request(name: str, transition_id: int) -> EmitEvent:
+    return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=transition_id))
 
 
 def _transition_matcher(name: str, start: str | None, goal: str) -> Any:

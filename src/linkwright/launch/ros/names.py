@@ -1,6 +1,6 @@
-"""Node names, namespaces and remapping rules.
+"""Names, namespaces and remapping rules of nodes.
 
-This module also counts the nodes that were started under each name.
+This module also counts the nodes that a launch started with each name.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_COUNTS = "unique_ros_node_names"
+_COUNTS_LOCAL = "unique_ros_node_names"
 
 
 def is_root_namespace(ns: str) -> bool:
@@ -32,45 +32,45 @@ def is_namespace_absolute(ns: str) -> bool:
 
 
 def make_namespace_absolute(ns: str | None) -> str | None:
-    """Return a namespace with a leading slash, or None for None."""
+    """Return a namespace with a leading slash, and None for None."""
     return ns if ns is None or is_namespace_absolute(ns) else f"/{ns}"
 
 
 def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns: bool = False) -> str | None:
-    """Return a namespace nested in another.
+    """Return a namespace nested in another one.
 
-    An absolute inner namespace is returned unchanged. None means that a namespace is not given.
+    An inner namespace with a leading slash remains unchanged. None means that there is no namespace.
 
     Args:
         base_ns: the outer namespace.
         ns: the inner namespace.
-        return_absolute_ns: whether to add a leading slash.
+        return_absolute_ns: whether to add a leading slash to the result.
     """
     if ns is None:
-        combined = base_ns
+        namespace = base_ns
     elif not base_ns or is_namespace_absolute(ns):
-        combined = ns
+        namespace = ns
     else:
-        combined = f"{base_ns.rstrip('/')}/{ns}"
-    if combined is None:
+        namespace = f"{base_ns.rstrip('/')}/{ns}"
+    if namespace is None:
         return None
-    if not is_root_namespace(combined):
-        combined = combined.rstrip("/")
-    return make_namespace_absolute(combined) if return_absolute_ns else combined
+    if not is_root_namespace(namespace):
+        namespace = namespace.rstrip("/")
+    return make_namespace_absolute(namespace) if return_absolute_ns else namespace
 
 
 def add_node_name(context: Any, node_name: str) -> None:
-    """Record the start of a node under its full name."""
+    """Record that a node with the given full name was started."""
     _counts(context)[node_name] += 1
 
 
 def get_node_name_count(context: Any, node_name: str) -> int:
-    """Return the number of nodes that the launch started under a full name."""
+    """Return the number of nodes that the launch started with the given full name."""
     return _counts(context).get(node_name, 0)
 
 
 def record_node_start(context: Any, node_name: str) -> str | None:
-    """Record the start of a node, and return a warning if another node has the same name.
+    """Record the start of a node, and return a warning if there is another node with this name.
 
     Returns:
         The warning, or None if the name is unique.
@@ -84,15 +84,15 @@ def record_node_start(context: Any, node_name: str) -> str | None:
 
 def _counts(context: Any) -> defaultdict[str, int]:
     try:
-        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS)
+        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS_LOCAL)
     except AttributeError:
         counts = defaultdict(int)
-        context.extend_globals({_COUNTS: counts})
+        context.extend_globals({_COUNTS_LOCAL: counts})
     return counts
 
 
 def check_name(name: str) -> str:
-    """Check a node name, and return it unchanged.
+    """Return a node name unchanged, or raise an error if it is not valid.
 
     Raises:
         LinkwrightError: LAUNCH134, the name is not valid.
@@ -108,7 +108,7 @@ def check_name(name: str) -> str:
 
 
 def check_namespace(namespace: str) -> str:
-    """Check a namespace, and return it unchanged.
+    """Return a namespace unchanged, or raise an error if it is not valid.
 
     Raises:
         LinkwrightError: LAUNCH134, the namespace is not valid.
@@ -127,7 +127,7 @@ RemapRule = tuple[tuple[Substitution, ...], tuple[Substitution, ...]]
 
 
 def normalize_remap_rule(remap_rule: Any) -> RemapRule:
-    """Convert a pair of names to a pair of tuples of substitutions.
+    """Return a pair of names as a pair of tuples of substitutions.
 
     Raises:
         TypeError: LAUNCH135, the argument is not a pair of names.
@@ -142,7 +142,7 @@ def normalize_remap_rule(remap_rule: Any) -> RemapRule:
 
 
 def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
-    """Convert pairs of names to pairs of tuples of substitutions.
+    """Return pairs of names as pairs of tuples of substitutions.
 
     Raises:
         TypeError: LAUNCH135, the argument is not a list of pairs of names.
@@ -155,7 +155,7 @@ def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
 
 
 def evaluate_rules(context: LaunchContext, rules: Iterable[RemapRule]) -> list[tuple[str, str]]:
-    """Evaluate remapping rules, and return them as pairs of names."""
+    """Return remapping rules as pairs of evaluated names."""
     return [
         (perform_substitutions(context, source), perform_substitutions(context, target)) for source, target in rules
     ]

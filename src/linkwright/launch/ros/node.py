@@ -48,11 +48,14 @@ if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
     from linkwright.rviz import RvizConfig
 
-_CONTAINERS = "rclcpp_components"
-"""The package whose executables run other nodes too, to which parameter files may apply."""
+_CONTAINER_PACKAGE = "rclcpp_components"
+"""The package whose executables also run other nodes, to which parameter files may apply."""
 
-_OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
-"""Environment variables that change a node's behaviour; a node with its own values cannot run in the launcher."""
+_PROCESS_VARIABLES = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
+"""Matches environment variables of a process that change how its nodes behave.
+
+A node with its own values of these variables cannot run in the launcher's process.
+"""
 
 
 @expose_action("node")
@@ -60,17 +63,18 @@ _OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
 class Node(ExecuteProcess):
     """Starts a node.
 
-    A Linkwright node runs in the launcher's process, and any other node in a separate process.
+    Linkwright's own nodes run in the launcher's process, and other nodes in separate processes.
 
     Args:
-        executable: the node's executable in the package, or a program if no package is given.
-        package: the package of the executable.
-        name: the name to give to the node.
-        namespace: the namespace of the node, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        executable: the name of the executable in the package, or a program if `package` is None.
+        package: the name of the package of the executable; None for a program.
+        name: the name of the node; None for the name that the program sets.
+        namespace: the namespace of the node. Without a leading slash, it is relative to the namespaces of
+            `PushRosNamespace`.
         exec_name: the name of the process in the log.
-        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later items take
+        parameters: dictionaries, paths of YAML files, and `ParameterFile` and `Parameter` objects. Later items take
             precedence.
-        remappings: pairs of names.
+        remappings: pairs of an original name and a new name.
         ros_arguments: further arguments after ``--ros-args``.
         arguments: the command-line arguments.
         kwargs: see `ExecuteProcess`.
@@ -79,9 +83,8 @@ class Node(ExecuteProcess):
     UNSPECIFIED_NODE_NAME = "<node_name_unspecified>"
     UNSPECIFIED_NODE_NAMESPACE = "<node_namespace_unspecified>"
 
-    # These attributes are set when the node is started. They have the names of launch_ros's private attributes, which
-    # some
-    # programs use.
+    # These attributes are set when the node is started. They have the names of launch_ros's private attributes,
+    # because some programs use those.
     __substitutions_performed: bool
     __expanded_node_name: str
     __expanded_node_namespace: str
@@ -107,9 +110,9 @@ class Node(ExecuteProcess):
         **kwargs: Any,
     ) -> None:
         program = executable if package is None else ExecutableInPackage(package=package, executable=executable)
-        command: list[Any] = [program, *_listed(arguments)]
+        command: list[Any] = [program, *_as_list(arguments)]
         if ros_arguments is not None:
-            command += ["--ros-args", *_listed(ros_arguments)]
+            command += ["--ros-args", *_as_list(ros_arguments)]
         command.append("--ros-args")
         if name is not None:
             command += ["-r", _DeferredArgument("name", lambda: f"__node:={self.__expanded_node_name}")]
@@ -131,16 +134,16 @@ class Node(ExecuteProcess):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes that a node's tag shares with a process's tag, and its own ones.
+        """Return the class and keyword arguments for the tag.
 
-        Examples of its own attributes and tags are ``pkg``, ``exec``, ``param`` and ``remap``.
+        They include those of a process, and those of a node, such as ``pkg``, ``exec``, ``param`` and ``remap``.
         """
         _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
         return cls, parse_node(entity, parser, kwargs, cls)
 
     @staticmethod
     def parse_nested_parameters(params: list[Entity], parser: Parser) -> list[Any]:
-        """Return the parameters in ``param`` tags in the form of a node's ``parameters``."""
+        """Return the parameters in ``param`` tags as values for a node's ``parameters``."""
         from linkwright.launch.ros.parsing import parse_parameters
 
         return parse_parameters(params, parser)
@@ -149,20 +152,20 @@ class Node(ExecuteProcess):
 
     @property
     def node_package(self) -> Any:
-        """The package as given: a string, substitutions or None."""
+        """The package as passed to the constructor: a string, substitutions or None."""
         return self.__package
 
     @property
     def node_executable(self) -> Any:
-        """The executable as given: a string or substitutions."""
+        """The executable as passed to the constructor: a string or substitutions."""
         return self.__node_executable
 
     @property
     def node_name(self) -> str:
-        """The full name of the node, which is known after the action was executed.
+        """The full name of the node, which is available after the action was executed.
 
         Raises:
-            RuntimeError: the action was not executed yet.
+            RuntimeError: the action has not been executed yet.
         """
         if self.__final_node_name is None:
             raise RuntimeError("cannot access 'node_name' before executing action")
@@ -175,13 +178,13 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The evaluated remapping rules, with those of the scope first; None if there are none."""
+        """The evaluated remapping rules, those of the scope first; None if there are none."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
         """Return whether both the name and the namespace are given."""
         unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
-        return all(part not in self.node_name for part in unspecified)
+        return all(placeholder not in self.node_name for placeholder in unspecified)
 
     # --- execution ------------------------------------------------------------------------------------------
 
@@ -189,8 +192,8 @@ class Node(ExecuteProcess):
         """Start the node.
 
         Raises:
-            DescriptionError: a parameter is a model with errors.
-            LinkwrightError: any other error of the node's description or executable.
+            DescriptionError: a parameter is a robot description with errors.
+            LinkwrightError: the arguments of the node or its executable are not valid.
         """
         if context.is_shutdown:
             return None
@@ -199,37 +202,37 @@ class Node(ExecuteProcess):
         self.hosted = is_hosted(package, executable) and self._may_be_hosted(context, package, executable)
         self.__forget()
         self._perform_substitutions(context)
-        added = self.__extended(context)
+        extension_arguments = self.__extended(context)
         if self.hosted:
             assert package is not None
-            process_name = self._host(context, package, executable, added)
+            process_name = self._host(context, package, executable, extension_arguments)
         else:
-            self.cmd.extend(normalize_to_list_of_substitutions(word) for word in added)
+            self.cmd.extend(normalize_to_list_of_substitutions(argument) for argument in extension_arguments)
             process_name = self._run(context, package, executable)
         if self.is_node_name_fully_specified():
-            remark = record_node_start(context, self.node_name)
-            if remark is not None:
-                context.session.log.warning_line(process_name, remark)
+            warning = record_node_start(context, self.node_name)
+            if warning is not None:
+                context.session.log.warning_line(process_name, warning)
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
-        """Run the extensions, which may change the name and namespace.
+        """Run the extensions, which may change the name and namespace of the node.
 
         Returns:
             The arguments that the extensions add to the command line.
         """
-        added: list[Any] = []
-        given: dict[str, Any] = {}
+        added_arguments: list[Any] = []
+        ros_arguments: dict[str, Any] = {}
         if self.__node_name is not None:
-            given["name"] = f"__node:={self.__expanded_node_name}"
+            ros_arguments["name"] = f"__node:={self.__expanded_node_name}"
         if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
-            given["ns"] = f"__ns:={self.__expanded_node_namespace}"
+            ros_arguments["ns"] = f"__ns:={self.__expanded_node_namespace}"
         for extension in node_extensions():
-            words, given = extension.prepare_for_execute(context, given, self)
-            added += words
-        self.__expanded_node_name = given.get("name", self.__expanded_node_name).removeprefix("__node:=")
-        self.__expanded_node_namespace = given.get("ns", self.__expanded_node_namespace).removeprefix("__ns:=")
-        return added
+            new_arguments, ros_arguments = extension.prepare_for_execute(context, ros_arguments, self)
+            added_arguments += new_arguments
+        self.__expanded_node_name = ros_arguments.get("name", self.__expanded_node_name).removeprefix("__node:=")
+        self.__expanded_node_namespace = ros_arguments.get("ns", self.__expanded_node_namespace).removeprefix("__ns:=")
+        return added_arguments
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
         """Return a factory of the viewer's configuration; None if the command line determines it."""
@@ -243,14 +246,14 @@ class Node(ExecuteProcess):
             self._expand_names(context)
         except LinkwrightError as error:
             raise located(error, self.place) from error
-        scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        own = own_parameters(self.__parameters, context).without_missing_files(context, self.place)
-        self.__node_parameters = NodeParameters([*scope.sources, *own.sources])
+        scoped_parameters = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
+        node_parameters = own_parameters(self.__parameters, context).without_missing_files(context, self.place)
+        self.__node_parameters = NodeParameters([*scoped_parameters.sources, *node_parameters.sources])
         try:
             self.__node_parameters.check(context, self.__name_in_files(context), self.place)
         except LinkwrightError as error:
             raise located(error, self.place) from error
-        self.__scope_count = len(scope.sources)
+        self.__scope_count = len(scoped_parameters.sources)
         self.__scratch_folder = _scratch_folder(context)
         rules = [
             *(context.launch_configurations.get(REMAPPINGS) or ()),
@@ -262,9 +265,9 @@ class Node(ExecuteProcess):
         self.__substitutions_performed = True
 
     def __forget(self) -> None:
-        """Reset the results of an earlier execution.
+        """Reset the results of an earlier execution of the action.
 
-        The action is executed again after a robot description that it needs was fixed.
+        The action is executed again when the user has fixed a robot description that it needs.
         """
         del self.cmd[self.__fixed_words :]
         self.__substitutions_performed = False
@@ -281,49 +284,54 @@ class Node(ExecuteProcess):
         """Evaluate the name and namespace."""
         if self.__node_name is not None:
             self.__expanded_node_name = check_name(_text(context, self.__node_name))
-        own = None if self.__node_namespace is None else _text(context, self.__node_namespace)
-        namespace = make_namespace_absolute(prefix_namespace(context.launch_configurations.get(NAMESPACE), own))
+        own_namespace = None if self.__node_namespace is None else _text(context, self.__node_namespace)
+        namespace = make_namespace_absolute(
+            prefix_namespace(context.launch_configurations.get(NAMESPACE), own_namespace)
+        )
         if namespace is not None:
             self.__expanded_node_namespace = check_namespace(namespace)
         self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
 
     def __name_in_files(self, context: LaunchContext) -> str | None:
-        """Return the full name by which parameter files refer to the node.
+        """Return the full name with which parameter files refer to the node, or None.
 
-        The result is None if the name is not given and only the program knows it. It is also None for a container,
+        The result is None if the program sets the name, which is then unknown. It is also None for a container,
         because the files may apply to other nodes that the container runs.
         """
         package = None if self.__package is None else _text(context, self.__package)
-        if self.__node_name is None or package == _CONTAINERS:
+        if self.__node_name is None or package == _CONTAINER_PACKAGE:
             return None
         namespace = self.__expanded_node_namespace
-        above = "" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace.rstrip("/")
-        return f"{above}/{self.__expanded_node_name}"
+        parent_namespace = "" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace.rstrip("/")
+        return f"{parent_namespace}/{self.__expanded_node_name}"
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """The parameter arguments of the command line, each with whether it is the path of a file.
+        """The parameter arguments of the command line, and for each of them whether it is the path of a file.
 
-        Files for dictionaries are written on first access. As in launch_ros, the parameters of the scope are included
-        only if they are files.
+        Files with the values of dictionaries are written on first access. As in launch_ros, parameters of the scope
+        are included only if they are files.
         """
         if self.__parameter_words is None:
             folder = self.__scratch_folder if self.__scratch_folder and self.__scratch_folder.is_dir() else None
             node = self.node_name if self.is_node_name_fully_specified() else None
             self.__parameter_words = self.__node_parameters.arguments(node, folder)
-        scope = self.__parameter_words[: self.__scope_count]
-        return [*(argument for argument in scope if argument[1]), *self.__parameter_words[self.__scope_count :]]
+        scope_arguments = self.__parameter_words[: self.__scope_count]
+        return [
+            *(argument for argument in scope_arguments if argument[1]),
+            *self.__parameter_words[self.__scope_count :],
+        ]
 
     def __extend_command(self) -> None:
-        words: list[Any] = []
+        arguments: list[Any] = []
         if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
-            words += ["-r", _DeferredArgument("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
+            arguments += ["-r", _DeferredArgument("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
         _ = self.__expanded_parameter_arguments
         for argument, is_file in self.__parameter_words or ():
-            words += ["--params-file" if is_file else "-p", argument]
+            arguments += ["--params-file" if is_file else "-p", argument]
         for source, target in self.__expanded_remappings or ():
-            words += ["-r", f"{source}:={target}"]
-        self.cmd.extend(normalize_to_list_of_substitutions(word) for word in words)
+            arguments += ["-r", f"{source}:={target}"]
+        self.cmd.extend(normalize_to_list_of_substitutions(command_argument) for command_argument in arguments)
 
     # --- in the launcher's process ----------------------------------------------------------------------------
 
@@ -334,9 +342,9 @@ class Node(ExecuteProcess):
         if context.session.isolates_nodes or self.__own_environment[0] is not None:
             return False
         names = (_text(context, name) for name in self.__own_environment[1] or ())
-        if any(_OF_A_PROCESS.match(name) for name in names):
+        if any(_PROCESS_VARIABLES.match(name) for name in names):
             return False
-        return not self.process_description.prefix_words(context, [executable])
+        return not self.process_description.prefix_arguments(context, [executable])
 
     def _host(self, context: LaunchContext, package: str, executable: str, added: Sequence[Any]) -> str:
         from linkwright.nodes.options import default_name
@@ -345,15 +353,15 @@ class Node(ExecuteProcess):
         namespace = self.__expanded_node_namespace
         namespace = "/" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace
         name = None if self.__node_name is None else self.__expanded_node_name
-        arguments = [_text(context, word) for word in _listed(self.__arguments)]
+        arguments = [_text(context, argument) for argument in _as_list(self.__arguments)]
         if self.__ros_arguments is not None:
-            arguments += ["--ros-args", *(_text(context, word) for word in _listed(self.__ros_arguments))]
+            arguments += ["--ros-args", *(_text(context, word) for word in _as_list(self.__ros_arguments))]
         arguments += [_text(context, word) for word in added]
         base_name = self.process_description.base_name(context, [executable])
         own_name = name or default_name(package, executable)
         full_name = f"{namespace.rstrip('/')}/{own_name or executable}"
         if (
-            name is None and own_name is not None and package != _CONTAINERS
+            name is None and own_name is not None and package != _CONTAINER_PACKAGE
         ):  # other nodes were checked before, or cannot be checked
             self.__node_parameters.check(context, full_name, self.place)
         plan = HostedPlan(
@@ -380,10 +388,10 @@ class Node(ExecuteProcess):
     # --- in a separate process --------------------------------------------------------------------------------
 
     def _run(self, context: LaunchContext, package: str | None, executable: str) -> str:
-        arguments = [perform_substitutions(context, word) for word in self.cmd[1:]]
-        return self._start(context, [*self._program(context, package, executable), *arguments])
+        arguments = [perform_substitutions(context, argument) for argument in self.cmd[1:]]
+        return self._start(context, [*self._program_command(context, package, executable), *arguments])
 
-    def _program(self, context: LaunchContext, package: str | None, executable: str) -> list[str]:
+    def _program_command(self, context: LaunchContext, package: str | None, executable: str) -> list[str]:
         if package is None:
             return [executable]
         try:
@@ -409,28 +417,28 @@ class Node(ExecuteProcess):
 
 
 class _DeferredArgument(Substitution):
-    """A command-line argument that is known only when the action starts the node.
+    """A command-line argument that is evaluated only when the action starts the node.
 
     Args:
-        what: the name of the argument in listings.
-        word: the function that returns the argument.
+        name: the name of the argument in listings.
+        get_argument: returns the argument.
     """
 
-    def __init__(self, what: str, word: Callable[[], str]) -> None:
-        self._what = what
-        self._word = word
+    def __init__(self, name: str, get_argument: Callable[[], str]) -> None:
+        self._name = name
+        self._get_argument = get_argument
 
     def describe(self) -> str:
         """Return a text with the name of the argument."""
-        return f"LocalVar('ros_specific_arguments['{self._what}']')"
+        return f"LocalVar('ros_specific_arguments['{self._name}']')"
 
     def perform(self, context: LaunchContext) -> str:
         """Return the argument."""
-        return self._word()
+        return self._get_argument()
 
 
-def _listed(values: Any) -> list[Any]:
-    """Return one or several arguments as a list, which is empty for None."""
+def _as_list(values: Any) -> list[Any]:
+    """Return an argument or several arguments as a list, which is empty for None."""
     if values is None:
         return []
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)

@@ -1,6 +1,6 @@
-"""Extensions of the node action.
+"""Extensions of the action `Node`.
 
-Extensions are provided by users' packages and run before a node is started.
+Users' packages provide extensions, which run before a node is started.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
 
 GROUP = "launch_ros.node_action"
-"""The entry point group of launch_ros."""
+"""The entry point group of node extensions, which is that of launch_ros."""
 
 
 class NodeActionExtension:
     """The base class of extensions of `Node`.
 
     Attributes:
-        NAME: the name of the extension's entry point, if it has one.
-        EXTENSION_POINT_VERSION: the version of the interface that the extension implements.
+        NAME: the name of the entry point of the extension; None before it is loaded.
+        EXTENSION_POINT_VERSION: the version of this interface that the extension implements.
     """
 
     NAME: str | None = None
@@ -34,15 +34,15 @@ class NodeActionExtension:
     def prepare_for_execute(
         self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Action
     ) -> tuple[Sequence[Any], dict[str, Any]]:
-        """Modify the arguments of a node before it is started.
+        """Change the arguments of a node before it is started.
 
         Args:
             context: the context of the launch.
-            ros_specific_arguments: the given ``name`` and ``ns``, such as ``__node:=talker``.
+            ros_specific_arguments: the arguments for ``name`` and ``ns`` that are set, such as ``__node:=talker``.
             node_action: the action that starts the node.
 
         Returns:
-            Substitutions to append to the command line, and the arguments, which may be modified.
+            Substitutions to append to the command line, and the changed or unchanged ROS-specific arguments.
         """
         del context, node_action
         return [], ros_specific_arguments
@@ -55,13 +55,13 @@ def node_extensions() -> tuple[NodeActionExtension, ...]:
     Raises:
         LinkwrightError: LAUNCH155, an extension cannot be loaded.
     """
-    found = []
-    for name, entry in extensions(GROUP).items():
+    node_extensions_list = []
+    for name, entry_point in extensions(GROUP).items():
         try:
-            extension = entry.load()()
+            extension = entry_point.load()()
         except Exception as error:
             message = phrase("the node extension '{name}' cannot be loaded: {error}", name=name, error=foreign(error))
             raise LinkwrightError(Diagnostic("LAUNCH155", message)) from error
         extension.NAME = name
-        found.append(extension)
-    return tuple(found)
+        node_extensions_list.append(extension)
+    return tuple(node_extensions_list)

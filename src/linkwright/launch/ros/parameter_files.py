@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 class ParameterFile(Placed):
-    """A parameter file.
+    """A file with parameters for nodes.
 
     Args:
         param_file: the path of the file.
@@ -52,51 +52,53 @@ class ParameterFile(Placed):
         *,
         allow_substs: bool | SomeSubstitutionsType = False,
     ) -> None:
-        self._evaluated: Path | None = None
-        self._allowed: bool | None = None
+        self._evaluated_path: Path | None = None
+        self._allows_substitutions: bool | None = None
         self._source: SourceText | None = None
         self._is_temporary = False
         self._rules: ParameterRules | None = None
-        given = os.fspath(param_file) if isinstance(param_file, os.PathLike) else param_file
+        path = os.fspath(param_file) if isinstance(param_file, os.PathLike) else param_file
         try:
-            self._param_file = normalize_to_list_of_substitutions(given)
+            self._param_file = normalize_to_list_of_substitutions(path)
             self._allow_substs = normalize_typed_substitution(allow_substs, bool)
         except (TypeError, ValueError) as error:
             raise error_at(
-                self.place, "LAUNCH133", phrase("a parameter file: {error}", error=foreign(error)), ros_error=error
+                self.place,
+                "LAUNCH133",
+                phrase(("the arguments of ParameterFile are not valid: {error}"), error=foreign(error)),
+                ros_error=error,
             ) from error
 
     @property
     def param_file(self) -> list[Substitution] | Path:
         """The path of the file as substitutions, or the path that `evaluate` returned."""
-        return self._param_file if self._evaluated is None else self._evaluated
+        return self._param_file if self._evaluated_path is None else self._evaluated_path
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions in the file are evaluated.
+        """Whether substitutions in the file are evaluated; before `evaluate`, possibly a list of substitutions.
 
-        Before `evaluate`, the value may contain substitutions.
+        After `evaluate`, the value is a boolean.
         """
-        return self._allow_substs if self._allowed is None else self._allowed
+        return self._allow_substs if self._allows_substitutions is None else self._allows_substitutions
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """Return the path of the file, or of a temporary copy with evaluated substitutions.
+        """Return the path of the file, or of a temporary copy in which substitutions are evaluated.
 
         Raises:
-            LinkwrightError: LAUNCH133, the errors in a file with substitutions; the error is also a
-                SubstitutionFailure.
+            LinkwrightError: LAUNCH133, a file with substitutions has errors; the error is also a SubstitutionFailure.
         """
-        if self._evaluated is None:
+        if self._evaluated_path is None:
             path = Path(perform_substitutions(context, self._param_file))
-            self._allowed = bool(perform_typed_substitution(context, self._allow_substs, bool))
-            self._evaluated = self._substituted(path, context) if self._allowed else path
-        return self._evaluated
+            self._allows_substitutions = bool(perform_typed_substitution(context, self._allow_substs, bool))
+            self._evaluated_path = self._write_evaluated_copy(path, context) if self._allows_substitutions else path
+        return self._evaluated_path
 
     def rules(self, context: LaunchContext) -> ParameterRules:
         """Return the parameter rules of the file.
 
         Raises:
-            LinkwrightError: LAUNCH133, the errors in the file.
+            LinkwrightError: LAUNCH133, the file has errors.
         """
         from linkwright.graph.parameters.files import parse_parameters
 
@@ -111,17 +113,17 @@ class ParameterFile(Placed):
         return self._rules
 
     def cleanup(self) -> None:
-        """Delete the temporary file, if there is one."""
-        if self._is_temporary and self._evaluated is not None:
+        """Delete the temporary copy of the file, if there is one."""
+        if self._is_temporary and self._evaluated_path is not None:
             with suppress(OSError):
-                self._evaluated.unlink()
-            self._evaluated, self._rules, self._is_temporary = None, None, False
+                self._evaluated_path.unlink()
+            self._evaluated_path, self._rules, self._is_temporary = None, None, False
 
     def __del__(self) -> None:
         if getattr(self, "_is_temporary", False):
             self.cleanup()
 
-    def _substituted(self, path: Path, context: LaunchContext) -> Path:
+    def _write_evaluated_copy(self, path: Path, context: LaunchContext) -> Path:
         import tempfile
 
         from linkwright.launch.ros.parameter_files import substitute_text
@@ -148,53 +150,54 @@ class ParameterFile(Placed):
                 pass
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
-            problem = getattr(error, "problem", None) or str(error)
+            reason = getattr(error, "problem", None) or str(error)
             span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
             message = phrase(
-                "parameter file is not YAML after its substitutions are evaluated: {problem}", problem=foreign(problem)
+                "the parameter file is not valid YAML after its substitutions were evaluated: {problem}",
+                problem=foreign(reason),
             )
             failure = SubstitutionFailure("The substituted parameter file is not a valid yaml file")
-            found = error_at(None, "LAUNCH133", message, ros_error=failure)
-            found.diagnostics = (Diagnostic("LAUNCH133", message, span, source=source),)
-            raise located(found, self.place) from error
+            error_with_place = error_at(None, "LAUNCH133", message, ros_error=failure)
+            error_with_place.diagnostics = (Diagnostic("LAUNCH133", message, span, source=source),)
+            raise located(error_with_place, self.place) from error
 
 
 def _read(path: Path, place: Place | None) -> SourceText:
     name = source_of(str(path))
-    shown = display_path(name)
+    shown_path = display_path(name)
     try:
         return SourceText(name, read_text(path))
     except FileNotFoundError as error:
-        message, hint = phrase("parameter file '{shown}' does not exist", shown=shown), missing_file_hint(path)
+        message, hint = phrase("parameter file '{shown}' does not exist", shown=shown_path), missing_file_hint(path)
         raise error_at(place, "LAUNCH133", message, hint, ros_error=error) from error
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise error_at(
             place,
             "LAUNCH133",
-            phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown, reason=foreign(reason)),
+            phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown_path, reason=foreign(reason)),
         ) from error
 
 
-_OPENING = re.compile(r"(?<!\\)\$\(")
+_SUBSTITUTION_START = re.compile(r"(?<!\\)\$\(")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*", re.MULTILINE)
-_QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\n]|'')*'")
+_QUOTED_TEXT = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\n]|'')*'")
 
 
 def substitute_text(source: SourceText, context: LaunchContext) -> str:
-    """Return the text of a YAML file with its substitutions evaluated, except in comments.
+    """Return the text of a YAML file in which the substitutions outside of comments are evaluated.
 
     Raises:
-        LinkwrightError: LAUNCH119 and others, with the location of a substitution that is unknown or has no value.
+        LinkwrightError: LAUNCH119 and others, a substitution is unknown or has no value; the error has its location.
     """
     Parser.load_launch_extensions()
     text = source.text
-    comments = list(_comments(text))
-    parts: list[str] = []
-    done = 0
-    for opening in _OPENING.finditer(text):
-        start = opening.start()
-        if start < done or any(begin <= start < end for begin, end in comments):
+    comments = list(_comment_spans(text))
+    chunks: list[str] = []
+    end_offset = 0
+    for match in _SUBSTITUTION_START.finditer(text):
+        start = match.start()
+        if start < end_offset or any(begin <= start < end for begin, end in comments):
             continue
         end = _substitution_end(text, start)
         place = MarkupPlace(source, start, end)
@@ -202,13 +205,13 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
             value = perform_substitutions(context, parse_substitution(PlacedText(text[start:end], place)))
         except LinkwrightError as error:
             raise located(error, place) from error
-        parts += [text[done:start], value]
-        done = end
-    return "".join([*parts, text[done:]])
+        chunks += [text[end_offset:start], value]
+        end_offset = end
+    return "".join([*chunks, text[end_offset:]])
 
 
 def _substitution_end(text: str, start: int) -> int:
-    """Return the offset after the substitution that starts at an offset.
+    """Return the end offset of the substitution that starts at a given offset.
 
     If it has no closing parenthesis, the result is the end of the line.
     """
@@ -224,8 +227,8 @@ def _substitution_end(text: str, start: int) -> int:
     return line_end if line_end >= 0 else len(text)
 
 
-def _comments(text: str) -> Iterator[tuple[int, int]]:
-    quoted = [match.span() for match in _QUOTED.finditer(text)]
+def _comment_spans(text: str) -> Iterator[tuple[int, int]]:
+    quoted_spans = [match.span() for match in _QUOTED_TEXT.finditer(text)]
     for comment in _COMMENT.finditer(text):
-        if not any(begin < comment.start() < end for begin, end in quoted):
+        if not any(begin < comment.start() < end for begin, end in quoted_spans):
             yield comment.span()

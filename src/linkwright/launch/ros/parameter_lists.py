@@ -1,8 +1,8 @@
-"""Normalization and evaluation of a node's ``parameters`` (``launch_ros.utilities``).
+"""Normalization and evaluation of the ``parameters`` of a node (``launch_ros.utilities``).
 
-Parameters are normalized, and thus checked, when the node is created. Paths become `ParameterFile` objects.
-Dictionaries become flat: their names are tuples of substitutions, and their values are plain values or tuples of
-substitutions. Evaluation converts each item to a path, a dictionary of values by name, or a `Parameter`.
+Parameters are normalized, and thereby checked, when the node is created. Paths become `ParameterFile` objects. Nested
+dictionaries become flat dictionaries, with tuples of substitutions as names, and with plain values or tuples of
+substitutions as values. Evaluation turns each item into a path, a dictionary of values by name, or a `Parameter`.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ NormalizedDict = dict[Name, Any]
 
 
 class PlainItem(TextSubstitution):
-    """A literal item among substitutions, which keeps its type: a string is not read as YAML.
+    """A literal item among substitutions, which keeps its type. For example, a string is not read as YAML.
 
     Attributes:
-        value: the value.
+        value: the literal.
     """
 
     def __init__(self, value: Any) -> None:
@@ -40,23 +40,23 @@ class PlainItem(TextSubstitution):
 
 
 def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
-    """Normalize the ``parameters`` of a node.
+    """Return the ``parameters`` of a node as normalized items.
 
     Raises:
-        LinkwrightError: LAUNCH132, the parameters are not a list, or an item is invalid; the error is also a TypeError.
+        LinkwrightError: LAUNCH132, the parameters are not a list, or an item is not valid; also a TypeError.
     """
     place = Place.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
         ros_error = TypeError(f"Expecting list of parameters, got {parameters}")
         hint = phrase("put it into a list: parameters=[...]")
         raise error_at(place, "LAUNCH132", phrase("'parameters' of a node must be a list"), hint, ros_error=ros_error)
-    return tuple(_normalized_item(item, place) for item in parameters)
+    return tuple(_normalize_item(item, place) for item in parameters)
 
 
 def normalize_parameter_dict(
     parameters: Mapping[Any, Any], *, _prefix: Sequence[Substitution] | None = None
 ) -> NormalizedDict:
-    """Normalize a dictionary of parameters.
+    """Return a normalized dictionary of parameters.
 
     The names in nested dictionaries are joined with dots.
 
@@ -67,32 +67,32 @@ def normalize_parameter_dict(
         raise TypeError("expected dict")
     normalized: NormalizedDict = {}
     for key, value in parameters.items():
-        name = _normalized_name(key)
+        name = _normalize_name(key)
         if _prefix:
             name = (*_prefix, TextSubstitution(text="."), *name)
         if isinstance(value, Mapping):
             normalized.update(normalize_parameter_dict(value, _prefix=name))
         else:
-            normalized[name] = _normalized_value(value, key)
+            normalized[name] = _normalize_value(value, key)
     return normalized
 
 
 def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tuple[Any, ...]:
-    """Evaluate each normalized parameter to a path, a dictionary or a `Parameter`.
+    """Return the value of each normalized parameter: a path, a dictionary or a `Parameter`.
 
     Raises:
-        LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
+        LinkwrightError: LAUNCH132 or LAUNCH133, a value or a file has errors.
     """
-    return tuple(_evaluated_item(context, item) for item in parameters)
+    return tuple(_evaluate_item(context, item) for item in parameters)
 
 
 def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) -> dict[str, Any]:
-    """Evaluate a normalized dictionary, and return the values by name.
+    """Return the evaluated values of a normalized dictionary by name.
 
     Lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, the errors in a value; the error is also a TypeError.
+        LinkwrightError: LAUNCH132, a value has errors; the error is also a TypeError.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")
@@ -101,14 +101,14 @@ def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) 
         if not isinstance(key, tuple):
             raise TypeError(f"Expecting tuple of substitutions got {key!r}")
         name = perform_substitutions(context, key)
-        evaluated[name] = _evaluated_value(context, name, value)
+        evaluated[name] = _evaluate_value(context, name, value)
     return evaluated
 
 
 # --- normalization ----------------------------------------------------------------------------------------------
 
 
-def _normalized_item(item: Any, place: Place | None) -> Any:
+def _normalize_item(item: Any, place: Place | None) -> Any:
     if isinstance(item, Mapping):
         return normalize_parameter_dict(item)
     if isinstance(item, (Parameter, ParameterFile)):
@@ -120,7 +120,7 @@ def _normalized_item(item: Any, place: Place | None) -> Any:
     raise error_at(place, "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
-def _normalized_name(key: Any) -> Name:
+def _normalize_name(key: Any) -> Name:
     try:
         return tuple(normalize_to_list_of_substitutions(key))
     except TypeError as error:
@@ -128,7 +128,7 @@ def _normalized_name(key: Any) -> Name:
         raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=error) from error
 
 
-def _normalized_value(value: Any, key: Any) -> Any:
+def _normalize_value(value: Any, key: Any) -> Any:
     if isinstance(value, str):
         return (PlainItem(value),)
     if isinstance(value, Substitution):
@@ -136,10 +136,12 @@ def _normalized_value(value: Any, key: Any) -> Any:
     if isinstance(value, (bool, int, float, bytes, ParameterValue)):
         return value
     if isinstance(value, Sequence):
-        return _normalized_sequence(value, key)
-    shown = key if isinstance(key, str) else "..."
+        return _normalize_sequence(value, key)
+    shown_name = key if isinstance(key, str) else "..."
     if isinstance(value, Path):
-        message = phrase("parameter '{shown}' is a Path", shown=shown)
+        message = phrase(
+            ("the value of parameter '{shown}' is a Path, which is not a parameter type"), shown=shown_name
+        )
         raise error_at(
             Place.of_caller(),
             "LAUNCH132",
@@ -148,23 +150,25 @@ def _normalized_value(value: Any, key: Any) -> Any:
             ros_error=TypeError(message),
         )
     message = phrase(
-        "parameter '{shown}' is of type {name}, which is not a parameter type", shown=shown, name=type(value).__name__
+        "parameter '{shown}' is of type {name}, which is not a parameter type",
+        shown=shown_name,
+        name=type(value).__name__,
     )
     ros_error = TypeError(f"Unexpected type for parameter value {value!r}")
     raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=ros_error)
 
 
-def _normalized_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
-    kinds = {_item_kind(item, key) for item in items}
-    if kinds <= {int, float}:
-        return tuple(items) if len(kinds) < 2 else tuple(float(item) for item in items)
-    if kinds <= {str}:
+def _normalize_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
+    item_kinds = {_item_kind(item, key) for item in items}
+    if item_kinds <= {int, float}:
+        return tuple(items) if len(item_kinds) < 2 else tuple(float(item) for item in items)
+    if item_kinds <= {str}:
         return tuple(items)
-    if kinds == {bool}:
+    if item_kinds == {bool}:
         return tuple(items)
-    if Substitution in kinds and kinds <= {str, Substitution}:
+    if Substitution in item_kinds and item_kinds <= {str, Substitution}:
         return tuple(normalize_to_list_of_substitutions(items))
-    # The items are evaluated separately: strings and other values are literal, and each substitution is read as YAML.
+    # The items are evaluated separately. Strings and other values are literals, and each substitution is read as YAML.
     return tuple(
         tuple(normalize_to_list_of_substitutions(item))
         if isinstance(item, (Substitution, list, tuple))
@@ -174,14 +178,14 @@ def _normalized_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
 
 
 def _item_kind(item: Any, key: Any) -> type:
-    for kind in (Substitution, str, bool, int, float):
-        if isinstance(item, kind):
-            return kind
-    if isinstance(item, (list, tuple)) and all(isinstance(part, (str, Substitution)) for part in item):
+    for item_type in (Substitution, str, bool, int, float):
+        if isinstance(item, item_type):
+            return item_type
+    if isinstance(item, (list, tuple)) and all(isinstance(element, (str, Substitution)) for element in item):
         return tuple
-    shown = key if isinstance(key, str) else "..."
+    shown_name = key if isinstance(key, str) else "..."
     message = phrase(
-        "the list of parameter '{shown}' contains an item of type {name}", shown=shown, name=type(item).__name__
+        "the list of parameter '{shown}' contains an item of type {name}", shown=shown_name, name=type(item).__name__
     )
     hint = phrase("items must be of type bool, int, float or str")
     raise error_at(Place.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
@@ -190,7 +194,7 @@ def _item_kind(item: Any, key: Any) -> type:
 # --- evaluation -------------------------------------------------------------------------------------------------
 
 
-def _evaluated_item(context: LaunchContext, item: Any) -> Any:
+def _evaluate_item(context: LaunchContext, item: Any) -> Any:
     if isinstance(item, ParameterFile):
         return item.evaluate(context)
     if isinstance(item, Mapping):
@@ -200,20 +204,22 @@ def _evaluated_item(context: LaunchContext, item: Any) -> Any:
     return item
 
 
-def _evaluated_value(context: LaunchContext, name: str, value: Any) -> Any:
+def _evaluate_value(context: LaunchContext, name: str, value: Any) -> Any:
     if isinstance(value, ParameterValue):
         return value.evaluate(context, name)
     if not isinstance(value, tuple) or not value:
         return value
     if isinstance(value[0], Substitution):
-        return _evaluated_text(context, name, value)
+        return _evaluate_text(context, name, value)
     if isinstance(value[0], tuple):
-        place = next((part.place for item in value for part in item if part.place is not None), None)
-        return uniform([_evaluated_text(context, name, item) for item in value], name, place)
+        place = next(
+            (substitution.place for item in value for substitution in item if substitution.place is not None), None
+        )
+        return uniform([_evaluate_text(context, name, item) for item in value], name, place)
     return value
 
 
-def _evaluated_text(context: LaunchContext, name: str, parts: tuple[Substitution, ...]) -> Any:
-    if len(parts) == 1 and isinstance(parts[0], PlainItem):
-        return parts[0].value
-    return parse_yaml_value(perform_substitutions(context, parts), name, parts[0].place)
+def _evaluate_text(context: LaunchContext, name: str, substitutions: tuple[Substitution, ...]) -> Any:
+    if len(substitutions) == 1 and isinstance(substitutions[0], PlainItem):
+        return substitutions[0].value
+    return parse_yaml_value(perform_substitutions(context, substitutions), name, substitutions[0].place)

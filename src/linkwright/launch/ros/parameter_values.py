@@ -1,7 +1,7 @@
 """Values of node parameters (``launch_ros.parameter_descriptions``).
 
-The values may contain substitutions, which evaluate to text. As in launch_ros, ``value_type`` sets the type of the
-parameter. If ``value_type`` is not given, YAML's rules determine the type.
+The values may contain substitutions, which evaluate to text. As in launch_ros, ``value_type`` is the type of the
+parameter. Without ``value_type``, YAML's rules determine the type.
 """
 
 from __future__ import annotations
@@ -21,28 +21,28 @@ from linkwright.launch.model.substitution import (
 )
 
 SCALARS = (bool, int, float, str)
-AS_TEXT = phrase(
+STRING_HINT = phrase(
     "declare it as a string: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions"
 )
 
-_UNIFORM = (
+_UNIFORM_TEXT = (
     "Expected a non-empty sequence, with items of uniform type. Allowed sequence item types are bool, int, float, str."
 )
-_ALLOWED = (
+_ALLOWED_TEXT = (
     "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], Sequence[float], "
     "Sequence[str]. Got {}."
 )
 
 
 class ParameterValue(Placed):
-    """A parameter value with a type.
+    """The value of a parameter, with an optional type.
 
     Args:
         value: the value, or substitutions that evaluate to the text of the value.
-        value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's rules.
+        value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None to apply YAML's rules.
 
     Raises:
-        TypeError: the value cannot be of that type.
+        TypeError: the value cannot have this type.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
@@ -52,7 +52,7 @@ class ParameterValue(Placed):
             raise error_at(
                 self.place,
                 "LAUNCH132",
-                phrase("the value of a parameter: {error}", error=foreign(error)),
+                phrase("the value of a parameter is not valid: {error}", error=foreign(error)),
                 ros_error=error,
             ) from error
         self._value_type = value_type
@@ -60,26 +60,26 @@ class ParameterValue(Placed):
 
     @property
     def value(self) -> Any:
-        """The given value, with substitutions as lists, or the evaluated value after `evaluate`."""
+        """The value: normalized before `evaluate`, with its type after it."""
         return self._value if self._evaluated is None else self._evaluated
 
     @property
     def value_type(self) -> Any:
-        """The type of the value, or None for YAML's rules."""
+        """The type of the value; None if YAML's rules determine it."""
         return self._value_type
 
     def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
-        """Evaluate the value, and return it in its type.
+        """Return the evaluated value in its type.
 
         Args:
-            context: the context of the substitutions.
-            name: the parameter's name, for messages.
+            context: the launch context for the substitutions.
+            name: the name of the parameter, for messages; None if it is not known.
 
         Raises:
             LinkwrightError: LAUNCH132, the text is not a value of the type. As in launch_ros, the error is also a
                 ValueError or TypeError.
         """
-        called = phrase("parameter '{name}'", name=name) if name else phrase("the value of a parameter")
+        subject = phrase("parameter '{name}'", name=name) if name else phrase("the value of a parameter")
         try:
             self._evaluated = perform_typed_substitution(context, self._value, self._value_type)
         except LinkwrightError as error:
@@ -88,14 +88,14 @@ class ParameterValue(Placed):
             expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
             if self._value_type is None:
                 message = phrase(
-                    "{called} has no type and is read as YAML: {error}",
-                    called=called,
+                    "{called} has no type, so it is read as YAML, which fails: {error}",
+                    called=subject,
                     error=foreign(error),
                 )
-                raise error_at(self.place, "LAUNCH132", message, AS_TEXT, ros_error=error) from error
+                raise error_at(self.place, "LAUNCH132", message, STRING_HINT, ros_error=error) from error
             message = phrase(
                 "{called} is not of the requested type {expected}: {error}",
-                called=called,
+                called=subject,
                 expected=expected,
                 error=foreign(error),
             )
@@ -104,7 +104,7 @@ class ParameterValue(Placed):
 
 
 class Parameter:
-    """A parameter for the ``parameters`` of a node.
+    """A parameter in the ``parameters`` of a node.
 
     Args:
         name: the name of the parameter.
@@ -124,21 +124,21 @@ class Parameter:
 
     @property
     def name(self) -> list[Substitution] | str:
-        """The name as substitutions, or as text after `evaluate`."""
+        """The name: substitutions before `evaluate`, text after it."""
         return self._name if self._rule is None else self._rule[0]
 
     @property
     def value(self) -> Any:
-        """The value, see `ParameterValue.value`."""
+        """The value, as in `ParameterValue.value`."""
         return self._parameter_value.value
 
     @property
     def value_type(self) -> Any:
-        """The type of the value, or None for YAML's rules."""
+        """The type of the value; None if YAML's rules determine it."""
         return self._parameter_value.value_type
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Evaluate and return the name and the value.
+        """Return the evaluated name and value.
 
         Raises:
             LinkwrightError: LAUNCH132, the text is not a value of the type.
@@ -150,7 +150,7 @@ class Parameter:
 
 
 def parse_yaml_value(text: str, name: str, place: Place | None) -> Any:
-    """Parse the text of a parameter without a type as YAML, as launch_ros does.
+    """Return the value of a parameter without a type, whose text is read as YAML as in launch_ros.
 
     Lists become tuples.
 
@@ -158,81 +158,82 @@ def parse_yaml_value(text: str, name: str, place: Place | None) -> Any:
         LinkwrightError: LAUNCH132, the text is not YAML, or its value is not valid for a parameter. As in launch_ros,
             the error is also a TypeError.
     """
-    value = _loaded(text, name, place)
+    value = _load_yaml(text, name, place)
     if value is None:
         return ""
     if isinstance(value, str):
-        # YAML folds the lines of a plain text. XML is returned unfolded, which has the same meaning and keeps the
-        # locations in
-        # it correct.
+        # YAML folds the lines of a plain text. XML is returned unfolded, which has the same meaning and keeps its
+        # locations correct.
         return text if text.lstrip().startswith("<") else value
     if isinstance(value, (*SCALARS, bytes)):
         return value
     if isinstance(value, list):
         return uniform(value, name, place)
     message = phrase(
-        "parameter '{name}' has no type, is read as YAML and becomes {kind}, which is not a parameter type",
+        "parameter '{name}' has no type; read as YAML, its value is {kind}, which is not a parameter type",
         name=name,
-        kind=_kind(value),
+        kind=_describe_type(value),
     )
-    ros_error = TypeError(_ALLOWED.format(type(value)))
-    raise error_at(place, "LAUNCH132", message, AS_TEXT, ros_error=ros_error)
+    ros_error = TypeError(_ALLOWED_TEXT.format(type(value)))
+    raise error_at(place, "LAUNCH132", message, STRING_HINT, ros_error=ros_error)
 
 
 def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
-    """Check that all items of a list parameter have one valid type, and return them as a tuple.
+    """Return the items of a list parameter as a tuple, if they all have the same valid type.
 
     Raises:
-        LinkwrightError: LAUNCH132, the types differ or are not valid, or the list is empty. As in launch_ros, the error
-            is also a TypeError.
+        LinkwrightError: LAUNCH132, the types differ or are not valid, or the list is empty. As in launch_ros, the
+            error is also a TypeError.
     """
-    kinds = {type(item) for item in items}
-    if len(kinds) == 1 and kinds <= set(SCALARS):
+    item_types = {type(item) for item in items}
+    if len(item_types) == 1 and item_types <= set(SCALARS):
         return tuple(items)
     if not items:
-        found = phrase("an empty list, whose type is unknown")
-    elif len(kinds) > 1:
-        found = phrase("a list of mixed items ({kinds})", kinds=joined(sorted(kind.__name__ for kind in kinds)))
+        description = phrase("an empty list, whose type is unknown")
+    elif len(item_types) > 1:
+        description = phrase(
+            "a list of mixed items ({kinds})", kinds=joined(sorted(item_type.__name__ for item_type in item_types))
+        )
     else:
-        found = phrase("a list of items of type {kind}", kind=next(iter(kinds)).__name__)
-    message = phrase("parameter '{name}' becomes {found}, which is not a parameter type", name=name, found=found)
+        description = phrase("a list of items of type {kind}", kind=next(iter(item_types)).__name__)
+    message = phrase("parameter '{name}' is {found}, which is not a parameter type", name=name, found=description)
     raise error_at(
         place,
         "LAUNCH132",
         message,
         phrase("give all items one type: bool, int, float or str"),
-        ros_error=TypeError(_UNIFORM),
+        ros_error=TypeError(_UNIFORM_TEXT),
     )
 
 
-def _loaded(text: str, name: str, place: Place | None) -> Any:
+def _load_yaml(text: str, name: str, place: Place | None) -> Any:
     import yaml
 
     try:
         return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - the safe loader, in C
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-        problem = foreign(problem)
+        reason = getattr(error, "problem", None) or str(error).splitlines()[0]
+        reason = foreign(reason)
         if mark is not None:
-            problem = phrase(
-                "{problem} in its line {line}, column {column}",
-                problem=problem,
+            reason = phrase(
+                "{problem} in line {line}, column {column} of its value",
+                problem=reason,
                 line=mark.line + 1,
                 column=mark.column + 1,
             )
         message = phrase(
             "parameter '{name}' has no type and is not YAML: {problem}",
             name=name,
-            problem=problem,
+            problem=reason,
         )
         ros_error = TypeError(
             f"Unable to parse the value of parameter {name} as yaml. If the parameter is meant to be a string, try "
             "wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
         )
-        raise error_at(place, "LAUNCH132", message, AS_TEXT, ros_error=ros_error) from error
+        raise error_at(place, "LAUNCH132", message, STRING_HINT, ros_error=ros_error) from error
 
 
-def _kind(value: Any) -> Phrase:
+def _describe_type(value: Any) -> Phrase:
     names = {dict: phrase("a mapping"), list: phrase("a list of mixed items"), type(None): phrase("nothing")}
     return names.get(type(value)) or phrase("of type {type_name}", type_name=type(value).__name__)

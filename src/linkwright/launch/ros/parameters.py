@@ -1,6 +1,6 @@
 """The parameters of a node.
 
-They are set, in increasing order of precedence, by the scope of the node and by its own list of files and values.
+They come, in increasing order of precedence, from the scope of the node and from its own list of files and values.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ ANY_NODE = "/**"
 
 @dataclass(frozen=True)
 class FileSource:
-    """A parameter file.
+    """A parameter file of a node.
 
     Attributes:
-        file: the file as this process reads it.
-        path: the path that is passed to other processes.
+        file: the file that this process reads.
+        path: the path of the file that is passed to other processes.
     """
 
     file: ParameterFile
@@ -46,43 +46,43 @@ class FileSource:
 
 @dataclass
 class NodeParameters:
-    """The parameters of a node.
+    """The parameters of a node, from several sources.
 
     Attributes:
-        sources: files, dictionaries of values, and pairs `(name, value)`; later ones take precedence.
+        sources: files, dictionaries of values, and pairs ``(name, value)``. Later sources take precedence.
     """
 
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
     def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
-        """Return the parameters without missing files, and warn about each missing file.
+        """Return the parameters without the files that do not exist, and warn about each of these.
 
-        launch_ros also ignores missing files.
+        launch_ros also ignores files that do not exist.
 
         Args:
-            context: the context of the launch, for the warnings (LAUNCH133).
-            place: the location of the node.
+            context: the launch context, which receives the warnings (LAUNCH133).
+            place: the location of the node, for the warnings; None if it is unknown.
         """
-        found = NodeParameters()
+        node_parameters = NodeParameters()
         for source in self.sources:
             if isinstance(source, FileSource) and not source.path.is_file():
                 message = phrase("parameter file '{path}' does not exist", path=display_path(source.path))
                 _warn(context, "LAUNCH133", message, missing_file_hint(source.path), place)
             else:
-                found.sources.append(source)
-        return found
+                node_parameters.sources.append(source)
+        return node_parameters
 
     def check(self, context: LaunchContext, node: str | None, place: Place | None) -> None:
-        """Check the files before the node reads them.
+        """Report errors and warnings about the files before the node reads them.
 
         Args:
             context: the context of the launch, for warnings about files without parameters for the node (LAUNCH149) and
                 about skipped parameters (GRAPH212).
             node: the node's full name; None if it is not known.
-            place: the location of the node.
+            place: the location of the node, for the warnings; None if it is unknown.
 
         Raises:
-            LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
+            LinkwrightError: LAUNCH133 or GRAPH212, a file has errors.
         """
         for source in self.sources:
             if not isinstance(source, FileSource):
@@ -93,54 +93,56 @@ class NodeParameters:
             if node is None or not rules or rules.matches_node(node):
                 continue
             names = rules.patterns
-            message = phrase("no section of '{path}' is for node '{node}'", path=display_path(source.path), node=node)
+            message = phrase(
+                ("parameter file '{path}' has no section for node '{node}'"), path=display_path(source.path), node=node
+            )
             hint = did_you_mean(node, names) or phrase("it has sections for {names}", names=joined(names))
             _warn(context, "LAUNCH149", message, hint, place)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
-        """Return the parameter values by name, for a node in this process.
+        """Return the values of the parameters by name, for a node in this process.
 
         Args:
-            context: the context for files that are not evaluated yet.
-            node: the node's full name, which selects the values in files.
+            context: the launch context, for files that are not evaluated yet.
+            node: the full name of the node, which selects the values in files.
 
         Raises:
-            LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
+            LinkwrightError: LAUNCH133 or GRAPH212, a file has errors.
         """
-        found: dict[str, Any] = {}
+        values_by_name: dict[str, Any] = {}
         for source in self.sources:
             if isinstance(source, FileSource):
-                found.update(source.file.rules(context).for_node(node))
+                values_by_name.update(source.file.rules(context).for_node(node))
             elif isinstance(source, tuple):
-                found[source[0]] = source[1]
+                values_by_name[source[0]] = source[1]
             else:
-                found.update(source)
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
+                values_by_name.update(source)
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in values_by_name.items()}
 
     def rules(self, context: LaunchContext) -> ParameterRules:
         """Return the rules in the files, including the rules for other nodes of the process.
 
         Args:
-            context: the context for files that are not evaluated yet.
+            context: the launch context, for files that are not evaluated yet.
 
         Raises:
-            LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
+            LinkwrightError: LAUNCH133 or GRAPH212, a file has errors.
         """
-        found = ParameterRules()
+        rules = ParameterRules()
         for source in self.sources:
             if isinstance(source, FileSource):
-                found.add(source.file.rules(context))
-        return found
+                rules.add(source.file.rules(context))
+        return rules
 
     def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
         """Return the command-line arguments that pass the parameters to another process.
 
         Args:
-            node: the node's full name; None if it is not known.
+            node: the full name of the node; None if it is unknown.
             folder: the folder for files with the values of dictionaries; None for the system's temporary folder.
 
         Returns:
-            The arguments, each with whether it is the path of a file; otherwise it is a rule ``name:=value``.
+            Pairs of an argument and whether it is the path of a file. Otherwise, it is a rule ``name:=value``.
         """
         arguments: list[tuple[str, bool]] = []
         for source in self.sources:
@@ -159,38 +161,38 @@ def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | Non
     context.warn(Diagnostic(code, message, span, severity=Severity.WARNING, hint=hint, source=source))
 
 
-def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:
-    """Return the parameters that `SetParameter` and `SetParametersFromFile` set in a scope."""
-    found = NodeParameters()
-    for item in given:
+def scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParameters:
+    """Return the parameters of a scope, which `SetParameter` and `SetParametersFromFile` set."""
+    node_parameters = NodeParameters()
+    for item in items:
         if isinstance(item, tuple):
-            found.sources.append(item)
+            node_parameters.sources.append(item)
         else:
             file = item if isinstance(item, ParameterFile) else ParameterFile(item)
-            found.sources.append(FileSource(file, Path(os.path.abspath(file.evaluate(context)))))  # noqa: PTH100
-    return found
+            node_parameters.sources.append(FileSource(file, Path(os.path.abspath(file.evaluate(context)))))  # noqa: PTH100
+    return node_parameters
 
 
 def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
-    """Evaluate the normalized parameters of a node (see `normalize_parameters`).
+    """Return the evaluated parameters of a node, given its normalized parameters (see `normalize_parameters`).
 
     Raises:
-        LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
+        LinkwrightError: LAUNCH132 or LAUNCH133, a value or a file has errors.
     """
-    found = NodeParameters()
+    node_parameters = NodeParameters()
     for item, evaluated in zip(normalized, evaluate_parameters(context, normalized), strict=True):
         if isinstance(evaluated, Parameter):
-            found.sources.append(evaluated.evaluate(context))
+            node_parameters.sources.append(evaluated.evaluate(context))
         elif isinstance(evaluated, Path):
             file = item if isinstance(item, ParameterFile) else ParameterFile(evaluated)
-            found.sources.append(FileSource(file, evaluated))
+            node_parameters.sources.append(FileSource(file, evaluated))
         else:
-            found.sources.append(evaluated)
-    return found
+            node_parameters.sources.append(evaluated)
+    return node_parameters
 
 
 def rule(name: str, value: Any) -> str:
-    """Format a parameter for the command line as ``name:=value``, where the value is YAML."""
+    """Return a parameter in the form ``name:=value`` for the command line, where the value is YAML."""
     import yaml
 
     value = list(value) if isinstance(value, tuple) else value
@@ -199,17 +201,17 @@ def rule(name: str, value: Any) -> str:
 
 
 def write_parameter_file(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
-    """Write parameter values for a node to a new file, and return the path of the file.
+    """Write the parameter values of a node to a new file, and return the path of the file.
 
-    If the node's name is not known, the values are for any node.
+    If the name of the node is unknown, the values apply to all nodes that read the file.
     """
     import tempfile
 
     import yaml
 
-    plain = {str(name): str(value) if isinstance(value, str) else value for name, value in parameters.items()}
+    plain_values = {str(name): str(value) if isinstance(value, str) else value for name, value in parameters.items()}
     descriptor, path = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-        # Tuples are tagged as tuples, as in launch_ros; readers of parameter files ignore the tags.
-        yaml.dump({node or ANY_NODE: {"ros__parameters": plain}}, file, default_flow_style=False)
+        # Tuples are tagged as tuples, as in launch_ros. Readers of parameter files ignore the tags.
+        yaml.dump({node or ANY_NODE: {"ros__parameters": plain_values}}, file, default_flow_style=False)
     return path

@@ -1,4 +1,4 @@
-"""Parsing of the tags of nodes in XML and YAML launch files."""
+"""Parser for the tags of nodes in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ Entities = list[Entity]
 
 
 def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
-    """Add the keyword arguments of a node to the keyword arguments of a process.
+    """Return the keyword arguments of a process, extended by those of a node.
 
     Args:
         entity: the tag.
         parser: parses the substitutions in the tag.
-        kwargs: the keyword arguments read so far.
-        cls: the action's class, which reads command lines and parameters.
+        kwargs: the keyword arguments of the process, which are changed.
+        cls: the class of the action, whose methods parse command lines and parameters.
     """
     for attribute, keyword in (("args", "arguments"), ("ros_args", "ros_arguments")):
-        words = entity.get_attr(attribute, optional=True)
-        if words is not None:
-            kwargs[keyword] = cls._parse_cmdline(words, parser)
+        command_line = entity.get_attr(attribute, optional=True)
+        if command_line is not None:
+            kwargs[keyword] = cls._parse_cmdline(command_line, parser)
     kwargs.pop("name", None)  # the base class has read the process's name from the same attribute
     kwargs.update(parse_texts(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace"))
     kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
@@ -40,7 +40,7 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
 
 
 def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
-    """Return the keyword argument ``remappings`` for the ``remap`` tags inside.
+    """Return the keyword argument ``remappings`` for the ``remap`` tags inside a tag.
 
     The result is empty if there are no such tags.
     """
@@ -56,7 +56,7 @@ def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
 
 
 def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
-    """Return the parameters in ``param`` tags in the form of a node's ``parameters``.
+    """Return the parameters in ``param`` tags as values for a node's ``parameters``.
 
     Raises:
         RuntimeError: LAUNCH118, a tag has conflicting or missing attributes.
@@ -64,55 +64,57 @@ def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
     parameters: list[Any] = []
     for tag in tags:
         path = tag.get_attr("from", optional=True)
-        allow = tag.get_attr("allow_substs", data_type=bool, optional=True)
+        allow_substs = tag.get_attr("allow_substs", data_type=bool, optional=True)
         name = tag.get_attr("name", optional=True)
         if path is not None and name is not None:
-            raise _wrong(tag, phrase("name and from attributes are mutually exclusive"))
+            raise _tag_error(tag, phrase("the attributes 'name' and 'from' cannot be used together"))
         if path is not None:
-            allow = parser.parse_substitution(allow) if isinstance(allow, str) else bool(allow)
+            allow_substs = (
+                parser.parse_substitution(allow_substs) if isinstance(allow_substs, str) else bool(allow_substs)
+            )
             tag.assert_entity_completely_parsed()
-            parameters.append(ParameterFile(parser.parse_substitution(path), allow_substs=allow))
+            parameters.append(ParameterFile(parser.parse_substitution(path), allow_substs=allow_substs))
         elif name is not None:
-            if allow is not None:
-                raise _wrong(tag, phrase("'allow_substs' can only be used together with 'from' attribute"))
-            parameters.append(_nested([tag], parser))
+            if allow_substs is not None:
+                raise _tag_error(tag, phrase("the attribute 'allow_substs' needs the attribute 'from'"))
+            parameters.append(_parse_nested([tag], parser))
         else:
-            raise _wrong(tag, phrase("param Entity should have name or from attribute"), ValueError)
+            raise _tag_error(tag, phrase("it needs the attribute 'name' or 'from'"), ValueError)
     return parameters
 
 
-def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
+def _parse_nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
     from linkwright.launch.model.markup.values import get_data_type_from_identifier
 
-    found: dict[Any, Any] = {}
+    values: dict[Any, Any] = {}
     for tag in tags:
         name = tuple(parser.parse_substitution(tag.get_attr("name")))
         identifier = tag.get_attr("type", data_type=None, optional=True)
         data_type = None if identifier is None else get_data_type_from_identifier(identifier)
         value = tag.get_attr("value", data_type=data_type, optional=True)
-        inside = tag.get_attr("param", data_type=Entities, optional=True)
+        children = tag.get_attr("param", data_type=Entities, optional=True)
         tag.assert_entity_completely_parsed()
-        if value is not None and inside:
-            raise _wrong(tag, phrase("nested parameters and value attributes are mutually exclusive"))
-        if data_type is not None and inside:
-            raise _wrong(tag, phrase("nested parameters and type attributes are mutually exclusive"))
+        if value is not None and children:
+            raise _tag_error(tag, phrase("nested parameters and the attribute 'value' cannot be used together"))
+        if data_type is not None and children:
+            raise _tag_error(tag, phrase("nested parameters and the attribute 'type' cannot be used together"))
         if value is not None:
             try:
                 with reading_markup_at(tag.place):
-                    found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
+                    values[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
             except (TypeError, ValueError) as error:
                 raise _type_error(tag, value, identifier, error) from error
-        elif inside:
-            found[name] = _nested(inside, parser)
+        elif children:
+            values[name] = _parse_nested(children, parser)
         else:
-            raise _wrong(tag, phrase("either a value attribute or nested params are needed"))
-    return found
+            raise _tag_error(tag, phrase("it needs the attribute 'value' or nested parameters"))
+    return values
 
 
 def _type_error(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
-    """Return the error for a ``param`` tag whose value does not have its type.
+    """Return the error for a ``param`` tag with a value that is not of its type.
 
-    A LinkwrightError with a code other than LAUNCH132 is returned unchanged.
+    A LinkwrightError with another code than LAUNCH132 is returned unchanged.
     """
     if isinstance(error, LinkwrightError) and error.diagnostics[0].code != "LAUNCH132":
         return error
@@ -127,7 +129,7 @@ def _type_error(tag: Entity, value: Any, identifier: str | None, error: Exceptio
     return error_at(tag.place, "LAUNCH132", message, ros_error=error)
 
 
-def _wrong(tag: Entity, text: Phrase, kind: type[Exception] = RuntimeError) -> Exception:
+def _tag_error(tag: Entity, text: Phrase, kind: type[Exception] = RuntimeError) -> Exception:
     return error_at(
         tag.place,
         "LAUNCH118",

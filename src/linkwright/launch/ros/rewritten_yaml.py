@@ -1,6 +1,6 @@
 """The substitutions of ``nav2_common.launch`` that rewrite and query parameter files.
 
-The package ``nav2_common`` is part of Navigation2, but launch files of many robots use these substitutions.
+The package ``nav2_common`` is part of Nav2, but the launch files of many robots use these substitutions.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_TRUE = ("true", "on", "1", "yes")
-_POSE = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0)
-_PARAMETERS = "ros__parameters"
+_TRUE_TEXTS = ("true", "on", "1", "yes")
+_DEFAULT_POSE = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0)
+_PARAMETERS_KEY = "ros__parameters"
 
 
 class _YamlFileSubstitution(Substitution):
-    """The base class of substitutions on a YAML file."""
+    """The base class of substitutions that read a YAML file."""
 
     def __init__(self, source_file: SomeSubstitutionsType) -> None:
         self._source_file = normalize_to_list_of_substitutions(source_file)
@@ -74,17 +74,16 @@ class _YamlFileSubstitution(Substitution):
 
 
 class RewrittenYaml(_YamlFileSubstitution):
-    """The path of a new parameter file, which is a copy with replaced values.
+    """Evaluates to the path of a new parameter file, a copy in which values are replaced.
 
     Args:
         source_file: the file to copy.
-        param_rewrites: name -> value for all parameters with that name, or path with dots -> value for one parameter. A
-            path that contains ``ros__parameters`` is added if the file has no such parameter.
-        root_key: a root key under which the entire content is nested.
-        key_rewrites: name -> new name of keys.
-        value_rewrites: text -> new text of values.
-        convert_types: whether values that look like numbers become numbers; ``true`` and ``false`` are always
-            converted.
+        param_rewrites: maps the name of parameters, or the path of one parameter with dots, to a new value. A path
+            that contains ``ros__parameters`` is added if the file has no such parameter.
+        root_key: a key under which the entire content is nested; None to keep the content at the top.
+        key_rewrites: maps keys to new keys.
+        value_rewrites: maps the texts of values to new texts.
+        convert_types: whether texts of numbers become numbers; ``true`` and ``false`` always become booleans.
     """
 
     def __init__(
@@ -97,10 +96,10 @@ class RewrittenYaml(_YamlFileSubstitution):
         convert_types: bool = False,
     ) -> None:
         super().__init__(source_file)
-        self._values = _normalized(param_rewrites)
+        self._values = _normalize_rewrites(param_rewrites)
         self._root_key = None if root_key is None else normalize_to_list_of_substitutions(root_key)
-        self._keys = _normalized(key_rewrites or {})
-        self._texts = _normalized(value_rewrites or {})
+        self._key_rewrites = _normalize_rewrites(key_rewrites or {})
+        self._text_rewrites = _normalize_rewrites(value_rewrites or {})
         self._convert_types = convert_types
 
     def perform(self, context: LaunchContext) -> str:
@@ -112,31 +111,31 @@ class RewrittenYaml(_YamlFileSubstitution):
         import yaml
 
         content = self._load(context)
-        values = {name: self._converted(text) for name, text in _performed(context, self._values).items()}
-        content = _replace_texts(content, _performed(context, self._texts))
-        present = {".".join(path) for path in _value_paths(content)}
+        values = {name: self._convert(text) for name, text in _evaluate_rewrites(context, self._values).items()}
+        content = _replace_texts(content, _evaluate_rewrites(context, self._text_rewrites))
+        present_paths = {".".join(path) for path in _value_paths(content)}
         content = _replace_values(content, values, ())
         for path, value in values.items():
-            if path not in present and _PARAMETERS in path.split("."):
-                _add(content, path.split("."), value)
-        content = _replace_keys(content, _performed(context, self._keys))
+            if path not in present_paths and _PARAMETERS_KEY in path.split("."):
+                _add_value(content, path.split("."), value)
+        content = _replace_keys(content, _evaluate_rewrites(context, self._key_rewrites))
         root = "" if self._root_key is None else perform_substitutions(context, self._root_key)
         return _write_file(context, yaml.dump({root: content} if root else content), ".yaml")
 
-    def _converted(self, text: str) -> Any:
+    def _convert(self, text: str) -> Any:
         if text.lower() in ("true", "false"):
             return text.lower() == "true"
         if self._convert_types:
-            for kind in (int, float):
+            for number_type in (int, float):
                 try:
-                    return kind(text)
+                    return number_type(text)
                 except ValueError:  # noqa: PERF203 - there are two tries
                     continue
         return text
 
 
 def _value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """Yield the path of each value in nested dictionaries and lists, as a tuple of keys."""
+    """Yield the path of each value in nested dictionaries and lists, as a tuple of keys and indices."""
     if isinstance(content, dict):
         items: Any = content.items()
     elif isinstance(content, list):
@@ -149,24 +148,24 @@ def _value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str
 
 
 def _replace_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
-    """Return the content with values replaced.
+    """Return nested dictionaries and lists with some values replaced.
 
     Args:
         content: the content.
-        values: key or full path with dots -> new value.
-        path: the keys above the content.
+        values: maps a key, or a full path with dots, to a new value.
+        path: the keys that lead to the content.
     """
     if isinstance(content, list):
-        return [_replace_values(item, values, (*path, str(number))) for number, item in enumerate(content)]
+        return [_replace_values(item, values, (*path, str(index))) for index, item in enumerate(content)]
     if isinstance(content, dict):
-        made = {}
+        new_content = {}
         for key, value in content.items():
             name = str(key)
             is_group = isinstance(value, dict)
-            made[key] = (
+            new_content[key] = (
                 values[name] if name in values and not is_group else _replace_values(value, values, (*path, name))
             )
-        return made
+        return new_content
     return values.get(".".join(path), content)
 
 
@@ -184,21 +183,21 @@ def _replace_texts(content: Any, texts: Mapping[str, str]) -> Any:
     return texts.get(content, content) if isinstance(content, str) else content
 
 
-def _add(content: Any, path: list[str], value: Any) -> None:
-    *above, last = path
-    for key in above:
+def _add_value(content: Any, path: list[str], value: Any) -> None:
+    *parent_keys, last_key = path
+    for key in parent_keys:
         content = content.setdefault(key, {})
-    content[last] = value
+    content[last_key] = value
 
 
 class ReplaceString(_YamlFileSubstitution):
-    """The path of a new file, which is a copy with replaced texts.
+    """Evaluates to the path of a new file, a copy in which texts are replaced.
 
     Args:
         source_file: the file to copy.
-        replacements: text -> replacement.
-        condition: the condition under which texts are replaced. If it does not hold, the result is the path of the file
-            itself.
+        replacements: maps texts to their replacements.
+        condition: the condition under which texts are replaced. If it does not hold, the result is the path of the
+            original file.
     """
 
     def __init__(
@@ -208,7 +207,7 @@ class ReplaceString(_YamlFileSubstitution):
         condition: Condition | None = None,
     ) -> None:
         super().__init__(source_file)
-        self._replacements = _normalized(replacements)
+        self._replacements = _normalize_rewrites(replacements)
         self._condition = condition
 
     @property
@@ -217,9 +216,9 @@ class ReplaceString(_YamlFileSubstitution):
         return self._condition
 
     def perform(self, context: LaunchContext) -> str:
-        """Write the new file if the condition holds, and return its path.
+        """Write the new file and return its path, or return the path of the original file.
 
-        If the condition does not hold, return the path of the original file.
+        The new file is written only if the condition holds.
 
         Raises:
             LinkwrightError: LAUNCH152, the file cannot be read.
@@ -227,20 +226,20 @@ class ReplaceString(_YamlFileSubstitution):
         if self._condition is not None and not self._condition.evaluate(context):
             return perform_substitutions(context, self._source_file)
         path, text = self._read(context)
-        for old, new in _performed(context, self._replacements).items():
+        for old, new in _evaluate_rewrites(context, self._replacements).items():
             text = text.replace(old, new)
         return _write_file(context, text, path.suffix)
 
 
 class HasNodeParams(_YamlFileSubstitution):
-    """A test whether a parameter file has parameters for a node: ``True`` or ``False``."""
+    """Evaluates to ``True`` if a parameter file has parameters for a node, otherwise to ``False``."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)
         self._node_name = node_name
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``True`` if the file has parameters for the node, else ``False``.
+        """Return ``True`` if the file has parameters for the node, otherwise ``False``.
 
         Raises:
             LinkwrightError: LAUNCH152, the file cannot be read.
@@ -250,9 +249,9 @@ class HasNodeParams(_YamlFileSubstitution):
 
 
 class LaunchConfigAsBool(Substitution):
-    """A launch configuration converted to ``True`` or ``False``.
+    """Evaluates to ``True`` or ``False``, depending on the value of a launch configuration.
 
-    The values ``on`` and ``yes`` also count as true.
+    The values ``true``, ``on``, ``1`` and ``yes`` count as true.
     """
 
     def __init__(self, name: str) -> None:
@@ -265,16 +264,16 @@ class LaunchConfigAsBool(Substitution):
         return f"LaunchConfigAsBool({self._configuration.describe()})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``True`` if the value of the launch configuration is true, else ``False``."""
-        return str(self._configuration.perform(context).strip().lower() in _TRUE)
+        """Return ``True`` if the value of the launch configuration is true, otherwise ``False``."""
+        return str(self._configuration.perform(context).strip().lower() in _TRUE_TEXTS)
 
 
 class ParseMultiRobotPose(Substitution):
-    """The poses of robots, written as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
+    """The poses of several robots in a text such as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
 
     Args:
-        robots_argument: a substitution for the text, or the name of a launch argument, which `value` reads from the
-            command line.
+        robots_argument: a substitution that evaluates to the text; or the name of a launch argument, which `value`
+            reads from the command line.
     """
 
     def __init__(self, robots_argument: Any) -> None:
@@ -282,62 +281,64 @@ class ParseMultiRobotPose(Substitution):
 
     def describe(self) -> str:
         """Return a text with the argument."""
-        words = self._argument if isinstance(self._argument, str) else self._argument.describe()
-        return f"ParseMultiRobotPose({words})"
+        argument_text = self._argument if isinstance(self._argument, str) else self._argument.describe()
+        return f"ParseMultiRobotPose({argument_text})"
 
     def value(self) -> dict[str, dict[str, float]]:
-        """Parse the launch argument on the command line, and return the pose of each robot by name."""
-        start = f"{self._argument}:="
-        return self._parsed(next((word[len(start) :] for word in sys.argv if word.startswith(start)), ""))
+        """Return the poses of the robots by name, parsed from the launch argument on the command line."""
+        prefix = f"{self._argument}:="
+        return self._parse_poses(
+            next((argument[len(prefix) :] for argument in sys.argv if argument.startswith(prefix)), "")
+        )
 
     def perform(self, context: LaunchContext) -> Any:
-        """Return the pose of each robot by name.
+        """Return the poses of the robots by name.
 
         Unlike other substitutions, this one does not return a text.
         """
         if isinstance(self._argument, str):
-            return self._parsed(str(context.launch_configurations.get(self._argument, "")))
-        return self._parsed(self._argument.perform(context))
+            return self._parse_poses(str(context.launch_configurations.get(self._argument, "")))
+        return self._parse_poses(self._argument.perform(context))
 
-    def _parsed(self, text: str) -> dict[str, dict[str, float]]:
+    def _parse_poses(self, text: str) -> dict[str, dict[str, float]]:
         import yaml
 
         robots: dict[str, dict[str, float]] = {}
         for entry in text.split(";"):
-            name, sign, pose = entry.partition("=")
-            if not sign:
+            name, separator, pose = entry.partition("=")
+            if not separator:
                 continue
             try:
-                given = yaml.safe_load(pose)
+                pose_values = yaml.safe_load(pose)
             except yaml.YAMLError:
-                given = None
-            if not isinstance(given, dict):
+                pose_values = None
+            if not isinstance(pose_values, dict):
                 message = phrase(
                     "pose '{pose}' of robot '{name}' is not a mapping such as {{x: 1.0, yaw: 0.5}}",
                     pose=pose.strip(),
                     name=name.strip(),
                 )
                 raise error_at(self.place, "LAUNCH152", message)
-            robots[name.strip()] = {**_POSE, **given}
+            robots[name.strip()] = {**_DEFAULT_POSE, **pose_values}
         return robots
 
 
-def _normalized(rewrites: Mapping[str, SomeSubstitutionsType]) -> dict[str, list[Substitution]]:
-    return {str(key): normalize_to_list_of_substitutions(_plain(value)) for key, value in rewrites.items()}
+def _normalize_rewrites(rewrites: Mapping[str, SomeSubstitutionsType]) -> dict[str, list[Substitution]]:
+    return {str(key): normalize_to_list_of_substitutions(_as_text(value)) for key, value in rewrites.items()}
 
 
-def _plain(value: Any) -> Any:
+def _as_text(value: Any) -> Any:
     return str(value) if isinstance(value, (bool, int, float)) else value
 
 
-def _performed(context: LaunchContext, rewrites: Mapping[str, list[Substitution]]) -> dict[str, str]:
+def _evaluate_rewrites(context: LaunchContext, rewrites: Mapping[str, list[Substitution]]) -> dict[str, str]:
     return {key: perform_substitutions(context, value) for key, value in rewrites.items()}
 
 
 def _write_file(context: LaunchContext, text: str, suffix: str) -> str:
     """Write a new file, and return its path.
 
-    If a launch is running, the file is deleted after it.
+    The file is deleted after the launch, if one is running.
     """
     folder = context.session.scratch_folder if context.is_running else None
     with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False, encoding="utf-8") as file:

@@ -1,6 +1,6 @@
-"""Actions that apply to all later nodes in the scope: namespaces, parameters and remappings.
+"""Actions that apply to all later nodes in their scope: namespaces, parameters and remappings.
 
-As in launch_ros, these settings are stored in launch configurations, so that they end with a group.
+As in launch_ros, the settings are stored in launch configurations, so that they end with a group.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ NAMESPACE = "ros_namespace"
 PARAMETERS = "global_params"
 REMAPPINGS = "ros_remaps"
 
-Parsed = tuple[type[Action], dict[str, Any]]
+ParseResult = tuple[type[Action], dict[str, Any]]
 
 
 @expose_action("push_ros_namespace")
@@ -44,8 +44,8 @@ class PushRosNamespace(Action):
         self._namespace = normalize_to_list_of_substitutions(namespace)
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Read ``namespace``."""
+    def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         kwargs["namespace"] = parser.parse_substitution(entity.get_attr("namespace"))
         return cls, kwargs
@@ -56,14 +56,14 @@ class PushRosNamespace(Action):
         return self._namespace
 
     def execute(self, context: LaunchContext) -> None:
-        """Nest the current namespace, and store the result for later nodes.
+        """Append the namespace to the current one for later nodes.
 
         Raises:
             LinkwrightError: LAUNCH134, the namespace is not valid.
         """
-        inner = perform_substitutions(context, self._namespace)
-        outer = context.launch_configurations.get(NAMESPACE)
-        namespace = make_namespace_absolute(prefix_namespace(outer, inner))
+        inner_namespace = perform_substitutions(context, self._namespace)
+        outer_namespace = context.launch_configurations.get(NAMESPACE)
+        namespace = make_namespace_absolute(prefix_namespace(outer_namespace, inner_namespace))
         assert namespace is not None
         context.launch_configurations[NAMESPACE] = check_namespace(namespace)
 
@@ -81,12 +81,12 @@ class SetParameter(Action):
         self._parameters = normalize_parameter_dict({tuple(name): value})
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Read ``name`` and ``value``."""
+    def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
         value = entity.get_attr("value", data_type=None)
-        # A string is converted by YAML's rules, even if it is quoted in a YAML file.
+        # A string is read as YAML, even if it is quoted in a YAML file.
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value")) if isinstance(value, str) else value
         return cls, kwargs
 
@@ -104,7 +104,7 @@ class SetParameter(Action):
         """Evaluate the parameter, and store it for later nodes.
 
         Raises:
-            LinkwrightError: LAUNCH132, the errors in the value.
+            LinkwrightError: LAUNCH132, the value has errors.
         """
         for rule in evaluate_parameter_dict(context, self._parameters).items():
             _append(context, PARAMETERS, rule)
@@ -112,15 +112,15 @@ class SetParameter(Action):
 
 @expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
-    """Sets the parameters in a file for all later nodes that the file names."""
+    """Sets the parameters in a file for all later nodes to which the file applies."""
 
     def __init__(self, filename: Path | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._filename = normalize_to_list_of_substitutions(filename)
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Read ``filename``."""
+    def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         kwargs["filename"] = parser.parse_substitution(entity.get_attr("filename"))
         return cls, kwargs
@@ -145,8 +145,8 @@ class SetRemap(Action):
         self._destination = normalize_to_list_of_substitutions(dst)
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Read ``from`` and ``to``."""
+    def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         kwargs["src"] = parser.parse_substitution(entity.get_attr("from"))
         kwargs["dst"] = parser.parse_substitution(entity.get_attr("to"))
@@ -154,16 +154,16 @@ class SetRemap(Action):
 
     @property
     def src(self) -> list[Substitution]:
-        """The name to replace, as substitutions."""
+        """The original name, as substitutions."""
         return self._source
 
     @property
     def dst(self) -> list[Substitution]:
-        """The replacement name, as substitutions."""
+        """The new name, as substitutions."""
         return self._destination
 
     def execute(self, context: LaunchContext) -> None:
-        """Add the remapping."""
+        """Store the remapping for later nodes."""
         rule = perform_substitutions(context, self._source), perform_substitutions(context, self._destination)
         _append(context, REMAPPINGS, rule)
 
@@ -176,14 +176,14 @@ class SetUseSimTime(SetParameter):
         super().__init__("use_sim_time", value, **kwargs)
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Read ``value``."""
+    def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]  # past SetParameter's
         kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=bool, can_be_str=True))
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Set ``use_sim_time``, also for the launcher's own timers.
+        """Set ``use_sim_time`` for later nodes and for the launcher's own timers.
 
         Raises:
             LinkwrightError: LAUNCH132, the value is neither true nor false.
@@ -202,7 +202,7 @@ class SetROSLogDir(Action):
     """Changes the log folder of processes that are started later.
 
     Args:
-        new_log_dir: the folder; a relative path is inside the previous folder.
+        new_log_dir: the path of the folder; a relative path is relative to the previous log folder.
     """
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
@@ -210,15 +210,15 @@ class SetROSLogDir(Action):
         self._log_dir = normalize_to_list_of_substitutions(new_log_dir)
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Read ``new_log_dir``."""
+    def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         kwargs["new_log_dir"] = parser.parse_substitution(entity.get_attr("new_log_dir"))
         return cls, kwargs
 
     @property
     def log_dir(self) -> list[Substitution]:
-        """The folder, as substitutions."""
+        """The path of the folder, as substitutions."""
         return self._log_dir
 
     def execute(self, context: LaunchContext) -> None:
@@ -241,5 +241,5 @@ class SetROSLogDir(Action):
 
 
 def _append(context: LaunchContext, name: str, item: Any) -> None:
-    # Create a new list, so that the list that an outer scope has saved stays unchanged.
+    # A new list is created, because an outer scope may have saved the old one.
     context.launch_configurations[name] = [*context.launch_configurations.get(name, ()), item]

@@ -1,4 +1,4 @@
-"""Substitutions for the folders of packages and for the parameters of the scope."""
+"""Substitutions for the folders of packages, and for the parameters of the scope."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class _LaunchRosSubstitution(DeclaredSubstitution):
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
-        """Return an AttributeError, as ROS does."""
+        """Return an AttributeError for a wrong number of arguments, as ROS does."""
         return AttributeError(f"{cls.__name__} substitution expects {expected}, and it is given {given}")
 
 
 class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):
-    """The base class of substitutions for a folder of a package.
+    """The base class of substitutions that evaluate to a folder of a package.
 
     The operator ``/`` appends a path to the folder.
     """
@@ -60,7 +60,7 @@ class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):
 
 
 class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
-    """The install prefix of a package."""
+    """Evaluates to the install prefix of a package."""
 
     def find(self, package_name: str) -> str:
         """Return the install prefix of a package."""
@@ -68,7 +68,7 @@ class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
 
 
 class FindPackageShare(FindPackage, tag="find-pkg-share"):
-    """The share folder of a package."""
+    """Evaluates to the share folder of a package."""
 
     def find(self, package_name: str) -> str:
         """Return the share folder of a package."""
@@ -78,7 +78,7 @@ class FindPackageShare(FindPackage, tag="find-pkg-share"):
 class ExecutableInPackage(
     _LaunchRosSubstitution, tag="exec-in-pkg", shown="ExecInPkg(pkg={package}, exec={executable})"
 ):
-    """The path of an executable of a package."""
+    """Evaluates to the path of an executable of a package."""
 
     executable: Texts = Texts()
     package: Texts = Texts()
@@ -93,13 +93,13 @@ class ExecutableInPackage(
         package = perform_substitutions(context, self.package)
         executable = perform_substitutions(context, self.executable)
         try:
-            return str(_path(package, executable))
+            return str(_executable_path(package, executable))
         except LinkwrightError as error:
             raise located(error, self.place) from error
 
 
 class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Parameter(name={name})"):
-    """The value of a parameter that `SetParameter` set in the scope."""
+    """Evaluates to the value of a parameter that `SetParameter` set in the scope."""
 
     name: Texts = Texts()
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=normalize_default)
@@ -111,24 +111,24 @@ class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Paramete
             SubstitutionFailure: LAUNCH137, no such parameter is set in the scope, and there is no default.
         """
         name = perform_substitutions(context, self.name)
-        known = {
+        scope_values = {
             item[0]: item[1]
             for item in context.launch_configurations.get("global_params", ())
             if isinstance(item, tuple)
         }
-        if name not in known:
+        if name not in scope_values:
             if self.default is not None:
                 return perform_substitutions(context, self.default)
             message = phrase("no SetParameter in the scope sets parameter '{name}'", name=name)
             failure = SubstitutionFailure(f"parameter '{name}' not found")
-            raise error_at(self.place, "LAUNCH137", message, did_you_mean(name, known), ros_error=failure)
-        return str(known[name])
+            raise error_at(self.place, "LAUNCH137", message, did_you_mean(name, scope_values), ros_error=failure)
+        return str(scope_values[name])
 
 
-def _path(package: str, executable: str) -> Path:
-    found = find_executable(current_finder(), package, executable)
-    if found.path is None:
-        from linkwright.packages.programs.entry_scripts import script_for_ours
+def _executable_path(package: str, executable: str) -> Path:
+    program = find_executable(current_finder(), package, executable)
+    if program.path is None:
+        from linkwright.packages.programs.entry_scripts import script_for_own_node
 
-        return script_for_ours(package, executable)
-    return found.path
+        return script_for_own_node(package, executable)
+    return program.path

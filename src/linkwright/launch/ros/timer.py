@@ -18,25 +18,31 @@ if TYPE_CHECKING:
 class RosTimer(TimerAction):
     """Visits actions once, after a period of ROS time.
 
-    The timer uses the clock of the launcher's node. This node follows ``/clock`` as soon as `SetUseSimTime` has been
-    visited, even if that happens after the timer starts.
+    The timer uses the clock of the launcher's node. This node follows ``/clock`` after a `SetUseSimTime` was visited,
+    even if the timer was started before that.
     """
 
     def _schedule(self, context: LaunchContext) -> Schedule:
         node = context.session.host.launcher_node
 
-        def schedule(seconds: float, due: Callable[[], None]) -> Scheduled:
-            return _OneShotTimer(node, seconds, due)
+        def schedule(seconds: float, callback: Callable[[], None]) -> Scheduled:
+            return _OneShotTimer(node, seconds, callback)
 
         return schedule
 
 
 class _OneShotTimer:
-    """A timer of a node that calls a function once."""
+    """Calls a function once, with a timer of a node.
 
-    def __init__(self, node: Node, seconds: float, due: Callable[[], None]) -> None:
+    Args:
+        node: the node that owns the timer.
+        seconds: the delay in seconds, on the clock of the node.
+        callback: the function to call.
+    """
+
+    def __init__(self, node: Node, seconds: float, callback: Callable[[], None]) -> None:
         self._node = node
-        self._due = due
+        self._due = callback
         self._timer: Timer | None = node.create_timer(seconds, self._fire)
 
     def cancel(self) -> None:

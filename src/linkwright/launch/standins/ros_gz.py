@@ -28,21 +28,21 @@ _CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "Fal
 
 
 class _SingleNodeAction(Action, ABC):
-    """The base class of actions that start a single node with text options.
+    """The base class of actions that start one node and whose options are texts.
 
     Args:
         kwargs: the options that `TEXTS` names, and the arguments of every action.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {}
-    """Name and default of each text."""
+    """The name and default value of each text option."""
 
     def __init__(self, **kwargs: Any) -> None:
-        given = {name: kwargs.pop(name, default) for name, default in self.TEXTS.items()}
+        option_values = {name: kwargs.pop(name, default) for name, default in self.TEXTS.items()}
         super().__init__(**kwargs)
         self._texts = {
             name: normalize_to_list_of_substitutions(text if isinstance(text, (str, list, tuple)) else _text(text))
-            for name, text in given.items()
+            for name, text in option_values.items()
         }
 
     @classmethod
@@ -56,7 +56,7 @@ class _SingleNodeAction(Action, ABC):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any]:
-        """Return the action that starts the node, to be visited next."""
+        """Return the action that starts the node, which is visited next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
         node = self._node(texts)
         node.place = self.place
@@ -64,7 +64,7 @@ class _SingleNodeAction(Action, ABC):
 
     @abstractmethod
     def _node(self, texts: Mapping[str, str]) -> Node:
-        """Return the action that starts the node with evaluated text options."""
+        """Return the action that starts the node, for the evaluated text options."""
 
 
 def _text(value: Any) -> Any:
@@ -76,7 +76,7 @@ class GzServer(_SingleNodeAction):
     """Starts the simulation without a window.
 
     Args:
-        kwargs: ``world_sdf_file`` or ``world_sdf_string``. Options for containers have no effect.
+        kwargs: ``world_sdf_file`` or ``world_sdf_string``. The options for containers have no effect.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {"world_sdf_file": "", "world_sdf_string": "", **_CONTAINER}
@@ -102,11 +102,19 @@ class GzSpawnModel(_SingleNodeAction):
     }
 
     def _node(self, texts: Mapping[str, str]) -> Node:
-        options = {"world": "world", "file": "file", "model_string": "string", "topic": "topic", "entity_name": "name"}
-        options |= {"x": "x", "y": "y", "z": "z", "roll": "R", "pitch": "P", "yaw": "Y"}
-        words = [word for name, option in options.items() if texts[name] for word in (f"-{option}", texts[name])]
-        words += ["-allow_renaming", texts["allow_renaming"].lower()]
-        return Node(package="ros_gz_sim", executable="create", output="screen", arguments=words)
+        option_flags = {
+            "world": "world",
+            "file": "file",
+            "model_string": "string",
+            "topic": "topic",
+            "entity_name": "name",
+        }
+        option_flags |= {"x": "x", "y": "y", "z": "z", "roll": "R", "pitch": "P", "yaw": "Y"}
+        arguments = [
+            argument for name, option in option_flags.items() if texts[name] for argument in (f"-{option}", texts[name])
+        ]
+        arguments += ["-allow_renaming", texts["allow_renaming"].lower()]
+        return Node(package="ros_gz_sim", executable="create", output="screen", arguments=arguments)
 
 
 @expose_action("ros_gz_bridge")
@@ -117,7 +125,7 @@ class RosGzBridge(_SingleNodeAction):
         bridge_name: the name of the node.
         config_file: the path of a YAML file with the topics to bridge.
         extra_bridge_params: further parameters, as for a `Node`.
-        kwargs: ``namespace`` and ``log_level``. Options for containers and respawning have no effect.
+        kwargs: ``namespace`` and ``log_level``. The options for containers and respawning have no effect.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {

@@ -74,24 +74,24 @@ class NonPositiveSize(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, shape in shapes_of(subject):
             sizes = sizes_of(shape.geometry)
-            bad = next(((name, size) for name, size in sizes if size <= 0), None)
-            if bad is not None:
-                name, size = bad
-                is_mark = isinstance(shape, Visual) and not any(size for _, size in sizes)
-                what = type(shape.geometry).__name__.lower()
+            invalid_size = next(((name, size) for name, size in sizes if size <= 0), None)
+            if invalid_size is not None:
+                name, size = invalid_size
+                is_marker = isinstance(shape, Visual) and not any(size for _, size in sizes)
+                shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
                         "'{name}' of the {shape} {what} of link '{link_name}' is {value}",
                         name=name,
                         shape=term(kind_of(shape)),
-                        what=what,
+                        what=shape_name,
                         link_name=link.name,
                         value=phrase("zero") if size == 0 else phrase("negative"),
                     ),
                     shape_element(shape),
                     name,
                     hint=phrase("sizes are in metres and above zero"),
-                    severity=Severity.INFO if is_mark else None,
+                    severity=Severity.INFO if is_marker else None,
                 )
 
 
@@ -101,8 +101,7 @@ class HugeSize(Rule):
     ## Why
 
     URDF uses metres. In a file exported from CAD, a size of 400 usually means 400 mm. A robot of a single link with
-    mass
-    zero is scenery, such as a ground, and may be of any size.
+    mass zero is scenery, such as a ground, and may be of any size.
 
     ## Example
 
@@ -127,12 +126,12 @@ class HugeSize(Rule):
         for link, shape in () if is_scenery(subject) else shapes_of(subject):
             name, size = max(sizes_of(shape.geometry), key=lambda item: item[1], default=("", 0.0))
             if size > largest:
-                what = type(shape.geometry).__name__.lower()
+                shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
                         "the {shape} {what} of link '{name}' measures {size:g} m",
                         shape=term(kind_of(shape)),
-                        what=what,
+                        what=shape_name,
                         name=link.name,
                         size=size,
                     ),
@@ -173,12 +172,12 @@ class TinySize(Rule):
         for link, shape in shapes_of(subject):
             sizes = sizes_of(shape.geometry)
             if sizes and all(0 < size < smallest for _, size in sizes):
-                what = type(shape.geometry).__name__.lower()
+                shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
                         "the {shape} {what} of link '{name}' is smaller than {smallest:g} mm",
                         shape=term(kind_of(shape)),
-                        what=what,
+                        what=shape_name,
                         name=link.name,
                         smallest=smallest * 1000,
                     ),
@@ -217,19 +216,20 @@ class SeveralShapes(Rule):
         for link in subject.elements("link"):
             for shape in link.elements():
                 geometry = shape.first("geometry") if shape.tag in ("visual", "collision") else None
-                inside = geometry.elements() if geometry is not None else ()
-                found = [element for element in inside if element.tag in GEOMETRY.child_rules]
-                for extra in found[1:]:
+                children = geometry.elements() if geometry is not None else ()
+                shapes = [element for element in children if element.tag in GEOMETRY.child_rules]
+                for extra_shape in shapes[1:]:
                     yield self.report(
                         phrase(
-                            "<{tag}> is the second shape in a <geometry> of link '{attributes}' and is ignored",
-                            tag=extra.tag,
+                            "<{tag}> is not the first shape in a <geometry> of link '{attributes}', and is ignored",
+                            tag=extra_shape.tag,
                             attributes=link.attributes.get("name", ""),
                         ),
-                        extra,
+                        extra_shape,
                         notes=[
                             Note(
-                                phrase("only the first shape, this <{tag}>, is read", tag=found[0].tag), found[0].span()
+                                phrase("only the first shape, this <{tag}>, is read", tag=shapes[0].tag),
+                                shapes[0].span(),
                             )
                         ],
                         hint=phrase("write a separate <{tag}> for it", tag=shape.tag),
@@ -266,20 +266,20 @@ class ShapeTooFar(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
         for link in subject.links:
-            parts: list[Visual | Collision | Inertial] = [*link.visuals, *link.collisions]
-            parts += [link.inertial] if link.inertial is not None else []
-            for part in parts:
-                reach = max(map(abs, part.origin.xyz))
-                if reach > largest and part.element is not None:
-                    small = " ".join(f"{number / 1000:g}" for number in part.origin.xyz)
+            items: list[Visual | Collision | Inertial] = [*link.visuals, *link.collisions]
+            items += [link.inertial] if link.inertial is not None else []
+            for item in items:
+                distance = max(map(abs, item.origin.xyz))
+                if distance > largest and item.element is not None:
+                    scaled = " ".join(f"{number / 1000:g}" for number in item.origin.xyz)
                     yield self.report(
                         phrase(
                             "<{tag}> of link '{name}' is {reach:g} m away from the link",
-                            tag=part.element.tag,
+                            tag=item.element.tag,
                             name=link.name,
-                            reach=reach,
+                            reach=distance,
                         ),
-                        part.element.first("origin") or part.element,
+                        item.element.first("origin") or item.element,
                         "xyz",
-                        hint=phrase("lengths are in metres; if this is in millimetres, write '{small}'", small=small),
+                        hint=phrase("lengths are in metres; if this is in millimetres, write '{small}'", small=scaled),
                     )

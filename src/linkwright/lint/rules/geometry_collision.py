@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from linkwright.urdf.bodies import Bodies, Body
 
 
-_FAR = 20.0
-"""In m; LW405 reports shapes that are farther away."""
+_MAX_GAP = 20.0
+"""The maximum gap in m; LW405 reports shapes that are farther away."""
 
 
 class MissingCollision(Rule):
@@ -62,13 +62,15 @@ class MissingCollision(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         bodies = subject.bodies
-        movable = [body for body in bodies.all if SURROUNDINGS.isdisjoint(body.links)]
-        seen = [body for body in movable if any(link.visuals for link in bodies.members(body))]
-        lacking = [body for body in seen if not any(_has_collision(link.element) for link in bodies.members(body))]
-        if 2 * len(lacking) > len(seen):
+        movable_bodies = [body for body in bodies.all if SURROUNDINGS.isdisjoint(body.links)]
+        visible_bodies = [body for body in movable_bodies if any(link.visuals for link in bodies.members(body))]
+        bodies_without_collision = [
+            body for body in visible_bodies if not any(_has_collision(link.element) for link in bodies.members(body))
+        ]
+        if 2 * len(bodies_without_collision) > len(visible_bodies):
             return
-        for body in lacking:
-            if body.joint is not None and _is_between(body, bodies, lacking):
+        for body in bodies_without_collision:
+            if body.joint is not None and _is_between(body, bodies, bodies_without_collision):
                 continue
             link = next(link for link in bodies.members(body) if link.visuals)
             yield self.report(
@@ -79,11 +81,13 @@ class MissingCollision(Rule):
             )
 
 
-def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
+def _is_between(body: Body, bodies: Bodies, bodies_without_collision: list[Body]) -> bool:
     """Return whether a body's parent and one of its children have collision shapes."""
-    above = bodies.of(body.joint.parent) if body.joint is not None else None
-    below = [other for other in bodies.all if other.joint is not None and other.joint.parent in body.links]
-    return above not in (None, *lacking) and any(body not in lacking for body in below)
+    parent = bodies.of(body.joint.parent) if body.joint is not None else None
+    children = [other for other in bodies.all if other.joint is not None and other.joint.parent in body.links]
+    return parent not in (None, *bodies_without_collision) and any(
+        body not in bodies_without_collision for body in children
+    )
 
 
 class MissingVisual(Rule):
@@ -152,10 +156,10 @@ class CollisionAwayFromVisual(Rule):
     name = "collision-apart"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, seen, felt in _comparable_links(subject):
-            gap = seen.gap(felt)
-            is_apart = _FAR > gap > max(0.25 * min(seen.diagonal, felt.diagonal), 1e-3)
-            if is_apart and not _is_moved_to_a_child(subject, link, felt):
+        for link, visual_box, collision_box in _comparable_links(subject):
+            gap = visual_box.gap(collision_box)
+            is_apart = _MAX_GAP > gap > max(0.25 * min(visual_box.diagonal, collision_box.diagonal), 1e-3)
+            if is_apart and not _is_moved_to_a_child(subject, link, collision_box):
                 yield self.report(
                     phrase(
                         "the collision shapes of link '{name}' are {gap:.3g} cm away from its visuals",
@@ -164,18 +168,18 @@ class CollisionAwayFromVisual(Rule):
                     ),
                     link.collisions[0].element,
                     notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
-                    hint=_origin_hint(link, seen),
+                    hint=_origin_hint(link, visual_box),
                 )
 
 
-def _origin_hint(link: Link, seen: Bounds) -> Phrase:
+def _origin_hint(link: Link, visual_box: Bounds) -> Phrase:
     """Return a hint on how to fix a collision shape that is far from its visual.
 
     If both have the same ``<origin>``, the hint is about a mesh that is far from its own origin.
     """
     if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
         return phrase("give visuals and collisions the same <origin>")
-    center = " ".join(f"{part:.3g}" for part in seen.center)
+    center = " ".join(f"{coordinate:.3g}" for coordinate in visual_box.center)
     return phrase("the centre of the visuals is at {center} in the link frame", center=center)
 
 
@@ -209,8 +213,8 @@ class CollisionSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link, seen, felt in _comparable_links(subject):
-            ratio = felt.diagonal / seen.diagonal
+        for link, visual_box, collision_box in _comparable_links(subject):
+            ratio = collision_box.diagonal / visual_box.diagonal
             if not 1 / factor <= ratio <= factor:
                 yield self.report(
                     phrase(
@@ -230,16 +234,16 @@ class CollisionSize(Rule):
                 )
 
 
-def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
+def _is_moved_to_a_child(subject: Subject, link: Link, collision_box: Bounds) -> bool:
     """Return whether a link's collision shapes were moved to the visuals of a child link."""
     if not all(any(shape.origin.xyz) for shape in link.collisions) or link.name not in subject.frames:
         return False
-    below = {joint.child for joint in subject.joints if joint.parent == link.name}
-    for child in (link for link in subject.links if link.name in below):
-        seen = _bounds(subject, child.visuals) if child.visuals else None
-        if seen is not None:
-            placed = seen.moved(subject.frames[child.name].seen_from(subject.frames[link.name]))
-            if placed.gap(felt) == 0:
+    child_names = {joint.child for joint in subject.joints if joint.parent == link.name}
+    for child in (link for link in subject.links if link.name in child_names):
+        visual_box = _bounds(subject, child.visuals) if child.visuals else None
+        if visual_box is not None:
+            box_in_parent = visual_box.moved(subject.frames[child.name].seen_from(subject.frames[link.name]))
+            if box_in_parent.gap(collision_box) == 0:
                 return True
     return False
 
@@ -256,23 +260,23 @@ def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]
     """
     largest = math.inf if is_scenery(subject) else MeshInMillimetres().option(subject, "largest", float)
     for link in _links_with_both_shapes(subject):
-        seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
-        if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
+        visual_box, collision_box = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
+        if visual_box is None or collision_box is None or min(visual_box.diagonal, collision_box.diagonal) < MARKER:
             continue
         shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
         meshes = [shape for shape in shapes if isinstance(shape.geometry, Mesh)]
-        found = [bounds for bounds in map(subject.extents.shape_bounds, meshes) if bounds is not None]
-        if all(max(bounds.size) <= largest for bounds in found):
-            yield link, seen, felt
+        mesh_boxes = [bounds for bounds in map(subject.extents.shape_bounds, meshes) if bounds is not None]
+        if all(max(bounds.size) <= largest for bounds in mesh_boxes):
+            yield link, visual_box, collision_box
 
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
     """Return the box around shapes in the link frame; None if empty or not measurable."""
     from linkwright.geometry.shapes import union
 
-    found = [subject.extents.shape_bounds(shape) for shape in shapes]
-    known = [bounds for bounds in found if bounds is not None]
-    return union(known) if len(known) == len(found) else None
+    boxes = [subject.extents.shape_bounds(shape) for shape in shapes]
+    known_boxes = [bounds for bounds in boxes if bounds is not None]
+    return union(known_boxes) if len(known_boxes) == len(boxes) else None
 
 
 def _has_collision(element: Element | None) -> bool:

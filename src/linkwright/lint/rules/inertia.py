@@ -75,22 +75,33 @@ class MissingInertial(Rule):
         robot = subject.robot
         if robot is None:
             return
-        some, is_simulated = any(link.inertial for link in robot.links.values()), is_for_simulation(subject)
-        if not some and not is_simulated:
+        has_inertials, is_simulated = any(link.inertial for link in robot.links.values()), is_for_simulation(subject)
+        if not has_inertials and not is_simulated:
             return
-        why = phrase("others have one") if some else phrase("the robot is made for simulation")
+        reason = phrase("others have one") if has_inertials else phrase("the robot is made for simulation")
         for body in subject.bodies.all:
             links = subject.bodies.members(body)
             if body.joint is None or any(link.inertial for link in links):
                 continue
             if any(_is_broken(link) for link in links):
-                continue  # an inertial that cannot be read is reported by the reader
+                continue  # the reader reports an inertial that cannot be read
             element = links[0].element
-            rest = [link.name for link in links[1:4]]
-            notes = [Note(phrase("nor have the links fixed to it: {rest}", rest=quoted_names(rest)))] if rest else []
+            fixed_links = [link.name for link in links[1:4]]
+            notes = (
+                [
+                    Note(
+                        phrase(
+                            ("the links that are fixed to it do not have one, either: {rest}"),
+                            rest=quoted_names(fixed_links),
+                        )
+                    )
+                ]
+                if fixed_links
+                else []
+            )
             notes.insert(0, Note(phrase("joint '{name}' moves it", name=body.joint.name), _span(body.joint.element)))
             yield self.report(
-                phrase("moving link '{name}' has no <inertial>, although {why}", name=links[0].name, why=why),
+                phrase("moving link '{name}' has no <inertial>, although {why}", name=links[0].name, why=reason),
                 element,
                 "name",
                 notes=notes,
@@ -203,14 +214,14 @@ class TinyMass(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
-        tiny: list[tuple[Link, Inertial, float]] = []
+        tiny_bodies: list[tuple[Link, Inertial, float]] = []
         for body in subject.bodies.all:
             masses = [(link, link.inertial) for link in subject.bodies.members(body) if link.inertial is not None]
             total = sum(inertial.mass for _, inertial in masses)
             if body.joint is not None and 0 < total < smallest:
-                tiny.append((*masses[0], total))
-        if tiny:
-            (link, inertial, total), *others = tiny
+                tiny_bodies.append((*masses[0], total))
+        if tiny_bodies:
+            (link, inertial, total), *others = tiny_bodies
             yield self.report(
                 phrase("the mass of moving link '{name}' is tiny: {total:g} kg", name=link.name, total=total),
                 part(inertial, "mass"),

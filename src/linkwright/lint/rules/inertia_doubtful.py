@@ -44,14 +44,14 @@ class PlaceholderInertia(Rule):
     options = (Option("links", 3, "how many links must share a tensor to be reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for sharing in _shared_tensors(subject, self.option(subject, "links", int)):
-            link, inertial = sharing[0]
-            others = name_others([other.name for other, _ in sharing[1:]])
+        for group in _shared_tensors(subject, self.option(subject, "links", int)):
+            link, inertial = group[0]
+            others = name_others([other.name for other, _ in group[1:]])
             yield self.report(
                 phrase(
                     "link '{name}' has the same inertia as {count} links of other shapes",
                     name=link.name,
-                    count=len(sharing) - 1,
+                    count=len(group) - 1,
                 ),
                 part(inertial, "inertia"),
                 notes=[Note(others)],
@@ -60,21 +60,21 @@ class PlaceholderInertia(Rule):
             )
 
 
-LEFT_TO_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
-"""The rules that skip a link whose inertia `PlaceholderInertia` reports."""
+SKIPPED_FOR_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
+"""The codes of the rules that skip a link if `PlaceholderInertia` reports its inertia."""
 
 
-def placeholders(subject: Subject) -> set[str]:
+def placeholder_links(subject: Subject) -> set[str]:
     """Return the names of the links whose inertia `PlaceholderInertia` reports."""
-    least = PlaceholderInertia().option(subject, "links", int)
-    return {link.name for sharing in _shared_tensors(subject, least) for link, _ in sharing}
+    min_links = PlaceholderInertia().option(subject, "links", int)
+    return {link.name for group in _shared_tensors(subject, min_links) for link, _ in group}
 
 
-def _shared_tensors(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]]]:
+def _shared_tensors(subject: Subject, min_links: int) -> Iterator[list[tuple[Link, Inertial]]]:
     """Yield groups of links that share a tensor of three equal moments, but differ in shape.
 
-    A group has at least `least` links with at least `least` different shapes, and at least half of all links with an
-    inertia.
+    A group has at least `min_links` links and at least `min_links` different shapes, and contains at least half of
+    all links with an inertia.
     """
     groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
     for link, inertial in links_with_inertial(subject):
@@ -82,10 +82,10 @@ def _shared_tensors(subject: Subject, least: int) -> Iterator[list[tuple[Link, I
         if any(values) and inertial.mass >= WEIGHTLESS and subject.bodies.turns(link.name):
             groups.setdefault(values, []).append((link, inertial))
     count = sum(map(len, groups.values()))
-    for (ixx, iyy, izz, *_), sharing in groups.items():
-        shapes = {_shapes(link) for link, _ in sharing} - {()}
-        if ixx == iyy == izz and min(len(sharing), len(shapes)) >= least and 2 * len(sharing) >= count:
-            yield sharing
+    for (ixx, iyy, izz, *_), group in groups.items():
+        shapes = {_shape_key(link) for link, _ in group} - {()}
+        if ixx == iyy == izz and min(len(group), len(shapes)) >= min_links and 2 * len(group) >= count:
+            yield group
 
 
 class RotatedIsotropicInertia(Rule):
@@ -118,9 +118,9 @@ class RotatedIsotropicInertia(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial in links_with_inertial(subject):
-            alike = inertial.ixx == inertial.iyy == inertial.izz
+            is_isotropic = inertial.ixx == inertial.iyy == inertial.izz
             products = inertial.ixy or inertial.ixz or inertial.iyz
-            if alike and not products and any(inertial.origin.rpy) and inertial.ixx:
+            if is_isotropic and not products and any(inertial.origin.rpy) and inertial.ixx:
                 yield self.report(
                     phrase(
                         "the rotation of <inertial> of link '{name}' changes nothing: its inertia is the same "
@@ -160,22 +160,22 @@ class TinyInertia(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
         for body in subject.bodies.all:
-            holders = [link for link in subject.bodies.members(body) if link.inertial is not None]
-            if body.joint is None or not holders:
+            inertial_links = [link for link in subject.bodies.members(body) if link.inertial is not None]
+            if body.joint is None or not inertial_links:
                 continue
             moment = float(subject.extents.mass_properties(body).principal().moments[0])
-            if 0 < moment < smallest and holders[0].inertial is not None:
+            if 0 < moment < smallest and inertial_links[0].inertial is not None:
                 yield self.report(
                     phrase(
                         "the smallest moment of inertia of moving link '{links}' is {moment:.2g} kg m2",
                         links=body.links[0],
                         moment=moment,
                     ),
-                    part(holders[0].inertial, "inertia"),
+                    part(inertial_links[0].inertial, "inertia"),
                     hint=phrase("simulate with a larger inertia, or give the joint damping"),
                 )
 
 
-def _shapes(link: Link) -> tuple[object, ...]:
+def _shape_key(link: Link) -> tuple[object, ...]:
     """Return a key for the shapes of a link, which is the same for copies of a link."""
     return tuple(shape.geometry for shape in (link.collisions or link.visuals))

@@ -10,15 +10,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import prod
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
-from linkwright.geometry.shapes import volume_of
+from linkwright.geometry.shapes import shape_volume
 from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MARKER, WEIGHTLESS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
-from linkwright.lint.rules.inertia_doubtful import placeholders
+from linkwright.lint.rules.inertia_doubtful import placeholder_links
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, PRODUCTS, flaw_of, name_others
+from linkwright.lint.tensors import DIAGONAL, PRODUCTS, first_flaw, name_others
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Inertial, Link, Mesh
 
@@ -26,19 +26,19 @@ if TYPE_CHECKING:
     from linkwright.geometry.shapes import Bounds
 
 _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
-"""The value of 1 kg m2 in other units, which may have been written instead."""
+"""The value of 1 kg m2 in other units, in which an author may have written the inertia by mistake."""
 
-_TOO_FAR = 20.0
-"""From this distance on, in m, `shape-far` reports an origin."""
+_MAX_ORIGIN_DISTANCE = 20.0
+"""The distance in m above which `shape-far` reports an origin."""
 
-_LEAST_SUSPECT_MASS = 1.0
-"""Masses below this one, in kg, are not in grams by mistake; on small frames they are there to please a simulator."""
+_MIN_SUSPECT_MASS = 1.0
+"""Smaller masses, in kg, are not in grams by mistake: small frames have them because simulators require a mass."""
 
 _BALLAST_FACTOR = 10.0
 _ESTIMATE_FACTOR = 3.0
 
 _LENGTH_TOLERANCE = 1e-3
-"""Differences smaller than this, in m, are none."""
+"""Smaller differences, in m, are ignored."""
 
 
 class DensityTooHigh(Rule):
@@ -76,27 +76,29 @@ class DensityTooHigh(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if not subject.extents.links_with_relevant_mass:
             return
-        from linkwright.geometry.validity import HEAVIEST_DENSITY
+        from linkwright.geometry.validity import MAX_DENSITY
 
         for link, inertial in subject.extents.links_with_relevant_mass:
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
-            if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _LEAST_SUSPECT_MASS:
+            if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _MIN_SUSPECT_MASS:
                 continue
             if min(bounds.size) < _LENGTH_TOLERANCE / 10:
                 continue  # a sheet: its thickness is not meaningful
             if subject.bodies.includes_massless_links(link):
-                around = subject.extents.body_bounds(link)
-                if around is None:
+                body_box = subject.extents.body_bounds(link)
+                if body_box is None:
                     continue
-                volume = max(volume, prod(around.size))
-            excess = inertial.mass / volume / HEAVIEST_DENSITY if volume > 0 else 0.0
+                volume = max(volume, prod(body_box.size))
+            excess = inertial.mass / volume / MAX_DENSITY if volume > 0 else 0.0
             if excess > 1:
-                is_meant = excess < self._tolerated(subject, link, inertial) or is_explained(inertial.element, "mass")
+                is_intended = excess < self._tolerated_ratio(subject, link, inertial) or is_explained(
+                    inertial.element, "mass"
+                )
                 yield self.report(
                     phrase(
                         "link '{name}' would have a density of {thousands} kg/m3",
                         name=link.name,
-                        thousands=_thousands(inertial.mass / volume),
+                        thousands=_grouped_digits(inertial.mass / volume),
                     ),
                     part(inertial, "mass"),
                     "value",
@@ -105,15 +107,15 @@ class DensityTooHigh(Rule):
                             phrase(
                                 "{mass:g} kg in {volume}; osmium has 22 600 kg/m3",
                                 mass=inertial.mass,
-                                volume=_volume(volume),
+                                volume=_volume_text(volume),
                             )
                         )
                     ],
                     hint=phrase("masses are in kg and lengths in m"),
-                    severity=Severity.INFO if is_meant else None,
+                    severity=Severity.INFO if is_intended else None,
                 )
 
-    def _tolerated(self, subject: Subject, link: Link, inertial: Inertial) -> float:
+    def _tolerated_ratio(self, subject: Subject, link: Link, inertial: Inertial) -> float:
         """Return the tolerated density of a link as a multiple of the density of osmium."""
         body = subject.bodies.of(link.name)
         if body is not None and body.joint is None:
@@ -150,19 +152,21 @@ class DensityTooLow(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if not any(links_with_inertial(subject)):
             return
-        from linkwright.geometry.validity import LIGHTEST_DENSITY
+        from linkwright.geometry.validity import MIN_DENSITY
 
         bodies = subject.bodies
         for body in bodies.all:
             members = bodies.members(body)
-            heavy = [(link, link.inertial) for link in members if link.inertial is not None and link.inertial.mass > 0]
+            links_with_mass = [
+                (link, link.inertial) for link in members if link.inertial is not None and link.inertial.mass > 0
+            ]
             shapes = [shape.geometry for link in members for shape in (link.collisions or link.visuals)]
-            if not heavy or any(isinstance(geometry, Mesh) for geometry in shapes):
+            if not links_with_mass or any(isinstance(geometry, Mesh) for geometry in shapes):
                 continue  # a frame of rods, for example as a mesh, fills little of its bounding box
             mass = bodies.mass(body)
-            volume = sum(volume_of(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
-            if WEIGHTLESS <= mass < LIGHTEST_DENSITY * volume:
-                link, inertial = max(heavy, key=lambda item: item[1].mass)
+            volume = sum(shape_volume(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
+            if WEIGHTLESS <= mass < MIN_DENSITY * volume:
+                link, inertial = max(links_with_mass, key=lambda item: item[1].mass)
                 yield self.report(
                     phrase(
                         "link '{name}' would have a density of {mass:.2g} kg/m3, less than air",
@@ -171,7 +175,7 @@ class DensityTooLow(Rule):
                     ),
                     part(inertial, "mass"),
                     "value",
-                    notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_volume(volume)))],
+                    notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_volume_text(volume)))],
                     hint=phrase("masses are in kg and lengths in m"),
                 )
 
@@ -209,23 +213,23 @@ class CenterOutside(Rule):
         margin = self.option(subject, "margin", float)
         for link, inertial, bounds in _without_placeholders(subject):
             center = inertial.origin.xyz
-            if max(map(abs, center)) > _TOO_FAR or _is_at_the_joint(subject, link, inertial):
+            if max(map(abs, center)) > _MAX_ORIGIN_DISTANCE or _is_at_the_joint(subject, link, inertial):
                 continue
             distance = bounds.distance(center)
             if distance > max(margin * bounds.diagonal, _LENGTH_TOLERANCE):
                 x, y, z = center
-                scaled = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
+                fits_in_millimetres = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
                 yield self.report(
                     phrase(
                         "the centre of mass of link '{name}' is {length} outside its shapes",
                         name=link.name,
-                        length=_length(distance),
+                        length=_length_text(distance),
                     ),
                     part(inertial, "origin"),
                     "xyz",
-                    notes=[_extent(bounds)],
+                    notes=[_extent_note(bounds)],
                     hint=phrase("lengths are in metres; this looks like millimetres")
-                    if scaled and distance > 1
+                    if fits_in_millimetres and distance > 1
                     else _COMPUTE,
                 )
 
@@ -270,14 +274,15 @@ class InertialOriginMissing(Rule):
             element = inertial.element
             if element is None or not _is_at_the_joint(subject, link, inertial):
                 continue
-            if all(map(_is_origin_off_center, subject.extents.kinds_of_bounds(link))):
-                x, y, z = (round(part, 4) + 0.0 for part in bounds.center)
+            if all(map(_is_origin_off_center, subject.extents.separate_bounds(link))):
+                x, y, z = (round(coordinate, 4) + 0.0 for coordinate in bounds.center)
                 yield self.report(
                     phrase(
-                        "<inertial> of link '{name}' has no <origin>, but its shapes are to one side", name=link.name
+                        "<inertial> of link '{name}' has no <origin>, but the shapes are on one side of the link frame",
+                        name=link.name,
                     ),
                     element,
-                    notes=[_extent(bounds)],
+                    notes=[_extent_note(bounds)],
                     hint=phrase('add <origin xyz="{x:g} {y:g} {z:g}"/>, if that is where its mass is', x=x, y=y, z=z),
                 )
 
@@ -316,13 +321,13 @@ class InertiaTooLarge(Rule):
         from linkwright.geometry.validity import largest_moment_within
 
         factor = self.option(subject, "factor", float)
-        too_large: dict[tuple[float, ...], list[tuple[Link, Inertial, Bounds, float]]] = {}
+        excessive_inertias: dict[tuple[float, ...], list[tuple[Link, Inertial, Bounds, float]]] = {}
         for link, inertial, bounds in _without_placeholders(subject):
             limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
-            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit and flaw_of(inertial) is None:
-                alike = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS)))
-                too_large.setdefault(alike, []).append((link, inertial, bounds, limit))
-        for (link, inertial, bounds, limit), *others in too_large.values():
+            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit and first_flaw(inertial) is None:
+                key = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS)))
+                excessive_inertias.setdefault(key, []).append((link, inertial, bounds, limit))
+        for (link, inertial, bounds, limit), *others in excessive_inertias.values():
             yield self._finding(link, inertial, bounds, limit, [other.name for other, *_ in others])
 
     def _finding(
@@ -330,8 +335,12 @@ class InertiaTooLarge(Rule):
     ) -> Diagnostic:
         name = max(DIAGONAL, key=lambda item: getattr(inertial, item))
         largest = getattr(inertial, name)
-        usual = _largest_uniform_moment(bounds, inertial.mass)
-        possible = phrase("{mass:g} kg within them have at most {limit:.2g} kg m2", mass=inertial.mass, limit=limit)
+        uniform_moment = _largest_uniform_moment(bounds, inertial.mass)
+        limit_phrase = phrase(
+            ("a mass of {mass:g} kg within these shapes has a moment of at most {limit:.2g} kg m2"),
+            mass=inertial.mass,
+            limit=limit,
+        )
         return self.report(
             phrase(
                 "the inertia of link '{name}' is too large for its shapes: {largest:g} kg m2",
@@ -340,8 +349,10 @@ class InertiaTooLarge(Rule):
             ),
             part(inertial, "inertia"),
             name,
-            notes=[Note(possible), *([Note(name_others(others))] if others else [])],
-            hint=_COMPUTE if usual <= 0 or _is_round_number(inertial) else _unit_hint(largest / usual) or _COMPUTE,
+            notes=[Note(limit_phrase), *([Note(name_others(others))] if others else [])],
+            hint=_COMPUTE
+            if uniform_moment <= 0 or _is_round_number(inertial)
+            else _unit_hint(largest / uniform_moment) or _COMPUTE,
         )
 
 
@@ -377,25 +388,28 @@ class InertiaTooSmall(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
         for link, inertial, _ in _without_placeholders(subject):
-            boxes = subject.extents.kinds_of_bounds(link)
+            boxes = subject.extents.separate_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             if not boxes or largest <= 0:
                 continue
-            usual = min(_largest_uniform_moment(box, inertial.mass) for box in boxes)
-            if largest * factor < usual and ((flaw := flaw_of(inertial)) is None or flaw.kind == "triangle"):
+            uniform_moment = min(_largest_uniform_moment(box, inertial.mass) for box in boxes)
+            if largest * factor < uniform_moment and (
+                (flaw := first_flaw(inertial)) is None or flaw.kind == "triangle"
+            ):
                 yield self.report(
                     phrase(
                         "the inertia of link '{name}' is {thousands} times smaller than that of a solid of its size",
                         name=link.name,
-                        thousands=_thousands(usual / largest),
+                        thousands=_grouped_digits(uniform_moment / largest),
                     ),
                     part(inertial, "inertia"),
                     notes=[
                         Note(
                             phrase(
-                                "{mass:g} kg spread over its box have about {usual:.2g} kg m2",
+                                "a mass of {mass:g} kg that fills the box of the link has a moment of about "
+                                "{usual:.2g} kg m2",
                                 mass=inertial.mass,
-                                usual=usual,
+                                usual=uniform_moment,
                             )
                         )
                     ],
@@ -405,8 +419,8 @@ class InertiaTooSmall(Rule):
 
 def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """Yield the measured links except those whose tensor `PlaceholderInertia` reports."""
-    copied = subject.once(placeholders) if subject.extents.measured else set()
-    return (item for item in subject.extents.measured if item[0].name not in copied)
+    placeholder_names = subject.once(placeholder_links) if subject.extents.measured else set()
+    return (item for item in subject.extents.measured if item[0].name not in placeholder_names)
 
 
 def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
@@ -419,10 +433,10 @@ def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
 def _is_origin_off_center(bounds: Bounds) -> bool:
     """Return whether the origin is near a side of a box or outside it.
 
-    It is if its distance from the centre exceeds 0.45 of an edge.
+    This is the case if its distance from the centre along an axis exceeds 0.45 of the edge.
     """
-    ends = zip(bounds.center, bounds.size, strict=True)
-    return any(abs(middle) - 0.45 * size > _LENGTH_TOLERANCE for middle, size in ends)
+    axes = zip(bounds.center, bounds.size, strict=True)
+    return any(abs(center) - 0.45 * size > _LENGTH_TOLERANCE for center, size in axes)
 
 
 _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
@@ -450,20 +464,20 @@ def _unit_hint(ratio: float) -> Phrase | None:
     return phrase("if it is in {unit}, divide it by {factor:.0f}", unit=unit, factor=factor)
 
 
-def _extent(bounds: Bounds) -> Note:
-    low, high = (" ".join(f"{part:.3g}" for part in corner) for corner in (bounds.low, bounds.high))
-    return Note(phrase("they reach from {low} to {high} in the link frame", low=low, high=high))
+def _extent_note(bounds: Bounds) -> Note:
+    low, high = (" ".join(f"{coordinate:.3g}" for coordinate in corner) for corner in (bounds.low, bounds.high))
+    return Note(phrase("the shapes reach from {low} to {high} in the link frame", low=low, high=high))
 
 
-def _length(metres: float) -> Phrase:
+def _length_text(metres: float) -> Phrase:
     return phrase("{length:.3g} m", length=metres) if metres >= 1 else phrase("{length:.3g} cm", length=metres * 100)
 
 
-def _volume(cubic_metres: float) -> Phrase:
+def _volume_text(cubic_metres: float) -> Phrase:
     if cubic_metres >= 0.1:
         return phrase("{volume:.3g} m3", volume=cubic_metres)
     return phrase("{volume:.3g} cm3", volume=cubic_metres * 1e6)
 
 
-def _thousands(number: float) -> str:
+def _grouped_digits(number: float) -> str:
     return f"{number:,.0f}".replace(",", " ")

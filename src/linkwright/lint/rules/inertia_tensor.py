@@ -19,7 +19,7 @@ class _FlawRule(Rule):
 
     kind = ""
 
-    def flawed(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
+    def links_with_flaw(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
         """Yield the links whose inertia tensor has this kind of flaw as its first flaw."""
         return (tensor_flaw for tensor_flaw in subject.tensor_flaws if tensor_flaw[2].kind == self.kind)
 
@@ -28,7 +28,7 @@ class _TensorRule(_FlawRule, ABC):
     """The base class of rules that report each flaw of one kind."""
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, flaw in self.flawed(subject):
+        for link, inertial, flaw in self.links_with_flaw(subject):
             yield self.finding(link.name, inertial, flaw)
 
     @abstractmethod
@@ -61,7 +61,7 @@ class ZeroInertia(_FlawRule):
     kind = "zero"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, _ in self.flawed(subject):
+        for link, inertial, _ in self.links_with_flaw(subject):
             from linkwright.geometry.validity import is_positive_definite
 
             body = subject.bodies.of(link.name)
@@ -75,7 +75,8 @@ class ZeroInertia(_FlawRule):
                 hint=phrase("`linkwright inertia` computes it from the link's shapes")
                 if link.visuals or link.collisions
                 else phrase(
-                    "give it the inertia of a small solid of this mass: the link has no shape to compute it from"
+                    "give it the inertia of a small solid with this mass, because the link has no shape to "
+                    "compute it from"
                 ),
             )
 
@@ -107,9 +108,9 @@ class NonPositiveMoment(_TensorRule):
     kind = "diagonal"
 
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
-        what = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
+        problem = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
         return self.report(
-            phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=name, what=what),
+            phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=name, what=problem),
             part(inertial, "inertia"),
             flaw.attribute,
             hint=phrase("ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them"),
@@ -154,7 +155,7 @@ class ExcessiveProduct(_TensorRule):
             ),
             part(inertial, "inertia"),
             flaw.attribute,
-            notes=[Note(phrase("with these moments, its magnitude is at most {amount:.3g}", amount=flaw.amount))],
+            notes=[Note(phrase("with these moments, its magnitude can be at most {amount:.3g}", amount=flaw.amount))],
             hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
         )
 
@@ -190,7 +191,7 @@ class IndefiniteInertia(_TensorRule):
         return self.report(
             phrase("the inertia tensor of link '{name}' is not positive definite", name=name),
             part(inertial, "inertia"),
-            notes=[_principal_moments(inertial)],
+            notes=[_principal_moments_note(inertial)],
             hint=phrase("check the signs of the products, and that all components are about the centre of mass"),
         )
 
@@ -222,22 +223,22 @@ class TriangleInequality(_TensorRule):
     kind = "triangle"
 
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
-        diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
+        is_diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
         first, second = (item for item in DIAGONAL if item != flaw.attribute)
         message = phrase("one moment of inertia of link '{name}' is larger than the other two together", name=name)
-        notes = [_principal_moments(inertial)]
-        if diagonal:
-            small = getattr(inertial, first) + getattr(inertial, second)
+        notes = [_principal_moments_note(inertial)]
+        if is_diagonal:
+            moment_sum = getattr(inertial, first) + getattr(inertial, second)
             message = phrase(
                 "'{attribute}' of link '{name}' is larger than the other two moments together",
                 attribute=flaw.attribute,
                 name=name,
             )
-            notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=small))]
+            notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=moment_sum))]
         return self.report(
             message,
             part(inertial, "inertia"),
-            flaw.attribute if diagonal else None,
+            flaw.attribute if is_diagonal else None,
             notes=notes,
             hint=phrase(
                 "these moments are not physically possible; `linkwright inertia` computes those of the link's shapes"
@@ -245,7 +246,7 @@ class TriangleInequality(_TensorRule):
         )
 
 
-def _principal_moments(inertial: Inertial) -> Note:
+def _principal_moments_note(inertial: Inertial) -> Note:
     from linkwright.geometry.validity import largest_entry, relative_moments
 
     matrix = tensor(inertial)

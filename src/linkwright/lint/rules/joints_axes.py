@@ -15,9 +15,9 @@ from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
 _TILT_TOLERANCE = 1e-6
-"""Tilts up to this one, in rad, are what a program's arithmetic leaves: a thousandth of a millimetre in a metre."""
-_MOVING = ("revolute", "continuous", "prismatic", "planar")
-_TOLERANCE = 1e-3
+"""Smaller tilts, in rad, come from the rounding of a program: a thousandth of a millimetre in a metre."""
+_MOVING_TYPES = ("revolute", "continuous", "prismatic", "planar")
+_LENGTH_TOLERANCE = 1e-3
 
 
 class AxisZero(Rule):
@@ -50,7 +50,7 @@ class AxisZero(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every moving joint with an ``<axis>`` of zero length."""
         for joint, _, axis in parts(subject, "axis"):
-            if joint.type not in _MOVING:
+            if joint.type not in _MOVING_TYPES:
                 continue
             if "xyz" not in axis.attributes:
                 yield self.report(
@@ -103,12 +103,12 @@ class AxisNotUnit(Rule):
         """Report every moving joint whose axis length differs from 1 by more than rounding explains."""
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
-            if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
+            if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):
                 continue
-            length = sqrt(sum(part * part for part in direction))
-            if abs(length - 1) <= _TOLERANCE:
+            length = sqrt(sum(coordinate * coordinate for coordinate in direction))
+            if abs(length - 1) <= _LENGTH_TOLERANCE:
                 continue
-            unit = " ".join(_component(part / length) for part in direction)
+            unit_vector = " ".join(_format_component(part / length) for part in direction)
             yield self.report(
                 phrase(
                     "the axis of joint '{name}' has length {length}, not 1: '{xyz}'",
@@ -118,8 +118,8 @@ class AxisNotUnit(Rule):
                 ),
                 axis,
                 "xyz",
-                hint=phrase("write {unit}", unit=unit),
-                fix=replace_value(axis, "xyz", unit),
+                hint=phrase("write {unit}", unit=unit_vector),
+                fix=replace_value(axis, "xyz", unit_vector),
             )
 
 
@@ -239,28 +239,30 @@ class AxisTilted(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every axis that is close to a coordinate axis without being exactly aligned."""
-        largest = radians(self.option(subject, "largest-tilt", float))
+        max_tilt = radians(self.option(subject, "largest-tilt", float))
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
-            if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
+            if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):
                 continue
-            main = max(range(3), key=lambda index, found=direction: abs(found[index]))  # type: ignore[misc]
-            rest = sqrt(sum(part * part for index, part in enumerate(direction) if index != main))
-            tilt = rest / abs(direction[main])
-            if not _TILT_TOLERANCE < tilt <= largest:
+            main_index = max(range(3), key=lambda index, vector=direction: abs(vector[index]))  # type: ignore[misc]
+            perpendicular = sqrt(
+                sum(coordinate * coordinate for index, coordinate in enumerate(direction) if index != main_index)
+            )
+            tilt = perpendicular / abs(direction[main_index])
+            if not _TILT_TOLERANCE < tilt <= max_tilt:
                 continue
-            straight = " ".join(plain(float(round(part)) + 0.0) for part in _snap_to_axis(direction, main))
+            exact_axis = " ".join(plain(float(round(part)) + 0.0) for part in _snap_to_axis(direction, main_index))
             yield self.report(
                 phrase(
                     "the axis of joint '{name}' is almost {straight}: '{xyz}'",
                     name=joint.name,
-                    straight=straight,
+                    straight=exact_axis,
                     xyz=axis.attributes["xyz"].strip(),
                 ),
                 axis,
                 "xyz",
-                hint=phrase("write {straight}", straight=straight),
-                fix=replace_value(axis, "xyz", straight, safe=False),
+                hint=phrase("write {straight}", straight=exact_axis),
+                fix=replace_value(axis, "xyz", exact_axis, safe=False),
             )
 
 
@@ -313,9 +315,11 @@ class JointNotPublished(Rule):
                 )
 
 
-def _component(part: float) -> str:
-    return plain(float(f"{part:.6g}") + 0.0)
+def _format_component(component: float) -> str:
+    return plain(float(f"{component:.6g}") + 0.0)
 
 
-def _snap_to_axis(direction: tuple[float, ...], main: int) -> list[float]:
-    return [(1.0 if part > 0 else -1.0) if index == main else 0.0 for index, part in enumerate(direction)]
+def _snap_to_axis(direction: tuple[float, ...], main_index: int) -> list[float]:
+    return [
+        (1.0 if component > 0 else -1.0) if index == main_index else 0.0 for index, component in enumerate(direction)
+    ]

@@ -13,9 +13,9 @@ from linkwright.lint.walk import format_number, parts, value
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
-_SLACK = 1e-6
-_LITTLE = 0.25
-"""Of the range: so far beyond one end is a choice, to leave that end to the mechanical stop."""
+_TOLERANCE = 1e-6
+_MAX_OVERSHOOT = 0.25
+"""The fraction of the range by which a soft limit may exceed one end, to rely on the mechanical stop there."""
 
 
 class SoftLimitsOutside(Rule):
@@ -53,24 +53,32 @@ class SoftLimitsOutside(Rule):
             lower, upper = joint.limit.lower, joint.limit.upper
             if not lower < upper:
                 continue
-            below = lower - joint.safety.soft_lower_limit if "soft_lower_limit" in safety.attributes else 0
-            above = joint.safety.soft_upper_limit - upper if "soft_upper_limit" in safety.attributes else 0
-            if min(below, above) < -_SLACK and max(below, above) <= _LITTLE * (upper - lower):
+            lower_excess = lower - joint.safety.soft_lower_limit if "soft_lower_limit" in safety.attributes else 0
+            upper_excess = joint.safety.soft_upper_limit - upper if "soft_upper_limit" in safety.attributes else 0
+            if min(lower_excess, upper_excess) < -_TOLERANCE and max(lower_excess, upper_excess) <= _MAX_OVERSHOOT * (
+                upper - lower
+            ):
                 continue
-            if below > _SLACK:
-                yield self._outside(joint, safety, "soft_lower_limit", joint.safety.soft_lower_limit, "lower", lower)
-            if above > _SLACK:
-                yield self._outside(joint, safety, "soft_upper_limit", joint.safety.soft_upper_limit, "upper", upper)
+            if lower_excess > _TOLERANCE:
+                yield self._outside_finding(
+                    joint, safety, "soft_lower_limit", joint.safety.soft_lower_limit, "lower", lower
+                )
+            if upper_excess > _TOLERANCE:
+                yield self._outside_finding(
+                    joint, safety, "soft_upper_limit", joint.safety.soft_upper_limit, "upper", upper
+                )
 
-    def _outside(self, joint: Joint, safety: Element, name: str, soft: float, end: str, limit: float) -> Diagnostic:
-        below = end == "lower"
+    def _outside_finding(
+        self, joint: Joint, safety: Element, name: str, soft_limit: float, end: str, limit: float
+    ) -> Diagnostic:
+        is_lower = end == "lower"
         return self.report(
             phrase(
                 "'{name}' of joint '{joint_name}' is {side} its limit: {soft}, but '{end}' is {limit}",
                 name=name,
                 joint_name=joint.name,
-                side=phrase("below") if below else phrase("above"),
-                soft=format_number(soft),
+                side=phrase("below") if is_lower else phrase("above"),
+                soft=format_number(soft_limit),
                 end=end,
                 limit=format_number(limit),
             ),
@@ -78,7 +86,7 @@ class SoftLimitsOutside(Rule):
             name,
             hint=phrase(
                 "a soft limit acts before the limit: write a value {side} than {limit}",
-                side=phrase("more") if below else phrase("less"),
+                side=phrase("more") if is_lower else phrase("less"),
                 limit=format_number(limit),
             ),
         )
@@ -114,28 +122,28 @@ class SoftLimitsInverted(Rule):
         If no soft limits are given, both are 0 and have no effect.
         """
         for joint, _, safety in parts(subject, "safety_controller"):
-            soft = joint.safety
-            if soft is None or soft.soft_lower_limit == soft.soft_upper_limit == 0:
+            controller = joint.safety
+            if controller is None or controller.soft_lower_limit == controller.soft_upper_limit == 0:
                 continue
-            if soft.soft_lower_limit >= soft.soft_upper_limit:
+            if controller.soft_lower_limit >= controller.soft_upper_limit:
                 edits = [
                     value_edit(safety, "soft_lower_limit", safety.attributes.get("soft_upper_limit", "0")),
                     value_edit(safety, "soft_upper_limit", safety.attributes.get("soft_lower_limit", "0")),
                 ]
-                whole = tuple(edit for edit in edits if edit is not None)
+                complete_edits = tuple(edit for edit in edits if edit is not None)
                 yield self.report(
                     phrase(
                         "the soft limits of joint '{name}' leave no range: {soft_lower_limit} to {soft_upper_limit}",
                         name=joint.name,
-                        soft_lower_limit=format_number(soft.soft_lower_limit),
-                        soft_upper_limit=format_number(soft.soft_upper_limit),
+                        soft_lower_limit=format_number(controller.soft_lower_limit),
+                        soft_upper_limit=format_number(controller.soft_upper_limit),
                     ),
                     safety,
                     "soft_lower_limit",
-                    hint=phrase("exchange them")
-                    if soft.soft_lower_limit > soft.soft_upper_limit
-                    else phrase("give a range"),
-                    fix=Fix(whole, safe=False) if len(whole) == 2 else None,
+                    hint=phrase("exchange the two values")
+                    if controller.soft_lower_limit > controller.soft_upper_limit
+                    else phrase("give a lower soft limit below the upper soft limit"),
+                    fix=Fix(complete_edits, safe=False) if len(complete_edits) == 2 else None,
                 )
 
 
@@ -215,20 +223,21 @@ class DynamicsNegative(Rule):
         """Report every negative damping or friction."""
         for joint, _, dynamics in parts(subject, "dynamics"):
             for name in ("damping", "friction"):
-                size = value(dynamics, name)
-                if size is not None and size < 0:
+                coefficient = value(dynamics, name)
+                if coefficient is not None and coefficient < 0:
                     edit = value_edit(dynamics, name, dynamics.attributes[name].strip().lstrip("-"))
                     yield self.report(
                         phrase(
                             "'{name}' of joint '{joint_name}' is negative: {size}",
                             name=name,
                             joint_name=joint.name,
-                            size=format_number(size),
+                            size=format_number(coefficient),
                         ),
                         dynamics,
                         name,
                         hint=phrase(
-                            "a negative value feeds energy into the joint: write {value}", value=format_number(-size)
+                            "a negative value feeds energy into the joint: write {value}",
+                            value=format_number(-coefficient),
                         ),
                         fix=Fix((edit,), safe=False) if edit else None,
                     )
@@ -303,15 +312,15 @@ class CalibrationOutside(Rule):
             if joint.type not in ("revolute", "prismatic") or not lower < upper:
                 continue
             for name in ("rising", "falling"):
-                place = value(calibration, name)
-                if place is not None and not lower - _SLACK <= place <= upper + _SLACK:
+                position = value(calibration, name)
+                if position is not None and not lower - _TOLERANCE <= position <= upper + _TOLERANCE:
                     yield self.report(
                         phrase(
                             "'{name}' of joint '{joint_name}' is outside its limits: {place}, but the range is {lower} "
                             "to {upper}",
                             name=name,
                             joint_name=joint.name,
-                            place=format_number(place),
+                            place=format_number(position),
                             lower=format_number(lower),
                             upper=format_number(upper),
                         ),

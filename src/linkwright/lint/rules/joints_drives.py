@@ -22,16 +22,16 @@ class _ZeroLimitRule(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if self.only_in_simulation and not is_for_simulation(subject):
             return
-        springs = {
+        sprung_joints = {
             element.attributes.get("reference")
             for element in subject.elements("gazebo")
             if element.first("springStiffness") is not None
         }
         for joint, limit in limits(subject, *BOUNDED, "continuous"):
-            ends = bounds(limit)
-            if ends is not None and ends[0] == ends[1] and joint.type in BOUNDED:
+            range_bounds = bounds(limit)
+            if range_bounds is not None and range_bounds[0] == range_bounds[1] and joint.type in BOUNDED:
                 continue  # a joint without a range cannot move in any case; LW202 reports it
-            if joint.mimic is None and joint.name not in springs and value(limit, self.attribute) == 0:
+            if joint.mimic is None and joint.name not in sprung_joints and value(limit, self.attribute) == 0:
                 yield self.report(
                     phrase(
                         "'{attribute}' in <limit> of joint '{name}' is 0: {consequence}",
@@ -94,7 +94,7 @@ class VelocityZero(_ZeroLimitRule):
     code = "LW206"
     name = "velocity-zero"
     attribute = "velocity"
-    consequence = phrase("planners and controllers hold it still")
+    consequence = phrase("planners and controllers do not move it")
 
 
 class _NegativeLimitRule(Rule):
@@ -106,20 +106,20 @@ class _NegativeLimitRule(Rule):
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return  # the reader reports negative limits in files of URDF 1.2
         for joint, _, limit in parts(subject, "limit"):
-            size = value(limit, self.attribute)
-            if size is not None and size < 0:
+            magnitude = value(limit, self.attribute)
+            if magnitude is not None and magnitude < 0:
                 edit = value_edit(limit, self.attribute, limit.attributes[self.attribute].strip().lstrip("-"))
                 yield self.report(
                     phrase(
                         "'{attribute}' in <limit> of joint '{name}' is negative: {size}",
                         attribute=self.attribute,
                         name=joint.name,
-                        size=format_number(size),
+                        size=format_number(magnitude),
                     ),
                     limit,
                     self.attribute,
                     hint=phrase(
-                        "it applies in both directions: give its magnitude, {value}", value=format_number(-size)
+                        "it applies in both directions: give its magnitude, {value}", value=format_number(-magnitude)
                     ),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
@@ -223,7 +223,7 @@ class VelocityInDegrees(Rule):
                 limit,
                 "velocity",
                 hint=phrase(
-                    "speeds are in rad/s: {radians}; {speed} rad/s are {degrees} revolutions a minute",
+                    "speeds are in rad/s: write {radians}; {speed} rad/s are {degrees} revolutions per minute",
                     radians=format_number(radians(speed)),
                     speed=format_number(speed),
                     degrees=format_number(degrees(speed) / 6),

@@ -13,10 +13,10 @@ from linkwright.lint.walk import format_number, joints, value
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
-_TURNING = ("revolute", "continuous")
-_SLIDING = ("prismatic",)
-_SLACK = 1e-3
-"""Part of the follower's range by which it may exceed its limits: rounded factors are not mistakes."""
+_REVOLUTE_TYPES = ("revolute", "continuous")
+_PRISMATIC_TYPES = ("prismatic",)
+_TOLERANCE = 1e-3
+"""The fraction of its range by which a follower may exceed its limits: rounded factors are not mistakes."""
 
 
 def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
@@ -27,11 +27,11 @@ def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
             yield joint, mimic
 
 
-def _pairs(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
+def _followers_with_leaders(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
     """Yield each follower with its leader and ``<mimic>``, if the leader is another joint."""
-    by_name = {joint.name: joint for joint in subject.joints}
+    joints_by_name = {joint.name: joint for joint in subject.joints}
     for joint, mimic in _followers(subject):
-        leader = by_name.get(mimic.attributes["joint"])
+        leader = joints_by_name.get(mimic.attributes["joint"])
         if leader is not None and leader.name != joint.name:
             yield joint, leader, mimic
 
@@ -97,7 +97,7 @@ class MimicOfFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every follower of a joint that does not move."""
-        for joint, leader, mimic in _pairs(subject):
+        for joint, leader, mimic in _followers_with_leaders(subject):
             if leader.type == "fixed" and joint.type != "fixed":
                 yield self.report(
                     phrase(
@@ -107,8 +107,8 @@ class MimicOfFixed(Rule):
                     ),
                     mimic,
                     "joint",
-                    hint=phrase("name a joint that moves"),
-                    notes=_here(leader),
+                    hint=phrase("give the name of a joint that moves"),
+                    notes=_definition_note(leader),
                 )
 
 
@@ -177,14 +177,14 @@ class MimicBeyondLimits(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every bounded follower whose leader moves it out of its range."""
-        for joint, leader, mimic in _pairs(subject):
-            own, followed = _range(joint), _range(leader)
-            if own is None or followed is None or joint.mimic is None:
+        for joint, leader, mimic in _followers_with_leaders(subject):
+            follower_range, leader_range = _position_range(joint), _position_range(leader)
+            if follower_range is None or leader_range is None or joint.mimic is None:
                 continue
             factor, offset = joint.mimic.multiplier, joint.mimic.offset
-            ends = sorted(end * factor + offset for end in followed)
-            slack = _SLACK * max(own[1] - own[0], 1e-6)
-            if ends[0] >= own[0] - slack and ends[1] <= own[1] + slack:
+            positions = sorted(bound * factor + offset for bound in leader_range)
+            tolerance = _TOLERANCE * max(follower_range[1] - follower_range[0], 1e-6)
+            if positions[0] >= follower_range[0] - tolerance and positions[1] <= follower_range[1] + tolerance:
                 continue
             yield self.report(
                 phrase(
@@ -192,18 +192,18 @@ class MimicBeyondLimits(Rule):
                     "{upper}",
                     name=leader.name,
                     joint_name=joint.name,
-                    least=format_number(ends[0]),
-                    most=format_number(ends[1]),
-                    lower=format_number(own[0]),
-                    upper=format_number(own[1]),
+                    least=format_number(positions[0]),
+                    most=format_number(positions[1]),
+                    lower=format_number(follower_range[0]),
+                    upper=format_number(follower_range[1]),
                 ),
                 mimic,
                 hint=phrase(
                     'write lower="{ends}" upper="{other_ends}" to cover that range',
-                    ends=format_number(ends[0]),
-                    other_ends=format_number(ends[1]),
+                    ends=format_number(positions[0]),
+                    other_ends=format_number(positions[1]),
                 ),
-                notes=_here(leader),
+                notes=_definition_note(leader),
             )
 
 
@@ -232,13 +232,13 @@ class MimicChain(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every follower of a follower; the URDF reader reports cycles."""
-        by_name = {joint.name: joint for joint in subject.joints}
-        for joint, leader, mimic in _pairs(subject):
+        joints_by_name = {joint.name: joint for joint in subject.joints}
+        for joint, leader, mimic in _followers_with_leaders(subject):
             if leader.mimic is None or joint.mimic is None:
                 continue
-            first = by_name.get(leader.mimic.joint)
-            if first is None or first.mimic is not None:
-                continue  # not found, or itself a follower: then the cycle or the joint above is reported
+            first_joint = joints_by_name.get(leader.mimic.joint)
+            if first_joint is None or first_joint.mimic is not None:
+                continue  # a missing leader, a cycle or a longer chain, which is reported at another joint
             factor = joint.mimic.multiplier * leader.mimic.multiplier
             offset = joint.mimic.multiplier * leader.mimic.offset + joint.mimic.offset
             yield self.report(
@@ -246,17 +246,17 @@ class MimicChain(Rule):
                     "joint '{name}' follows '{leader_name}', which itself follows '{first_name}'",
                     name=joint.name,
                     leader_name=leader.name,
-                    first_name=first.name,
+                    first_name=first_joint.name,
                 ),
                 mimic,
                 "joint",
                 hint=phrase(
                     'write <mimic joint="{name}" multiplier="{factor}" offset="{offset}"/>',
-                    name=first.name,
+                    name=first_joint.name,
                     factor=format_number(factor),
                     offset=format_number(offset),
                 ),
-                notes=_here(leader),
+                notes=_definition_note(leader),
             )
 
 
@@ -287,11 +287,15 @@ class MimicOtherKind(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every follower with multiplier 1 if only one of the two joints is prismatic."""
-        for joint, leader, mimic in _pairs(subject):
-            turns = joint.type in _TURNING and leader.type in _SLIDING
-            slides = joint.type in _SLIDING and leader.type in _TURNING
-            if (turns or slides) and joint.mimic is not None and abs(joint.mimic.multiplier) == 1:
-                units = phrase("radian per metre") if turns else phrase("metre per radian")
+        for joint, leader, mimic in _followers_with_leaders(subject):
+            is_revolute_follower = joint.type in _REVOLUTE_TYPES and leader.type in _PRISMATIC_TYPES
+            is_prismatic_follower = joint.type in _PRISMATIC_TYPES and leader.type in _REVOLUTE_TYPES
+            if (
+                (is_revolute_follower or is_prismatic_follower)
+                and joint.mimic is not None
+                and abs(joint.mimic.multiplier) == 1
+            ):
+                units = phrase("radian per metre") if is_revolute_follower else phrase("metre per radian")
                 yield self.report(
                     phrase(
                         "{type} joint '{name}' follows {leader_type} joint '{leader_name}' by one {units}",
@@ -304,7 +308,7 @@ class MimicOtherKind(Rule):
                     mimic,
                     "multiplier" if "multiplier" in mimic.attributes else "joint",
                     hint=phrase('add multiplier="...", such as the radius of the wheel between them'),
-                    notes=_here(leader),
+                    notes=_definition_note(leader),
                 )
 
 
@@ -338,12 +342,12 @@ class MimicDrivenByControl(Rule):
         """Report every command interface of a follower."""
         followers = {joint.name: joint for joint, _ in _followers(subject)}
         for system in subject.elements("ros2_control"):
-            for entry in system.elements("joint"):
-                joint = followers.get(entry.attributes.get("name", ""))
-                command = entry.first("command_interface")
+            for control_joint in system.elements("joint"):
+                joint = followers.get(control_joint.attributes.get("name", ""))
+                command = control_joint.first("command_interface")
                 if joint is None or joint.mimic is None or command is None:
                     continue
-                if entry.attributes.get("mimic") == "false":
+                if control_joint.attributes.get("mimic") == "false":
                     continue
                 yield self.report(
                     phrase(
@@ -353,11 +357,11 @@ class MimicDrivenByControl(Rule):
                     ),
                     command,
                     hint=phrase('remove <command_interface>, or write <joint name="..." mimic="false"> there'),
-                    notes=_here(joint),
+                    notes=_definition_note(joint),
                 )
 
 
-def _range(joint: Joint) -> tuple[float, float] | None:
+def _position_range(joint: Joint) -> tuple[float, float] | None:
     """Return the range of positions of a joint in rad or m; None if it is missing or invalid."""
     if joint.type not in ("revolute", "prismatic") or joint.limit is None:
         return None
@@ -365,7 +369,7 @@ def _range(joint: Joint) -> tuple[float, float] | None:
     return (lower, upper) if -inf < lower < upper < inf else None
 
 
-def _here(joint: Joint) -> tuple[Note, ...]:
+def _definition_note(joint: Joint) -> tuple[Note, ...]:
     return (
         (Note(phrase("joint '{name}' is defined here", name=joint.name), joint.element.span()),)
         if joint.element

@@ -13,7 +13,7 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, format_number, limits
 from linkwright.loading.deferred import lazy_pattern
 
-_SENSOR = lazy_pattern(
+_SENSOR_NAME = lazy_pattern(
     r"sensor|camera|(?<![a-z])(imu|gps|gnss|dvl|sonar|lidar|laser|magnetometer|altimeter|pressure|bumper)(?![a-z])",
     re.IGNORECASE,
 )
@@ -50,29 +50,29 @@ class LimitInverted(Rule):
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
-            ends = bounds(limit)
-            if ends is None or ends[0] <= ends[1]:
+            range_bounds = bounds(limit)
+            if range_bounds is None or range_bounds[0] <= range_bounds[1]:
                 continue
             edits = [
                 value_edit(limit, "lower", limit.attributes.get("upper", "0")),
                 value_edit(limit, "upper", limit.attributes.get("lower", "0")),
             ]
-            whole = [edit for edit in edits if edit is not None]
+            complete_edits = [edit for edit in edits if edit is not None]
             yield self.report(
                 phrase(
                     "'lower' in <limit> of joint '{name}' is above 'upper': {ends} > {other_ends}",
                     name=joint.name,
-                    ends=format_number(ends[0]),
-                    other_ends=format_number(ends[1]),
+                    ends=format_number(range_bounds[0]),
+                    other_ends=format_number(range_bounds[1]),
                 ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
                 hint=phrase(
                     'write lower="{ends}" upper="{other_ends}"',
-                    ends=format_number(ends[1]),
-                    other_ends=format_number(ends[0]),
+                    ends=format_number(range_bounds[1]),
+                    other_ends=format_number(range_bounds[0]),
                 ),
-                fix=Fix(tuple(whole), safe=False) if len(whole) == 2 else None,
+                fix=Fix(tuple(complete_edits), safe=False) if len(complete_edits) == 2 else None,
             )
 
 
@@ -105,20 +105,22 @@ class LimitEmpty(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every bounded joint whose two bounds are equal."""
         for joint, limit in limits(subject, *BOUNDED):
-            ends = bounds(limit)
+            range_bounds = bounds(limit)
             has_bounds = "lower" in limit.attributes or "upper" in limit.attributes
-            if ends is not None and has_bounds and ends[0] == ends[1]:
+            if range_bounds is not None and has_bounds and range_bounds[0] == range_bounds[1]:
                 yield self.report(
                     phrase(
                         "{type} joint '{name}' cannot move: 'lower' and 'upper' are both {ends}",
                         type=joint.type,
                         name=joint.name,
-                        ends=format_number(ends[0]),
+                        ends=format_number(range_bounds[0]),
                     ),
                     limit,
                     "lower" if "lower" in limit.attributes else "upper",
                     hint=phrase("give the range of the joint, or make it 'fixed'"),
-                    severity=Severity.INFO if ends[0] == 0 and _SENSOR.search(f"{joint.name} {joint.child}") else None,
+                    severity=Severity.INFO
+                    if range_bounds[0] == 0 and _SENSOR_NAME.search(f"{joint.name} {joint.child}")
+                    else None,
                 )
 
 
@@ -203,18 +205,18 @@ class LimitOneBound(Rule):
         from linkwright.lint.fix import add_attribute
 
         for joint, limit in limits(subject, *BOUNDED):
-            missing = [name for name in ("lower", "upper") if name not in limit.attributes]
-            if len(missing) == 1:
+            missing_bounds = [name for name in ("lower", "upper") if name not in limit.attributes]
+            if len(missing_bounds) == 1:
                 yield self.report(
                     phrase(
                         "<limit> of {type} joint '{name}' has no '{missing}', which is then 0",
                         type=joint.type,
                         name=joint.name,
-                        missing=missing[0],
+                        missing=missing_bounds[0],
                     ),
                     limit,
-                    hint=phrase('add {missing}="0" if 0 is intended', missing=missing[0]),
-                    fix=add_attribute(limit, missing[0], "0"),
+                    hint=phrase('add {missing}="0" if 0 is intended', missing=missing_bounds[0]),
+                    fix=add_attribute(limit, missing_bounds[0], "0"),
                 )
 
 
@@ -246,17 +248,21 @@ class LimitOnContinuous(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every continuous joint with a limited range on which its author may rely."""
         for joint, limit in limits(subject, "continuous"):
-            ends = bounds(limit)
-            if ends is None or ends[0] == ends[1] or max(abs(ends[0]), abs(ends[1])) > UNBOUNDED:
+            range_bounds = bounds(limit)
+            if (
+                range_bounds is None
+                or range_bounds[0] == range_bounds[1]
+                or max(abs(range_bounds[0]), abs(range_bounds[1])) > UNBOUNDED
+            ):
                 continue
-            if ends[1] - ends[0] >= 2 * pi - 0.02:
+            if range_bounds[1] - range_bounds[0] >= 2 * pi - 0.02:
                 continue  # a full turn covers all positions
             yield self.report(
                 phrase(
                     "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing enforces",
                     name=joint.name,
-                    ends=format_number(ends[0]),
-                    other_ends=format_number(ends[1]),
+                    ends=format_number(range_bounds[0]),
+                    other_ends=format_number(range_bounds[1]),
                 ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
@@ -328,16 +334,20 @@ class ZeroOutsideLimits(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every bounded joint whose range does not contain 0."""
         for joint, limit in limits(subject, *BOUNDED):
-            ends = bounds(limit)
-            if ends is not None and ends[0] < ends[1] and (ends[0] > 0 or ends[1] < 0):
+            range_bounds = bounds(limit)
+            if (
+                range_bounds is not None
+                and range_bounds[0] < range_bounds[1]
+                and (range_bounds[0] > 0 or range_bounds[1] < 0)
+            ):
                 yield self.report(
                     phrase(
                         "joint '{name}' cannot be at 0: its range is {ends} to {other_ends}",
                         name=joint.name,
-                        ends=format_number(ends[0]),
-                        other_ends=format_number(ends[1]),
+                        ends=format_number(range_bounds[0]),
+                        other_ends=format_number(range_bounds[1]),
                     ),
                     limit,
-                    "lower" if ends[0] > 0 else "upper",
+                    "lower" if range_bounds[0] > 0 else "upper",
                     hint=phrase("move its <origin> so that 0 is in the range"),
                 )

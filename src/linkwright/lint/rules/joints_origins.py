@@ -44,13 +44,13 @@ class OriginFar(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint whose origin is implausibly far away in metres."""
-        farthest = self.option(subject, "farthest", float)
+        max_distance = self.option(subject, "farthest", float)
         for joint, _, origin in parts(subject, "origin"):
             xyz = values(origin, "xyz")
             if len(xyz) != 3 or joint.parent in SURROUNDINGS:
                 continue
-            distance = sqrt(sum(part * part for part in xyz))
-            if distance > farthest:
+            distance = sqrt(sum(coordinate * coordinate for coordinate in xyz))
+            if distance > max_distance:
                 metres = " ".join(format_number(part / 1000) for part in xyz)
                 yield self.report(
                     phrase(
@@ -142,22 +142,22 @@ class AngleRounded(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every angle that is a simple fraction of pi, rounded to two to five decimal places."""
         for owner, origin in _origins(subject):
-            written = origin.attributes.get("rpy", "").split()
-            if len(values(origin, "rpy")) != 3 or len(written) != 3:
+            texts = origin.attributes.get("rpy", "").split()
+            if len(values(origin, "rpy")) != 3 or len(texts) != 3:
                 continue
-            exact = [_pi_fraction(word) for word in written]
-            if any(exact):
-                better = " ".join(new or old for new, old in zip(exact, written, strict=True))
-                edit = value_edit(origin, "rpy", better)
+            exact_texts = [_pi_fraction(text) for text in texts]
+            if any(exact_texts):
+                suggestion = " ".join(exact_text or old for exact_text, old in zip(exact_texts, texts, strict=True))
+                edit = value_edit(origin, "rpy", suggestion)
                 yield self.report(
                     phrase(
                         "'rpy' in <origin> of {owner} is a rounded fraction of pi: '{written}'",
                         owner=owner,
-                        written=" ".join(written),
+                        written=" ".join(texts),
                     ),
                     origin,
                     "rpy",
-                    hint=phrase("write {better}", better=better),
+                    hint=phrase("write {better}", better=suggestion),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 
@@ -193,9 +193,9 @@ class OriginMissing(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint without an origin between two links with visuals."""
-        solid = {link.name for link in subject.links if link.visuals}
+        visible_links = {link.name for link in subject.links if link.visuals}
         for joint, element in joints(subject):
-            if element.first("origin") is None and {joint.parent, joint.child} <= solid:
+            if element.first("origin") is None and {joint.parent, joint.child} <= visible_links:
                 yield self.report(
                     phrase(
                         "joint '{name}' has no <origin>: '{child}' is in the same place as '{parent}'",
@@ -208,21 +208,21 @@ class OriginMissing(Rule):
                 )
 
 
-_PARTS_OF_PI = (1.0, 1 / 2, 1 / 3, 2 / 3, 1 / 4, 3 / 4, 3 / 2, 2.0)
+_PI_FRACTIONS = (1.0, 1 / 2, 1 / 3, 2 / 3, 1 / 4, 3 / 4, 3 / 2, 2.0)
 
 
 _DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
-def _pi_fraction(word: str) -> str | None:
+def _pi_fraction(text: str) -> str | None:
     """Return the exact value of the fraction of pi that a rounded number approximates, or None."""
-    if not _DECIMAL.fullmatch(word):
+    if not _DECIMAL.fullmatch(text):
         return None
-    angle = float(word)
-    digits = len(word.partition(".")[2])
-    for part in _PARTS_OF_PI:
-        if abs(abs(angle) - part * pi) <= 10.0**-digits:
-            return repr(part * pi if angle > 0 else -part * pi)
+    angle = float(text)
+    digits = len(text.partition(".")[2])
+    for fraction in _PI_FRACTIONS:
+        if abs(abs(angle) - fraction * pi) <= 10.0**-digits:
+            return repr(fraction * pi if angle > 0 else -fraction * pi)
     return None
 
 
@@ -232,7 +232,7 @@ def _origins(subject: Subject) -> Iterator[tuple[str, Element]]:
     for link in subject.links:
         if link.element is None:
             continue
-        for part in link.element.elements():
-            origin_of_part = part.first("origin") if part.tag in ("inertial", "visual", "collision") else None
-            if origin_of_part is not None:
-                yield f"<{part.tag}> of link '{link.name}'", origin_of_part
+        for element in link.element.elements():
+            origin_element = element.first("origin") if element.tag in ("inertial", "visual", "collision") else None
+            if origin_element is not None:
+                yield f"<{element.tag}> of link '{link.name}'", origin_element

@@ -43,13 +43,13 @@ class LimitInDegrees(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every limit of a revolute joint that is implausible in radians and plausible in degrees."""
-        most = self.option(subject, "most-turns", float) * 2 * pi
+        max_angle = self.option(subject, "most-turns", float) * 2 * pi
         for joint, limit in limits(subject, "revolute"):
-            ends = bounds(limit)
-            if ends is None or max(map(abs, ends)) > 360 or looks_like_degrees(*ends):
+            range_bounds = bounds(limit)
+            if range_bounds is None or max(map(abs, range_bounds)) > 360 or looks_like_degrees(*range_bounds):
                 continue
-            for name, angle in zip(("lower", "upper"), ends, strict=True):
-                if abs(angle) > most:
+            for name, angle in zip(("lower", "upper"), range_bounds, strict=True):
+                if abs(angle) > max_angle:
                     yield self.report(
                         phrase(
                             "'{name}' in <limit> of joint '{joint_name}' is {angle} turns: {other_angle} rad",
@@ -95,14 +95,14 @@ class LimitPracticallyUnbounded(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every revolute joint with both bounds beyond a thousand radians."""
         for joint, limit in limits(subject, "revolute"):
-            ends = bounds(limit)
-            if ends is not None and ends[0] <= -UNBOUNDED and ends[1] >= UNBOUNDED:
+            range_bounds = bounds(limit)
+            if range_bounds is not None and range_bounds[0] <= -UNBOUNDED and range_bounds[1] >= UNBOUNDED:
                 yield self.report(
                     phrase(
                         "revolute joint '{name}' turns from {ends} to {other_ends} rad",
                         name=joint.name,
-                        ends=format_number(ends[0]),
-                        other_ends=format_number(ends[1]),
+                        ends=format_number(range_bounds[0]),
+                        other_ends=format_number(range_bounds[1]),
                     ),
                     limit,
                     "lower",
@@ -139,22 +139,26 @@ class LimitInMillimetres(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every limit of a prismatic joint that is implausible in metres."""
-        longest = self.option(subject, "longest", float)
+        max_position = self.option(subject, "longest", float)
         for joint, limit in limits(subject, "prismatic"):
-            ends = bounds(limit)
-            if ends is not None and -ends[0] == ends[1] > 0 and log10(ends[1]).is_integer():
+            range_bounds = bounds(limit)
+            if (
+                range_bounds is not None
+                and -range_bounds[0] == range_bounds[1] > 0
+                and log10(range_bounds[1]).is_integer()
+            ):
                 continue  # limits such as -100 to 100 mean that there are no limits
             for name in ("lower", "upper"):
-                way = value(limit, name)
-                if way is not None and longest < abs(way) <= 10 * UNBOUNDED:
+                position = value(limit, name)
+                if position is not None and max_position < abs(position) <= 10 * UNBOUNDED:
                     yield self.report(
                         phrase(
                             "'{name}' in <limit> of prismatic joint '{joint_name}' is {way} m",
                             name=name,
                             joint_name=joint.name,
-                            way=format_number(way),
+                            way=format_number(position),
                         ),
                         limit,
                         name,
-                        hint=phrase("if it is in millimetres, write {way}", way=format_number(way / 1000)),
+                        hint=phrase("if it is in millimetres, write {way}", way=format_number(position / 1000)),
                     )

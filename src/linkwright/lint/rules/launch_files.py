@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
-from linkwright.lint.made_files import is_made_later
+from linkwright.lint.made_files import is_created_later
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile, SharedFile
 
-_FILE = lazy_pattern(r"[^/]*\.[A-Za-z0-9]{1,8}$")
+_FILE_NAME = lazy_pattern(r"[^/]*\.[A-Za-z0-9]{1,8}$")
 
 
 _COMMENT = lazy_pattern(r"#.*")
@@ -76,7 +76,9 @@ class LaunchSyntaxError(LaunchRule):
         """Yield a finding if a launch file has a syntax error."""
         if file.error is not None:
             message = phrase(
-                "the launch file '{path}' is not Python: {message}", path=file.path, message=foreign(file.error.message)
+                "the launch file '{path}' is not valid Python: {message}",
+                path=file.path,
+                message=foreign(file.error.message),
             )
             yield self.report(message, span=file.error.span, source=file.source)
 
@@ -118,19 +120,19 @@ class LaunchFunctionMissing(LaunchRule):
         from linkwright.packages.readers.launch_files import FUNCTION
 
         functions = re.findall(r"^def\s+(\w+)", file.source.text, re.MULTILINE)
-        like = next(iter(nearest(FUNCTION, functions, 1)), None)
+        similar_name = next(iter(nearest(FUNCTION, functions, 1)), None)
         hint = (
-            phrase("'{like}' looks misspelt", like=like)
-            if like
+            phrase("the name of the function '{like}' looks misspelt", like=similar_name)
+            if similar_name
             else phrase("define {function}(), which returns a LaunchDescription", function=FUNCTION)
         )
         span = file.source.span(0)
-        if like:
-            at = file.source.text.index(like)
-            span = file.source.span(at, at + len(like))
+        if similar_name:
+            offset = file.source.text.index(similar_name)
+            span = file.source.span(offset, offset + len(similar_name))
         message = phrase("the launch file '{path}' does not define {function}()", path=file.path, function=FUNCTION)
         # Without a similarly named function, the file may be a module that other launch files import.
-        severity = Severity.ERROR if like else Severity.WARNING
+        severity = Severity.ERROR if similar_name else Severity.WARNING
         if not _COMMENT.sub("", file.source.text).strip():
             severity = Severity.INFO
         yield self.report(message, span=span, source=file.source, hint=hint, severity=severity)
@@ -168,62 +170,77 @@ class LaunchedFileMissing(Rule):
         package = subject.package
         if package is None:
             return
-        made = {item for file in package.launch_files.values() for item in file.made}
+        created_files = {created_file for file in package.launch_files.values() for created_file in file.written_files}
         for file in package.launch_files.values():
-            for shared in file.paths:
-                if (shared.package, shared.path) not in made:
-                    yield from self._check_path(shared, file, package, subject)
+            for shared_file in file.paths:
+                if (shared_file.package, shared_file.path) not in created_files:
+                    yield from self._check_path(shared_file, file, package, subject)
 
     def _check_path(
-        self, shared: SharedFile, file: LaunchFile, package: PackageContext, subject: Subject
+        self, shared_file: SharedFile, file: LaunchFile, package: PackageContext, subject: Subject
     ) -> Iterator[Diagnostic]:
-        if not _FILE.search(shared.path) or "*" in shared.path:
+        if not _FILE_NAME.search(shared_file.path) or "*" in shared_file.path:
             return
-        own = shared.package == package.name
-        share = package.folder if own else subject.finder.find(shared.package)
-        if share is None or (share / shared.path).exists() or (own and _is_installed_as(package, shared)):
+        is_own_package = shared_file.package == package.name
+        share = package.folder if is_own_package else subject.finder.find(shared_file.package)
+        if (
+            share is None
+            or (share / shared_file.path).exists()
+            or (is_own_package and _is_installed_as(package, shared_file))
+        ):
             return
-        name = shared.path.rpartition("/")[2]
-        if not own and (share.parent.name != "share" or is_substitute(share)):
+        name = shared_file.path.rpartition("/")[2]
+        if not is_own_package and (share.parent.name != "share" or is_substitute(share)):
             return  # another package found as sources may install its files elsewhere, or only some of them
-        sources = None if own else subject.finder.find_in_sources(shared.package)
-        if sources is not None and (sources / shared.path).exists():
+        sources = None if is_own_package else subject.finder.find_in_sources(shared_file.package)
+        if sources is not None and (sources / shared_file.path).exists():
             return  # the installed copy may be older than this file
-        if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
+        if (
+            is_own_package
+            and any(package_file.rpartition("/")[2] == name for package_file in package.files)
+            and _may_be_moved(package)
+        ):
             return
-        if own and is_made_later(package, shared.path):
+        if is_own_package and is_created_later(package, shared_file.path):
             return
-        message = phrase("the package '{package}' has no file '{path}'", package=shared.package, path=shared.path)
-        yield self.report(message, span=shared.span, source=file.source, hint=_like(package, shared) if own else None)
+        message = phrase(
+            "the package '{package}' has no file '{path}'", package=shared_file.package, path=shared_file.path
+        )
+        yield self.report(
+            message,
+            span=shared_file.span,
+            source=file.source,
+            hint=_suggestion(package, shared_file) if is_own_package else None,
+        )
 
 
-def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
+def _is_installed_as(package: PackageContext, shared_file: SharedFile) -> bool:
     """Return whether ``setup.py`` installs a file of the package at this path."""
-    folder, _, name = shared.path.rpartition("/")
+    folder, _, name = shared_file.path.rpartition("/")
     setup = package.setup
     if setup is None:
         return False
     destination = f"share/{package.name}/{folder}".rstrip("/")
     return any(
-        item.destination is not None
-        and item.destination.rstrip("/") == destination
-        and any(file.rpartition("/")[2] == name for file in item.files(package.folder))
-        for item in setup.installed
+        install_rule.destination is not None
+        and install_rule.destination.rstrip("/") == destination
+        and any(file.rpartition("/")[2] == name for file in install_rule.files(package.folder))
+        for install_rule in setup.installed
     )
 
 
-def _may_move(package: PackageContext) -> bool:
+def _may_be_moved(package: PackageContext) -> bool:
     """Return whether files may be installed in folders other than their source folders."""
     setup = package.setup
     if setup is not None:
-        return not setup.is_complete or any(item.destination is None for item in setup.installed)
+        return not setup.is_complete or any(install_rule.destination is None for install_rule in setup.installed)
     return True
 
 
-def _like(package: PackageContext, shared: SharedFile) -> Phrase | None:
-    name = shared.path.rpartition("/")[2]
-    same = [file for file in package.files if file.rpartition("/")[2] == name]
-    if same:
-        return phrase("did you mean '{same}'?", same=same[0])
-    like = nearest(shared.path, package.files, 1)
-    return phrase("did you mean {names}?", names=quoted(like[0])) if like else None
+def _suggestion(package: PackageContext, shared_file: SharedFile) -> Phrase | None:
+    name = shared_file.path.rpartition("/")[2]
+    same_names = [file for file in package.files if file.rpartition("/")[2] == name]
+    if same_names:
+        return phrase("did you mean '{same}'?", same=same_names[0])
+    similar_paths = nearest(shared_file.path, package.files, 1)
+    return phrase("did you mean {names}?", names=quoted(similar_paths[0])) if similar_paths else None

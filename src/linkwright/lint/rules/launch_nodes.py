@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile
 
-OTHERS = {
+EXTERNAL_EXECUTABLES = {
     "rviz2": frozenset({"rviz2"}),
     "xacro": frozenset({"xacro"}),
     "controller_manager": frozenset({"ros2_control_node", "spawner", "unspawner", "hardware_spawner"}),
@@ -28,11 +28,11 @@ OTHERS = {
 """The executables of well-known packages; packages whose executables change between releases are left out."""
 
 OURS = frozenset({"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "tf2_ros"})
-"""Packages of which each executable comes with us (of those of the demos only some do)."""
+"""Packages of which we provide every executable; of the demo packages, we provide only some."""
 
 WELL_KNOWN = frozenset(
     {
-        *OTHERS,
+        *EXTERNAL_EXECUTABLES,
         *OURS,
         *(
             "slam_toolbox",
@@ -80,15 +80,17 @@ class LaunchedPackageUnknown(Rule):
         if package is None:
             return
         for file in package.launch_files.values():
-            for place in [*(node.package for node in file.nodes), *file.shares]:
-                like = None if place is None else _intended_package(place.text, package, subject)
-                if place is not None and like is not None:
-                    message = phrase("there is no package '{text}'", text=place.text)
+            for package_reference in [*(node.package for node in file.nodes), *file.shares]:
+                similar_name = (
+                    None if package_reference is None else _intended_package(package_reference.text, package, subject)
+                )
+                if package_reference is not None and similar_name is not None:
+                    message = phrase("there is no package '{text}'", text=package_reference.text)
                     yield self.report(
                         message,
-                        span=place.span,
+                        span=package_reference.span,
                         source=file.source,
-                        hint=phrase("did you mean {names}?", names=quoted(like)),
+                        hint=phrase("did you mean {names}?", names=quoted(similar_name)),
                     )
 
 
@@ -125,16 +127,16 @@ class LaunchedExecutableUnknown(PackageRule):
             if node.package is None or node.executable is None:
                 continue
             name, executable = node.package.text, node.executable.text.removesuffix(".py")
-            known = _executables_of(name) if name != package.name else _own_executables(package)
-            if known is None or executable in known or node.executable.text in known:
+            executables = _executables_of(name) if name != package.name else _own_executables(package)
+            if executables is None or executable in executables or node.executable.text in executables:
                 continue
-            like = next(iter(nearest(executable, known, 1)), None)
-            if like:
-                hint = phrase("did you mean {names}?", names=quoted(like))
+            similar_name = next(iter(nearest(executable, executables, 1)), None)
+            if similar_name:
+                hint = phrase("did you mean {names}?", names=quoted(similar_name))
             else:
                 hint = (
-                    phrase("the package has {known}", known=joined(sorted(known)))
-                    if known
+                    phrase("use one of {known}", known=joined(sorted(executables)))
+                    if executables
                     else phrase("the package has no executables")
                 )
             message = phrase("the package '{name}' has no executable '{text}'", name=name, text=node.executable.text)
@@ -177,7 +179,7 @@ class UndeclaredLaunchDependency(Rule):
             return
         if any("$" in dependency.name for dependency in manifest.dependencies):
             return
-        missing = {
+        missing_packages = {
             name: note
             for name, note in _used_packages(package).items()
             if not (
@@ -188,9 +190,9 @@ class UndeclaredLaunchDependency(Rule):
             and _intended_package(name, package, subject) is None
             and not would_form_cycle(manifest, name, subject.finder)
         }
-        if not missing:
+        if not missing_packages:
             return
-        names = sorted(missing)
+        names = sorted(missing_packages)
         message = counted(
             "launch files use this package that package.xml does not depend on: {names}",
             "launch files use these packages that package.xml does not depend on: {names}",
@@ -201,35 +203,37 @@ class UndeclaredLaunchDependency(Rule):
             "add <exec_depend>{name}</exec_depend>", "add an <exec_depend> for each", len(names), name=names[0]
         )
         fix = dependency_fix(manifest, names)
-        yield self.report(message, manifest.root, notes=[missing[name] for name in names], hint=hint, fix=fix)
+        yield self.report(message, manifest.root, notes=[missing_packages[name] for name in names], hint=hint, fix=fix)
 
 
 def _used_packages(package: PackageContext) -> dict[str, Note]:
     """Return the packages that launch files use, by name, each with a note on its first use."""
-    found: dict[str, Note] = {}
+    first_uses: dict[str, Note] = {}
     for file in package.launch_files.values():
         for name, span in file.imports:
             if name in _PYTHON_PACKAGES:
-                found.setdefault(name, Note(phrase("'{name}' is imported here", name=name), span))
+                first_uses.setdefault(name, Note(phrase("'{name}' is imported here", name=name), span))
         for node in file.nodes:
             if node.package is not None:
-                found.setdefault(
+                first_uses.setdefault(
                     node.package.text,
                     Note(phrase("'{text}' is started here", text=node.package.text), node.package.span),
                 )
         for share in file.shares:
-            found.setdefault(share.text, Note(phrase("'{text}' is looked for here", text=share.text), share.span))
+            first_uses.setdefault(
+                share.text, Note(phrase(("'{text}' is searched for here"), text=share.text), share.span)
+            )
         for match in re.finditer(r"""Command\(\s*\[?\s*["']xacro\b""", file.source.text):
             span = file.source.span(match.end() - len("xacro"), match.end())
-            found.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
-    found.pop(package.name, None)
-    return {name: note for name, note in found.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
+            first_uses.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
+    first_uses.pop(package.name, None)
+    return {name: note for name, note in first_uses.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
 
 
 def _executables_of(name: str) -> frozenset[str] | None:
     """Return the executables of a well-known package, or None if not all are known."""
     if name not in OURS:
-        return OTHERS.get(name)
+        return EXTERNAL_EXECUTABLES.get(name)
     return substituted_executables()[name]
 
 
@@ -246,8 +250,12 @@ def _own_executables(package: PackageContext) -> frozenset[str] | None:
     ):
         return None
     folder = f"lib/{package.name}/"
-    copied = [file.destination for file in setup.installed_files(package.folder) if file.destination.startswith(folder)]
-    return frozenset((*(entry.executable for entry in setup.entry_points), *(Path(name).stem for name in copied)))
+    installed_files = [
+        file.destination for file in setup.installed_files(package.folder) if file.destination.startswith(folder)
+    ]
+    return frozenset(
+        (*(entry.executable for entry in setup.entry_points), *(Path(name).stem for name in installed_files))
+    )
 
 
 def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
@@ -262,14 +270,14 @@ def _intended_package(name: str, package: PackageContext, subject: Subject) -> s
     """
     if not name or name in WELL_KNOWN or _is_known(name, package, subject):
         return None
-    like = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)
-    return like if like is not None and _is_slip(name, like) else None
+    similar_name = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)
+    return similar_name if similar_name is not None and _is_typo(name, similar_name) else None
 
 
-def _is_slip(name: str, like: str) -> bool:
+def _is_typo(name: str, similar_name: str) -> bool:
     """Return whether two names of at least five letters differ by at most one or two letters."""
-    if abs(len(name) - len(like)) > 2 or min(len(name), len(like)) < 5:
+    if abs(len(name) - len(similar_name)) > 2 or min(len(name), len(similar_name)) < 5:
         return False
     from difflib import SequenceMatcher
 
-    return SequenceMatcher(None, name, like).ratio() > 0.9
+    return SequenceMatcher(None, name, similar_name).ratio() > 0.9

@@ -19,7 +19,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted,
 )
-from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
@@ -69,11 +69,11 @@ class CommandWithoutBlank(LaunchRule):
         if python is None:
             return
         for call in python.calls("Command"):
-            parts = python.resolved(call.args[0]) if call.args else argument_of(call, "command")
-            if not isinstance(parts, (ast.List, ast.Tuple)) or len(parts.elts) < 2:
+            arguments = python.resolved(call.args[0]) if call.args else argument_of(call, "command")
+            if not isinstance(arguments, (ast.List, ast.Tuple)) or len(arguments.elts) < 2:
                 continue
-            program, following = parts.elts[0], parts.elts[1]
-            if not _is_program(program, python) or _begins_with_blank(following, python):
+            program, argument = arguments.elts[0], arguments.elts[1]
+            if not _is_program(program, python) or _begins_with_blank(argument, python):
                 continue
             message = phrase("there is no space between the program and its argument")
             hint = phrase("Command joins its parts without spaces: write 'xacro ' with a space at the end")
@@ -116,18 +116,20 @@ class DescriptionNotTyped(Rule):
         if package is None:
             return
         for file in package.launch_files.values():
-            found = [] if file.python is None else list(_untyped_descriptions(file.python))
-            refused = _first_invalid_yaml_description(file, package, subject) if found else None
-            if refused is None:
+            descriptions = [] if file.python is None else list(_untyped_descriptions(file.python))
+            invalid_description = _first_invalid_yaml_description(file, package, subject) if descriptions else None
+            if invalid_description is None:
                 continue
-            path, reason = refused
+            path, reason = invalid_description
             message = phrase(
                 "launch reads this description as YAML, but '{path}' is not valid YAML: {reason}",
                 path=path,
                 reason=foreign(reason),
             )
-            for item in found:
-                yield self.report(message, span=item.span, source=file.source, hint=item.hint, fix=item.fix)
+            for description in descriptions:
+                yield self.report(
+                    message, span=description.span, source=file.source, hint=description.hint, fix=description.fix
+                )
 
 
 class LaunchArgumentUndeclared(LaunchRule):
@@ -159,25 +161,28 @@ class LaunchArgumentUndeclared(LaunchRule):
         python = file.python
         if python is None:
             return
-        declared: set[str] = set()
+        declared_names: set[str] = set()
         for call in python.calls("DeclareLaunchArgument", "SetLaunchConfiguration"):
-            first = call.args[0] if call.args else argument_of(call, "name")
-            name = python.text(first)
+            name_argument = call.args[0] if call.args else argument_of(call, "name")
+            name = python.text(name_argument)
             if name is None:
                 return  # not all declared names are known, so no name can be called undeclared
-            declared.add(name)
+            declared_names.add(name)
         for call in python.calls("LaunchConfiguration"):
             if len(call.args) != 1 or call.keywords:
                 continue
             name = python.text(call.args[0])
-            if name is None or name in declared:
+            if name is None or name in declared_names:
                 continue
-            like = next(iter(nearest(name, declared, 1)), None)
-            if like is not None and _is_slip(name, like):
+            similar_name = next(iter(nearest(name, declared_names, 1)), None)
+            if similar_name is not None and _is_typo(name, similar_name):
                 message = phrase("nothing declares the launch argument '{name}'", name=name)
                 span = python.span(call.args[0])
                 yield self.report(
-                    message, span=span, source=file.source, hint=phrase("did you mean {names}?", names=quoted(like))
+                    message,
+                    span=span,
+                    source=file.source,
+                    hint=phrase("did you mean {names}?", names=quoted(similar_name)),
                 )
 
 
@@ -220,16 +225,20 @@ class FixedFrameUnknown(PackageRule):
             if source is None or match is None:
                 continue
             frame = match["name"].strip("'\"")
-            if frame in names or frame in _USUAL_FRAMES or any(_fits(frame, pattern) for pattern in patterns):
+            if (
+                frame in names
+                or frame in _USUAL_FRAMES
+                or any(_matches_pattern(frame, pattern) for pattern in patterns)
+            ):
                 continue
-            like = misspelling_of(frame, names)
-            if like is not None:
+            similar_name = find_misspelt(frame, names)
+            if similar_name is not None:
                 message = phrase(
                     "no robot in this package has a link '{frame}', the fixed frame of '{file}'", frame=frame, file=file
                 )
                 span = source.span(*match.span("name"))
                 yield self.report(
-                    message, span=span, source=source, hint=phrase("did you mean {names}?", names=quoted(like))
+                    message, span=span, source=source, hint=phrase("did you mean {names}?", names=quoted(similar_name))
                 )
 
 
@@ -243,8 +252,8 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
     patterns: list[list[str]] = []
     for document in package.descriptions.values():
         for element in document.root.walk():
-            included = element.attributes.get("filename", "") if element.tag == "xacro:include" else ""
-            if "$(find" in included and f"$(find {package.name})" not in included:
+            included_file = element.attributes.get("filename", "") if element.tag == "xacro:include" else ""
+            if "$(find" in included_file and f"$(find {package.name})" not in included_file:
                 return set(), []  # the other package may define links, too
             if element.tag != "link":
                 continue
@@ -256,49 +265,53 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
     return names, patterns
 
 
-def _fits(name: str, parts: list[str]) -> bool:
+def _matches_pattern(name: str, parts: list[str]) -> bool:
     """Return whether a name consists of these parts in this order, with any text between them."""
-    first, last = parts[0], parts[-1]
+    prefix, suffix = parts[0], parts[-1]
     if len(parts) == 1:
-        return name == first
-    at, end = len(first), len(name) - len(last)
-    if at > end or not (name.startswith(first) and name.endswith(last)):
+        return name == prefix
+    start, end = len(prefix), len(name) - len(suffix)
+    if start > end or not (name.startswith(prefix) and name.endswith(suffix)):
         return False
-    for part in parts[1:-1]:
-        found = name.find(part, at, end)
-        if found < 0:
+    for literal_text in parts[1:-1]:
+        position = name.find(literal_text, start, end)
+        if position < 0:
             return False
-        at = found + len(part)
+        start = position + len(literal_text)
     return True
 
 
-class _Untyped(NamedTuple):
-    """A value of ``robot_description`` that is parsed as YAML, with the fix."""
+class _UntypedDescription(NamedTuple):
+    """A value of ``robot_description`` that launch parses as YAML, with the hint and the fix."""
 
     span: Span
     hint: Phrase
     fix: Fix | None
 
 
-def _untyped_descriptions(python: PythonFile) -> Iterator[_Untyped]:
+def _untyped_descriptions(python: PythonFile) -> Iterator[_UntypedDescription]:
     for node in ast.walk(python.tree):
         if not isinstance(node, ast.Dict):
             continue
-        for key, written in zip(node.keys, node.values, strict=True):
-            value = python.resolved(written)
+        for key, value_node in zip(node.keys, node.values, strict=True):
+            value = python.resolved(value_node)
             if not (isinstance(key, ast.Constant) and key.value == "robot_description" and isinstance(value, ast.Call)):
                 continue
             if _is_command(value):
                 hint = phrase(
                     "write ParameterValue(Command(...), value_type=str), from launch_ros.parameter_descriptions"
                 )
-                yield _Untyped(python.span(value), hint, None)
+                yield _UntypedDescription(python.span(value), hint, None)
             elif called_name(value).rpartition(".")[2] == "ParameterValue" and len(value.args) == 1:
-                inner = python.resolved(value.args[0])
-                if argument_of(value, "value_type") is None and isinstance(inner, ast.Call) and _is_command(inner):
-                    at = python.range(value.args[0])[1]
-                    fix = Fix((Edit(python.source.name, at, at, ", value_type=str"),))
-                    yield _Untyped(python.span(value), phrase("add value_type=str"), fix)
+                argument = python.resolved(value.args[0])
+                if (
+                    argument_of(value, "value_type") is None
+                    and isinstance(argument, ast.Call)
+                    and _is_command(argument)
+                ):
+                    offset = python.range(value.args[0])[1]
+                    fix = Fix((Edit(python.source.name, offset, offset, ", value_type=str"),))
+                    yield _UntypedDescription(python.span(value), phrase("add value_type=str"), fix)
 
 
 def _is_command(call: ast.Call) -> bool:
@@ -312,17 +325,21 @@ def _first_invalid_yaml_description(
 
     The descriptions are those that a launch file names.
     """
-    for shared in file.paths:
-        share = package.folder if shared.package == package.name else subject.finder.find(shared.package)
-        if share is None or not shared.path.endswith((".urdf", ".xacro")) or not (share / shared.path).is_file():
+    for shared_file in file.paths:
+        share = package.folder if shared_file.package == package.name else subject.finder.find(shared_file.package)
+        if (
+            share is None
+            or not shared_file.path.endswith((".urdf", ".xacro"))
+            or not (share / shared_file.path).is_file()
+        ):
             continue
         try:
-            text = examine(share / shared.path, packages=subject.finder).text
+            text = examine(share / shared_file.path, packages=subject.finder).text
         except LinkwrightError:
             continue  # the check of that file reports the error
         reason = _yaml_problem(text)
         if reason is not None:
-            return shared.path, reason
+            return shared_file.path, reason
     return None
 
 
@@ -331,10 +348,10 @@ def _yaml_problem(text: str) -> str | None:
     import yaml
 
     try:
-        loaded = yaml.safe_load(text)  # the same function that launch uses
+        content = yaml.safe_load(text)  # the same function that launch uses
     except yaml.YAMLError as error:
         return str(getattr(error, "problem", None) or error)
-    return None if isinstance(loaded, str) else phrase("it is read as {type}", type=type(loaded).__name__)
+    return None if isinstance(content, str) else phrase("it is read as {type}", type=type(content).__name__)
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:
@@ -366,22 +383,22 @@ def _blank_fix(program: ast.expr, python: PythonFile) -> Fix | None:
     """
     start, end = python.range(program)
     source: SourceText = python.source
-    written = source.text[start:end]
-    if re.fullmatch(r"""(["'])[\w/.-]+\1""", written):
+    program_text = source.text[start:end]
+    if re.fullmatch(r"""(["'])[\w/.-]+\1""", program_text):
         return Fix((Edit(source.name, end - 1, end - 1, " "),))
     return Fix((Edit(source.name, end, end, ", ' '"),)) if isinstance(program, ast.Call) else None
 
 
-def _is_slip(name: str, like: str) -> bool:
+def _is_typo(name: str, similar_name: str) -> bool:
     """Return whether two names differ in one letter, or only in letter order.
 
     Both names must have at least four letters. One letter may be added, omitted or changed.
     """
-    if min(len(name), len(like)) < 4 or abs(len(name) - len(like)) > 1:
+    if min(len(name), len(similar_name)) < 4 or abs(len(name) - len(similar_name)) > 1:
         return False
-    if sorted(name) == sorted(like):
+    if sorted(name) == sorted(similar_name):
         return True
     from difflib import SequenceMatcher
 
-    blocks = SequenceMatcher(None, name, like).get_matching_blocks()
-    return sum(block.size for block in blocks) >= max(len(name), len(like)) - 1
+    blocks = SequenceMatcher(None, name, similar_name).get_matching_blocks()
+    return sum(block.size for block in blocks) >= max(len(name), len(similar_name)) - 1

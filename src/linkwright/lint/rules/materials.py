@@ -19,8 +19,8 @@ from linkwright.xmltree import Element
 
 _INVISIBLE_NAME = lazy_pattern(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
 
-_ALIKE = 0.1001
-"""The largest difference of a channel, of 1 and with room for rounding, between colours that look alike."""
+_MAX_COLOUR_DIFFERENCE = 0.1001
+"""The largest difference of a channel from 0 to 1 at which colours look alike, with room for rounding."""
 
 
 def definitions(subject: Subject) -> Iterator[Material]:
@@ -28,8 +28,8 @@ def definitions(subject: Subject) -> Iterator[Material]:
     elements = [*subject.elements("material")]
     for link in subject.elements("link"):
         for visual in link.elements("visual"):
-            own = visual.first("material")
-            elements += [own] if own is not None else []
+            material_child = visual.first("material")
+            elements += [material_child] if material_child is not None else []
     for element in elements:
         material = read_material(element, element, UrdfReport())
         if material is not None and (material.rgba is not None or material.texture is not None):
@@ -71,36 +71,39 @@ class RedefinedMaterial(Rule):
     name = "material-redefined"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        first: dict[str, Material] = {}
+        first_definitions: dict[str, Material] = {}
         global_names = {element.attributes.get("name") for element in subject.elements("material")}
-        reported: set[tuple[object, ...]] = set()
+        reported_keys: set[tuple[object, ...]] = set()
         for material in definitions(subject):
             if not material.name:
                 continue
-            known = first.setdefault(material.name, material)
-            same = (known.rgba, known.texture) == (material.rgba, material.texture)
+            first_definition = first_definitions.setdefault(material.name, material)
+            is_same = (first_definition.rgba, first_definition.texture) == (material.rgba, material.texture)
             element = material.element
-            if same or element is None or known.element is None:
+            if is_same or element is None or first_definition.element is None:
                 continue
             if material.name in global_names and element in set(subject.elements("material")):
                 continue  # the reader reports two definitions at robot level
             key = (material.name, material.rgba, material.texture)
-            if key in reported:
+            if key in reported_keys:
                 continue
-            reported.add(key)
+            reported_keys.add(key)
             yield self.report(
                 phrase(
                     "material '{name}' is defined again with another {difference}, which is never shown",
                     name=material.name,
-                    difference=_difference(known, material),
+                    difference=_difference(first_definition, material),
                 ),
                 element,
                 "name",
                 notes=[
-                    Note(phrase("the first definition, '{look}', is used", look=_look(known)), known.element.span())
+                    Note(
+                        phrase("the first definition, '{look}', is used", look=_look(first_definition)),
+                        first_definition.element.span(),
+                    )
                 ],
                 hint=phrase("give this material another name, or leave its colour out"),
-                severity=Severity.INFO if _looks_alike(known, material) else None,
+                severity=Severity.INFO if _looks_alike(first_definition, material) else None,
             )
 
 
@@ -131,13 +134,13 @@ class InvisibleMaterial(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        known: set[str] = set()
+        checked_names: set[str] = set()
         for material in definitions(subject):
             element = material.element
             if material.name:
-                if material.name in known or _INVISIBLE_NAME.search(material.name):
+                if material.name in checked_names or _INVISIBLE_NAME.search(material.name):
                     continue
-                known.add(material.name)
+                checked_names.add(material.name)
             if material.rgba is not None and material.rgba[3] == 0 and element is not None:
                 red, green, blue, _ = material.rgba
                 yield self.report(
@@ -191,7 +194,7 @@ class EmptyReference(Rule):
                         ),
                         element,
                         "name",
-                        hint=phrase("name a material, or leave it out"),
+                        hint=phrase("give the name of a material, or remove the element"),
                         fix=remove_element(element),
                     )
 
@@ -223,7 +226,7 @@ class UnusedMaterial(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        used = {
+        used_names = {
             material.attributes.get("name")
             for link in subject.elements("link")
             for visual in link.elements("visual")
@@ -231,7 +234,7 @@ class UnusedMaterial(Rule):
         }
         for element in subject.elements("material"):
             name = element.attributes.get("name")
-            if name and name not in used:
+            if name and name not in used_names:
                 yield self.report(
                     phrase("material '{name}' is not used", name=name),
                     element,
@@ -274,8 +277,8 @@ class NoMaterial(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, visual in visuals(subject):
             geometry = visual.geometry
-            plain = not isinstance(geometry, Mesh) or geometry.filename.lower().endswith(".stl")
-            if plain and material_element(visual) is None:
+            has_no_colour = not isinstance(geometry, Mesh) or geometry.filename.lower().endswith(".stl")
+            if has_no_colour and material_element(visual) is None:
                 yield self.report(
                     phrase("a visual of link '{name}' has no material", name=link.name),
                     visual.element,
@@ -307,21 +310,25 @@ class MaterialNamesDifferInCase(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        first: dict[str, Material] = {}
-        reported: set[str] = set()
+        first_materials: dict[str, Material] = {}
+        reported_names: set[str] = set()
         for material in definitions(subject):
-            known = first.setdefault(material.name.casefold(), material)
-            if known.name != material.name and material.name not in reported:
-                reported.add(material.name)
+            first_material = first_materials.setdefault(material.name.casefold(), material)
+            if first_material.name != material.name and material.name not in reported_names:
+                reported_names.add(material.name)
                 yield self.report(
                     phrase(
                         "material '{name}' differs from '{known_name}' only in upper and lower case",
                         name=material.name,
-                        known_name=known.name,
+                        known_name=first_material.name,
                     ),
                     material.element,
                     "name",
-                    notes=[Note(phrase("'{name}' is defined here", name=known.name), _place(known.element))],
+                    notes=[
+                        Note(
+                            phrase("'{name}' is defined here", name=first_material.name), _place(first_material.element)
+                        )
+                    ],
                     hint=phrase("use the same name in both places"),
                 )
 
@@ -334,12 +341,15 @@ def _looks_alike(first: Material, second: Material) -> bool:
     """Return whether two colours differ so little that the difference is only visible side by side."""
     if first.rgba is None or second.rgba is None or first.texture != second.texture:
         return False
-    return all(abs(one - other) <= _ALIKE for one, other in zip(first.rgba, second.rgba, strict=True))
+    return all(
+        abs(first_channel - second_channel) <= _MAX_COLOUR_DIFFERENCE
+        for first_channel, second_channel in zip(first.rgba, second.rgba, strict=True)
+    )
 
 
 def _look(material: Material) -> str:
     if material.rgba is not None:
-        return " ".join(f"{part:g}" for part in material.rgba)
+        return " ".join(f"{channel:g}" for channel in material.rgba)
     return str(material.texture)
 
 

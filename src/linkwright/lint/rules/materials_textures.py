@@ -10,12 +10,12 @@ from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.materials import definitions, visuals
 from linkwright.lint.rules.meshes_addresses import file_hint
-from linkwright.lint.rules.meshes_files import case_twin
+from linkwright.lint.rules.meshes_files import file_with_other_case
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Mesh
 from linkwright.xmltree import Element
 
-_IMAGE_ENDINGS = (
+_IMAGE_SUFFIXES = (
     ".png",
     ".jpg",
     ".jpeg",
@@ -58,21 +58,24 @@ class MissingTexture(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for element, uri in _textures(subject):
-            base = Path(element.source.name).parent if element.source is not None else subject.path.parent
+            base_folder = Path(element.source.name).parent if element.source is not None else subject.path.parent
             notes, hint = [], None
             try:
-                path = subject.finder.resolve(uri, base)
+                path = subject.finder.resolve(uri, base_folder)
             except LinkwrightError as error:
                 notes.append(Note(error.diagnostics[0].message))
             else:
                 if path.is_file():
                     continue
-                hint = file_hint(path, _IMAGE_ENDINGS)
-                twin = case_twin(path.absolute())
-                if twin is not None:
+                hint = file_hint(path, _IMAGE_SUFFIXES)
+                same_name_file = file_with_other_case(path.absolute())
+                if same_name_file is not None:
                     notes.append(
                         Note(
-                            phrase("the file is named '{name}', which differs in upper and lower case", name=twin.name)
+                            phrase(
+                                "the file is named '{name}', which differs in upper and lower case",
+                                name=same_name_file.name,
+                            )
                         )
                     )
             message = phrase("there is no image '{uri}' for this texture", uri=uri)
@@ -105,8 +108,8 @@ class TextureFormat(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for element, uri in _textures(subject):
-            ending = Path(uri).suffix
-            if ending.lower() not in _IMAGE_ENDINGS:
+            suffix = Path(uri).suffix
+            if suffix.lower() not in _IMAGE_SUFFIXES:
                 yield self.report(
                     phrase(
                         "the texture '{rpartition}' is not in an image format that RViz reads",

@@ -35,7 +35,7 @@ def file_name(use: MeshUse) -> str:
     return use.mesh.filename.rpartition("/")[2]
 
 
-_POWERS = (10.0, 100.0, 1000.0, 10_000.0)
+_POWERS_OF_TEN = (10.0, 100.0, 1000.0, 10_000.0)
 
 
 class ZeroScale(Rule):
@@ -152,7 +152,9 @@ class UnevenScale(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
             factors = sorted(map(abs, use.mesh.scale))
-            if factors[0] > 0 and any(isclose(factors[2] / factors[0], power, rel_tol=0.01) for power in _POWERS):
+            if factors[0] > 0 and any(
+                isclose(factors[2] / factors[0], power, rel_tol=0.01) for power in _POWERS_OF_TEN
+            ):
                 yield self.report(
                     phrase(
                         "the scale of the {kind} mesh '{file_name}' of link '{name}' differs {factors:.3g} times"
@@ -246,7 +248,7 @@ class MeshTooSmall(Rule):
         for use, mesh in readable_meshes(subject):
             edge = max(mesh.bounds.size)
             if edge < smallest and all(use.mesh.scale):
-                shrunk = max(map(abs, use.mesh.scale)) < 0.1
+                is_scaled_down = max(map(abs, use.mesh.scale)) < 0.1
                 scale = " ".join(f"{factor * 1000:g}" for factor in use.mesh.scale)
                 yield self.report(
                     phrase(
@@ -259,7 +261,7 @@ class MeshTooSmall(Rule):
                     use.element,
                     "scale" if "scale" in use.element.attributes else "filename",
                     hint=phrase("the file is in metres already: leave 'scale' out")
-                    if shrunk
+                    if is_scaled_down
                     else phrase('write scale="{scale}"', scale=scale),
                     fix=_scale_fix(use, scale),
                 )
@@ -289,12 +291,12 @@ class ScalesDiffer(Rule):
     name = "mesh-scales-differ"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        first: dict[str, MeshUse] = {}
+        first_uses: dict[str, MeshUse] = {}
         for use in subject.meshes.uses:
             if 0 in use.mesh.scale:
                 continue
-            other = first.setdefault(use.mesh.filename, use)
-            ratio = max(map(abs, use.mesh.scale)) / max(map(abs, other.mesh.scale))
+            first_use = first_uses.setdefault(use.mesh.filename, use)
+            ratio = max(map(abs, use.mesh.scale)) / max(map(abs, first_use.mesh.scale))
             if ratio > 0 and not 1 / 99 < ratio < 99:
                 yield self.report(
                     phrase(
@@ -309,8 +311,8 @@ class ScalesDiffer(Rule):
                     "scale",
                     notes=[
                         Note(
-                            phrase("in link '{name}' it is scaled here", name=other.link.name),
-                            other.element.attribute_span("scale"),
+                            phrase("link '{name}' scales it here", name=first_use.link.name),
+                            first_use.element.attribute_span("scale"),
                         )
                     ],
                     hint=phrase("a file has one unit: give it the same scale everywhere"),

@@ -20,18 +20,18 @@ _SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
 HOME = lazy_pattern(
     r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+|/opt/ros/[^/]+)[\\/]"
 )
-_INSTALLED = lazy_pattern(r".*?/opt/ros/[^/]+/share/(.+)")
-_MUJOCO, _HEAD = b"<mujoco", 4_000
-"""The root of a model for MuJoCo, which stands among the first bytes of its file."""
-KNOWN = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
+_INSTALLED_FILE = lazy_pattern(r".*?/opt/ros/[^/]+/share/(.+)")
+_MUJOCO, _HEADER_BYTES = b"<mujoco", 4_000
+"""The root element of a MuJoCo model, and the number of bytes at the beginning of the file that contain it."""
+MESH_SUFFIXES = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
 """The mesh formats that RViz reads."""
 
 
 def written(element: Element, attribute: str) -> str:
     """Return an attribute's value as it is written in the file, with xacro expressions unevaluated."""
     source = element.source
-    found = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
-    return source.text[slice(*found)] if source is not None and found is not None else ""
+    value_range = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
+    return source.text[slice(*value_range)] if source is not None and value_range is not None else ""
 
 
 def is_portable(uri: str) -> bool:
@@ -66,16 +66,16 @@ class MalformedUri(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
             uri = use.mesh.filename
-            problem, better = uri_problem(uri)
+            problem, corrected = uri_problem(uri)
             if problem:
                 yield self.report(
-                    phrase("the mesh address '{uri}' {problem}", uri=uri, problem=problem),
+                    phrase("the mesh URI '{uri}' {problem}", uri=uri, problem=problem),
                     use.element,
                     "filename",
-                    hint=phrase("write '{better}'", better=better)
-                    if better
+                    hint=phrase("write '{better}'", better=corrected)
+                    if corrected
                     else phrase("write package://PACKAGE/PATH"),
-                    fix=replace_value(use.element, "filename", better) if better else None,
+                    fix=replace_value(use.element, "filename", corrected) if corrected else None,
                 )
 
 
@@ -107,17 +107,17 @@ class RelativePath(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        relative = [use for use in subject.meshes.uses if _is_relative(use.mesh.filename)]
-        is_for_ros = relative and subject.package and not _is_beside_mujoco(subject.path.parent)
-        for use in relative:
+        relative_uses = [use for use in subject.meshes.uses if _is_relative(use.mesh.filename)]
+        is_for_ros = relative_uses and subject.package and not _is_beside_mujoco(subject.path.parent)
+        for use in relative_uses:
             uri = use.mesh.filename
-            better = _as_package_uri(subject.meshes.path(use))
+            corrected = _as_package_uri(subject.meshes.path(use))
             yield self.report(
                 phrase("the mesh path '{uri}' is relative, which RViz cannot resolve", uri=uri),
                 use.element,
                 "filename",
-                hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),
-                fix=replace_value(use.element, "filename", better, safe=False) if better else None,
+                hint=phrase("write '{better}'", better=corrected or "package://PACKAGE/PATH"),
+                fix=replace_value(use.element, "filename", corrected, safe=False) if corrected else None,
                 severity=None if is_for_ros else Severity.INFO,
             )
 
@@ -132,7 +132,7 @@ def _is_beside_mujoco(folder: Path) -> bool:
     Robot descriptions in such a folder use paths relative to the folder.
     """
     with suppress(OSError):
-        return any(_MUJOCO in file.read_bytes()[:_HEAD] for file in folder.glob("*.xml"))
+        return any(_MUJOCO in file.read_bytes()[:_HEADER_BYTES] for file in folder.glob("*.xml"))
     return False
 
 
@@ -163,23 +163,25 @@ class MachineSpecificPath(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
-            home = HOME.match(written(use.element, "filename"))
-            if home is not None:
+            machine_folder = HOME.match(written(use.element, "filename"))
+            if machine_folder is not None:
                 path = subject.meshes.path(use)
-                installed = _INSTALLED.fullmatch(use.mesh.filename)
-                better = f"package://{installed[1]}" if installed else _as_package_uri(path)
-                better = better or _in_known_package(subject, path)
+                installed_match = _INSTALLED_FILE.fullmatch(use.mesh.filename)
+                corrected = f"package://{installed_match[1]}" if installed_match else _as_package_uri(path)
+                corrected = corrected or _in_known_package(subject, path)
                 message = (
-                    phrase("the mesh address contains the folder of one ROS distribution, '{home}'", home=home[1])
-                    if installed
-                    else phrase("the mesh address contains a folder of one computer, '{home}'", home=home[1])
+                    phrase(
+                        ("the mesh URI contains the folder of one ROS distribution, '{home}'"), home=machine_folder[1]
+                    )
+                    if installed_match
+                    else phrase("the mesh URI contains a folder of one computer, '{home}'", home=machine_folder[1])
                 )
                 yield self.report(
                     message,
                     use.element,
                     "filename",
-                    hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),
-                    fix=replace_value(use.element, "filename", better, safe=False) if better else None,
+                    hint=phrase("write '{better}'", better=corrected or "package://PACKAGE/PATH"),
+                    fix=replace_value(use.element, "filename", corrected, safe=False) if corrected else None,
                 )
 
 
@@ -210,16 +212,16 @@ class UnknownEnding(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
             name = use.mesh.filename.rpartition("/")[2]
-            ending = Path(name).suffix
-            if not name or ending.lower() in KNOWN or uri_problem(use.mesh.filename)[0]:
+            suffix = Path(name).suffix
+            if not name or suffix.lower() in MESH_SUFFIXES or uri_problem(use.mesh.filename)[0]:
                 continue
             yield self.report(
                 phrase(
                     "the mesh file '{name}' ends in '{ending}', a format that robot tools do not read",
                     name=name,
-                    ending=ending,
+                    ending=suffix,
                 )
-                if ending
+                if suffix
                 else phrase("the mesh file '{name}' has no extension that names a format", name=name),
                 use.element,
                 "filename",
@@ -259,9 +261,9 @@ class UnportableMeshName(Rule):
             name = uri.partition("://")[2].partition("/")[2] if uri.startswith("package://") else uri.rpartition("/")[2]
             if uri.strip() and (" " in name or not name.isascii()):
                 yield self.report(
-                    phrase("the mesh address '{uri}' contains a space", uri=uri)
+                    phrase("the mesh URI '{uri}' contains a space", uri=uri)
                     if " " in name
-                    else phrase("the mesh address '{uri}' contains letters outside ASCII", uri=uri),
+                    else phrase("the mesh URI '{uri}' contains letters outside ASCII", uri=uri),
                     use.element,
                     "filename",
                     hint=phrase("rename the file with letters, digits and underscores"),
@@ -278,28 +280,30 @@ def uri_problem(uri: str) -> tuple[str | None, str | None]:
     if not uri.strip():
         return phrase("is empty"), None
     if "\\" in uri:
-        better = uri.replace("\\", "/")
-        return phrase("contains backslashes"), better if uri_problem(better)[0] is None else None
+        corrected = uri.replace("\\", "/")
+        return phrase("contains backslashes"), corrected if uri_problem(corrected)[0] is None else None
     if uri != uri.strip():
         return phrase("has spaces around it"), uri.strip()
     match = _SCHEME.match(uri)
     if match is None:
         return None, None
-    scheme, rest = match[1], uri[match.end() :]
-    if scheme in ("package", "model") and not rest.startswith("//"):
-        return phrase("lacks a slash"), f"{scheme}://{rest.lstrip('/')}"
+    scheme, remainder = match[1], uri[match.end() :]
+    if scheme in ("package", "model") and not remainder.startswith("//"):
+        return phrase("lacks a slash"), f"{scheme}://{remainder.lstrip('/')}"
     if scheme == "package":
-        package, _, path = rest[2:].partition("/")
+        package, _, path = remainder[2:].partition("/")
         if not package:
             path = path.lstrip("/")
-            return phrase("names no package"), f"package://{path}" if path.count("/") > 1 else None
-        return (None, None) if path.strip("/") else (phrase("names no file"), None)
+            return phrase("does not name a package"), f"package://{path}" if path.count("/") > 1 else None
+        return (None, None) if path.strip("/") else (phrase("does not name a file"), None)
     if scheme == "file":
-        if rest.startswith(("///", "//localhost/")):
+        if remainder.startswith(("///", "//localhost/")):
             return None, None
-        return phrase("has no absolute path"), f"file:///{rest.lstrip('/')}" if not rest.startswith("//") else None
+        return phrase("does not have an absolute path"), f"file:///{remainder.lstrip('/')}" if not remainder.startswith(
+            "//"
+        ) else None
     if scheme.lower() in ("package", "file"):
-        return phrase("has its scheme in upper case"), f"{scheme.lower()}:{rest}"
+        return phrase("has its scheme in upper case"), f"{scheme.lower()}:{remainder}"
     if scheme in ("model", "http", "https"):
         return None, None
     return phrase("has the unknown scheme '{scheme}'", scheme=scheme), None
@@ -309,9 +313,9 @@ def _as_package_uri(path: Path | None) -> str | None:
     """Return the ``package://`` URI of an existing file in a package, or None."""
     if path is None or not path.is_file():
         return None
-    resolved = Path(normalized_path(path))
-    package = enclosing_package(resolved.parent)
-    return None if package is None else f"package://{package[0]}/{resolved.relative_to(package[1]).as_posix()}"
+    normalized = Path(normalized_path(path))
+    package = enclosing_package(normalized.parent)
+    return None if package is None else f"package://{package[0]}/{normalized.relative_to(package[1]).as_posix()}"
 
 
 def _in_known_package(subject: Subject, path: Path | None) -> str | None:
@@ -322,26 +326,26 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
     names = path.parts if path is not None else ()
     for index in range(len(names) - 2, 0, -1):
         share = subject.finder.find(names[index])
-        rest = names[index + 1 :]
-        if share is not None and share.joinpath(*rest).is_file():
-            return f"package://{names[index]}/{'/'.join(rest)}"
+        remaining_names = names[index + 1 :]
+        if share is not None and share.joinpath(*remaining_names).is_file():
+            return f"package://{names[index]}/{'/'.join(remaining_names)}"
     return None
 
 
-def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
-    """Return a hint on a missing file that names existing files with one of the extensions.
+def file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
+    """Return a hint on a missing file that names existing files with one of the suffixes.
 
-    The extensions `endings` are in lower case.
+    The texts in `suffixes` are in lower case.
     """
     try:
-        names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in endings)
+        names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in suffixes)
     except OSError:
         return phrase("there is no folder '{parent}'", parent=display_path(path.parent))
-    near = did_you_mean(path.name, names)
-    if near or not names:
-        return near or phrase("put the file there, or correct the address")
-    shown = names[:8] if len(names) <= 8 else [*names[:8], "..."]
-    return phrase("choose from {names}", names=joined(shown))
+    suggestion = did_you_mean(path.name, names)
+    if suggestion or not names:
+        return suggestion or phrase("put the file there, or correct the URI")
+    shown_names = names[:8] if len(names) <= 8 else [*names[:8], "..."]
+    return phrase("choose from {names}", names=joined(shown_names))
 
 
 def normalized_path(path: Path) -> str:

@@ -36,24 +36,24 @@ class HeavyCollision(Rule):
     options = (Option("triangles", 20_000, "most triangles of a collision mesh"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        most = self.option(subject, "triangles", int)
-        reported: set[Path] = set()
+        max_triangles = self.option(subject, "triangles", int)
+        reported_paths: set[Path] = set()
         for use, mesh in readable_meshes(subject, "collision"):
             path = subject.meshes.path(use)
             count = mesh.count
-            if count > most and path is not None and path not in reported:
-                reported.add(path)
+            if count > max_triangles and path is not None and path not in reported_paths:
+                reported_paths.add(path)
                 yield self.report(
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' has {thousands} triangles",
                         file_name=file_name(use),
                         name=use.link.name,
-                        thousands=_thousands(count),
+                        thousands=_grouped_digits(count),
                     ),
                     use.element,
                     "filename",
                     hint=phrase("use its convex hull, a decimated copy, or simple shapes"),
-                    severity=Severity.INFO if count <= 2 * most else None,
+                    severity=Severity.INFO if count <= 2 * max_triangles else None,
                 )
 
 
@@ -84,17 +84,17 @@ class VisualAsCollision(Rule):
     options = (Option("triangles", 2000, "the number of triangles from which a shared mesh is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        most = self.option(subject, "triangles", int)
-        seen = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
+        max_triangles = self.option(subject, "triangles", int)
+        visual_files = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
         for use, mesh in readable_meshes(subject, "collision"):
-            if (use.link.name, subject.meshes.path(use)) in seen and mesh.count > most:
+            if (use.link.name, subject.meshes.path(use)) in visual_files and mesh.count > max_triangles:
                 yield self.report(
                     phrase(
                         "the collision of link '{name}' uses the mesh of its visual, '{file_name}', with"
                         " {thousands} triangles",
                         name=use.link.name,
                         file_name=file_name(use),
-                        thousands=_thousands(mesh.count),
+                        thousands=_grouped_digits(mesh.count),
                     ),
                     use.element,
                     "filename",
@@ -126,11 +126,11 @@ class OpenMesh(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        reported: set[Path] = set()
+        reported_paths: set[Path] = set()
         for use, mesh in readable_meshes(subject, "collision"):
             path = subject.meshes.path(use)
-            if path is not None and path not in reported and not mesh.is_watertight:
-                reported.add(path)
+            if path is not None and path not in reported_paths and not mesh.is_watertight:
+                reported_paths.add(path)
                 yield self.report(
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' is not watertight",
@@ -143,5 +143,5 @@ class OpenMesh(Rule):
                 )
 
 
-def _thousands(number: int) -> str:
+def _grouped_digits(number: int) -> str:
     return f"{number:,}".replace(",", " ")

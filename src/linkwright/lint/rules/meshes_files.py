@@ -12,27 +12,29 @@ from linkwright.lint.made_files import is_ignored_by_git
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.missing_packages import is_declared
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, normalized_path, uri_problem, written
+from linkwright.lint.rules.meshes_addresses import HOME, MESH_SUFFIXES, file_hint, normalized_path, uri_problem, written
 from linkwright.lint.subject import Subject
 from linkwright.packages import PackageNotFoundError, enclosing_package
 
 
-def case_twin(path: Path) -> Path | None:
+def file_with_other_case(path: Path) -> Path | None:
     """Return an existing file whose path differs only in upper and lower case, or None."""
     current = Path(path.anchor)
-    changed = False
+    is_different = False
     for name in path.relative_to(path.anchor).parts:
         if not (current / name).exists() or not _is_listed(current, name):
             try:
-                twin = next((path for path in current.iterdir() if path.name.casefold() == name.casefold()), None)
+                existing_path = next(
+                    (path for path in current.iterdir() if path.name.casefold() == name.casefold()), None
+                )
             except OSError:
                 return None
-            if twin is None:
+            if existing_path is None:
                 return None
-            changed = changed or twin.name != name
-            name = twin.name
+            is_different = is_different or existing_path.name != name
+            name = existing_path.name
         current /= name
-    return current if changed else None
+    return current if is_different else None
 
 
 def _is_listed(folder: Path, name: str) -> bool:
@@ -54,15 +56,15 @@ def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
     if source is None or not name:
         return None
     file = Path(source.name).absolute()
-    for place in file.parents[:2]:
-        if not (place / name).is_dir():
+    for folder in file.parents[:2]:
+        if not (folder / name).is_dir():
             continue
-        package = enclosing_package(place)
+        package = enclosing_package(folder)
         if package is None:
             return phrase(
                 "'{name}' is a folder: write the package before it, 'package://PACKAGE/{name}/...'", name=name
             )
-        path = (place / name).relative_to(package[1]).as_posix()
+        path = (folder / name).relative_to(package[1]).as_posix()
         return phrase(
             "'{name}' is a folder of package '{package}': write 'package://{package}/{path}/...'",
             name=name,
@@ -99,31 +101,31 @@ class UnknownPackage(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        reported: dict[str, list[MeshUse]] = {}
+        uses_by_package: dict[str, list[MeshUse]] = {}
         hints: dict[str, Phrase | None] = {}
         for use in subject.meshes.uses:
             if not use.mesh.filename.startswith("package://") or uri_problem(use.mesh.filename)[0]:
                 continue
             package = use.mesh.filename[len("package://") :].partition("/")[0]
-            if package in reported:
-                reported[package].append(use)
+            if package in uses_by_package:
+                uses_by_package[package].append(use)
                 continue
             try:
                 subject.finder.resolve(use.mesh.filename)
             except PackageNotFoundError as error:
-                reported[package] = [use]
+                uses_by_package[package] = [use]
                 hints[package] = _folder_hint(use, package) or error.diagnostics[0].hint
             except LinkwrightError:
                 continue
-        for package, uses in reported.items():
+        for package, uses in uses_by_package.items():
             message = counted(
                 "package '{package}' is not found",
-                "package '{package}', which {count} mesh addresses name, is not found",
+                "package '{package}', which {count} mesh URIs name, is not found",
                 len(uses),
                 package=package,
             )
-            is_elsewhere = subject.package is not None and is_declared(subject.package, package)
-            severity = Severity.INFO if is_elsewhere else None
+            is_declared_dependency = subject.package is not None and is_declared(subject.package, package)
+            severity = Severity.INFO if is_declared_dependency else None
             yield self.report(message, uses[0].element, "filename", hint=hints[package], severity=severity)
 
 
@@ -152,41 +154,41 @@ class MissingFile(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        missing: dict[Path, list[tuple[MeshUse, Path]]] = {}
+        missing_files: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
             if uri_problem(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
                 continue  # another rule already reports this mesh
-            if path.is_file() or case_twin(path) is not None or is_ignored_by_git(path):
+            if path.is_file() or file_with_other_case(path) is not None or is_ignored_by_git(path):
                 continue
-            missing.setdefault(_last_folder(path), []).append((use, path))
-        for folder, uses in missing.items():
+            missing_files.setdefault(_last_folder(path), []).append((use, path))
+        for folder, uses in missing_files.items():
             files = dict.fromkeys(path for _, path in uses)
-            first, path = uses[0]
+            first_use, path = uses[0]
             if len(files) > 1 and not path.parent.exists():
-                gone = path.relative_to(folder).parts[0]
+                missing_folder = path.relative_to(folder).parts[0]
                 yield self.report(
                     phrase(
                         "{count} mesh files are missing: there is no folder '{folder}'",
                         count=len(files),
-                        folder=display_path(folder / gone),
+                        folder=display_path(folder / missing_folder),
                     ),
-                    first.element,
+                    first_use.element,
                     "filename",
-                    notes=[Note(phrase("the first is '{filename}'", filename=first.mesh.filename))],
-                    hint=phrase("are they in another repository, or fetched by the build?"),
+                    notes=[Note(phrase("the first is '{filename}'", filename=first_use.mesh.filename))],
+                    hint=phrase("check whether they are in another repository, or fetched by the build"),
                 )
                 continue
-            reported = set()
+            reported_paths = set()
             for use, path in uses:
-                if path in reported:
+                if path in reported_paths:
                     continue
-                reported.add(path)
+                reported_paths.add(path)
                 yield self.report(
                     phrase("there is no mesh file '{filename}'", filename=use.mesh.filename),
                     use.element,
                     "filename",
                     notes=[Note(phrase("its path would be {path}", path=display_path(path)))],
-                    hint=file_hint(path, KNOWN),
+                    hint=file_hint(path, MESH_SUFFIXES),
                 )
 
 
@@ -219,24 +221,24 @@ class WrongCase(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use, path in subject.meshes.files:
-            twin = case_twin(path)
-            if twin is None or not twin.is_file():
+            existing_file = file_with_other_case(path)
+            if existing_file is None or not existing_file.is_file():
                 continue
-            better = _with_case_of(use.mesh.filename, twin)
+            corrected = _with_case_of(use.mesh.filename, existing_file)
             yield self.report(
                 phrase(
                     "the mesh file is named '{name}', which differs from '{path_name}' in upper and lower case",
-                    name=twin.name,
+                    name=existing_file.name,
                     path_name=path.name,
                 )
-                if twin.name != path.name
+                if existing_file.name != path.name
                 else phrase(
                     "a folder in the path of the mesh file '{name}' differs in upper and lower case", name=path.name
                 ),
                 use.element,
                 "filename",
-                hint=phrase("write '{better}'", better=better),
-                fix=replace_value(use.element, "filename", better),
+                hint=phrase("write '{better}'", better=corrected),
+                fix=replace_value(use.element, "filename", corrected),
             )
 
 
@@ -274,21 +276,23 @@ class OutsidePackage(Rule):
             uri = use.mesh.filename
             if HOME.match(written(use.element, "filename")):
                 continue  # another rule already reports this mesh
-            resolved = Path(normalized_path(path))
+            normalized = Path(normalized_path(path))
             message = None
             if uri.startswith("package://"):
                 package = uri[len("package://") :].partition("/")[0]
                 share = subject.finder.find(package)
-                if share is not None and not resolved.is_relative_to(normalized_path(share)):
-                    message = phrase("the mesh '{uri}' leaves package '{package}'", uri=uri, package=package)
-            elif resolved.is_file() and enclosing_package(resolved.parent) is None:
+                if share is not None and not normalized.is_relative_to(normalized_path(share)):
+                    message = phrase(
+                        ("the path of the mesh '{uri}' leaves the package '{package}'"), uri=uri, package=package
+                    )
+            elif normalized.is_file() and enclosing_package(normalized.parent) is None:
                 message = phrase("the mesh '{uri}' is not in a package", uri=uri)
             if message is not None:
                 yield self.report(
                     message,
                     use.element,
                     "filename",
-                    notes=[Note(phrase("its path is {resolved}", resolved=display_path(resolved)))],
+                    notes=[Note(phrase("its path is {resolved}", resolved=display_path(normalized)))],
                     hint=phrase("move it into a folder of the package that is installed"),
                 )
 
@@ -315,26 +319,26 @@ class UnreadableMesh(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        reported = set()
+        reported_paths = set()
         for use, path in subject.meshes.files:
-            if path in reported or not path.is_file():
+            if path in reported_paths or not path.is_file():
                 continue
-            reported.add(path)
-            problem = subject.meshes.problem(use)
-            if problem is None or problem.diagnostics[0].code != "INR103":
+            reported_paths.add(path)
+            error = subject.meshes.problem(use)
+            if error is None or error.diagnostics[0].code != "INR103":
                 continue
-            found = problem.diagnostics[0]
-            hint = phrase("it is a Git LFS pointer: run `git lfs pull`") if is_pointer_file(path) else found.hint
-            yield self.report(found.message, use.element, "filename", hint=hint)
+            diagnostic = error.diagnostics[0]
+            hint = phrase("it is a Git LFS pointer: run `git lfs pull`") if is_pointer_file(path) else diagnostic.hint
+            yield self.report(diagnostic.message, use.element, "filename", hint=hint)
 
 
-def _with_case_of(uri: str, twin: Path) -> str:
+def _with_case_of(uri: str, existing_file: Path) -> str:
     """Return a URI with the upper and lower case of an existing file at the end of its path."""
     parts = uri.split("/")
-    for back, name in enumerate(reversed(twin.parts), start=1):
-        if back >= len(parts) or parts[-back].casefold() != name.casefold():
+    for index, name in enumerate(reversed(existing_file.parts), start=1):
+        if index >= len(parts) or parts[-index].casefold() != name.casefold():
             break
-        parts[-back] = name
+        parts[-index] = name
     return "/".join(parts)
 
 

@@ -14,12 +14,14 @@ from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Box, Geometry, Joint, Mesh, parent_joints
 
-_OPTICAL = lazy_pattern(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")
+_OPTICAL_NAME = lazy_pattern(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")
 _OPTICAL_ROTATION: Matrix = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
-_CAMERA = lazy_pattern("cam|rgb|depth|colou?r|infra|stereo|eye|kinect|realsense|zed|oak|sensor|image", re.IGNORECASE)
-_TOLERANCE = radians(2.0)
-_TINY = 0.05
-_HUMANOID = ("base_link", "torso", "l_wrist", "r_wrist", "l_gripper", "r_gripper", "l_sole", "r_sole", "gaze")
+_CAMERA_NAME = lazy_pattern(
+    "cam|rgb|depth|colou?r|infra|stereo|eye|kinect|realsense|zed|oak|sensor|image", re.IGNORECASE
+)
+_ANGLE_TOLERANCE = radians(2.0)
+_MAX_MARKER_SIZE = 0.05
+_HUMANOID_FRAMES = ("base_link", "torso", "l_wrist", "r_wrist", "l_gripper", "r_gripper", "l_sole", "r_sole", "gaze")
 
 
 class BaseLinkMissing(Rule):
@@ -157,8 +159,8 @@ class FootprintBelowBase(Rule):
         if subject.robot is None:
             return
         for joint in subject.robot.joints.values():
-            upside_down = joint.child.endswith("base_footprint") and joint.parent.endswith("base_link")
-            if upside_down and joint.element is not None:
+            is_inverted = joint.child.endswith("base_footprint") and joint.parent.endswith("base_link")
+            if is_inverted and joint.element is not None:
                 message = phrase(
                     "'{child}' is a child of '{parent}'; in REP 120 it is the other way round",
                     child=joint.child,
@@ -200,19 +202,21 @@ class FootprintHasBody(Rule):
         for link in subject.links:
             if not link.name.endswith("base_footprint") or link.element is None:
                 continue
-            solid = next((collision for collision in link.collisions if not _is_tiny(collision.geometry)), None)
-            part = None if solid is None else solid.element
+            collision_shape = next(
+                (collision for collision in link.collisions if not _is_tiny(collision.geometry)), None
+            )
+            element = None if collision_shape is None else collision_shape.element
             is_root = subject.robot is None or subject.robot.root == link.name
             # RootInertia reports the mass of a root link.
-            if part is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
-                part = link.element.first("inertial")
-            if part is not None:
+            if element is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
+                element = link.element.first("inertial")
+            if element is not None:
                 message = phrase(
-                    "'{name}' marks a place on the ground, but has a <{tag}>", name=link.name, tag=part.tag
+                    "'{name}' is a position on the ground, but has a <{tag}>", name=link.name, tag=element.tag
                 )
                 hint = phrase("move it to the link of the body, such as 'base_link'")
                 severity = Severity.INFO if link.visuals else None
-                yield self.report(message, part, hint=hint, severity=severity)
+                yield self.report(message, element, hint=hint, severity=severity)
 
 
 class FixedFrameInRobot(Rule):
@@ -244,10 +248,15 @@ class FixedFrameInRobot(Rule):
             frame = link.name.rpartition("/")[2]
             if frame in ("map", "odom") and link.element is not None and frame in written(link.element, "name"):
                 message = phrase(
-                    "'{name}' is the name of a frame that localisation publishes (REP 105), not of a link",
+                    "'{name}' is a frame that localisation publishes (REP 105), not a link",
                     name=link.name,
                 )
-                yield self.report(message, link.element, "name", hint=phrase("leave it to localisation and odometry"))
+                yield self.report(
+                    message,
+                    link.element,
+                    "name",
+                    hint=phrase("remove the link, because localisation and odometry publish this frame"),
+                )
 
 
 class OpticalFrameRotation(Rule):
@@ -286,16 +295,16 @@ class OpticalFrameRotation(Rule):
         robot = subject.robot
         if robot is None:
             return
-        above = parent_joints(robot)
+        parents = parent_joints(robot)
         for joint in robot.joints.values():
-            match = _OPTICAL.fullmatch(joint.child)
+            match = _OPTICAL_NAME.fullmatch(joint.child)
             if match is None or joint.type != "fixed" or joint.element is None:
                 continue
             parent = joint.parent
-            if "optical" in parent or not _same_camera(match["stem"], parent) or _is_optical(above.get(parent)):
+            if "optical" in parent or not _same_camera(match["stem"], parent) or _is_optical(parents.get(parent)):
                 continue
-            turned = rotation(joint.origin)
-            if _is_optical(joint) or not _is_slip(turned):
+            rotation_matrix = rotation(joint.origin)
+            if _is_optical(joint) or not _has_only_right_angles(rotation_matrix):
                 continue
             rpy = " ".join(f"{angle:g}" for angle in joint.origin.rpy)
             message = phrase(
@@ -312,11 +321,8 @@ class OpticalFrameRotation(Rule):
 
 
 def _is_optical(joint: Joint | None) -> bool:
-    """Return whether a joint has the rotation of an optical frame, as in REP 103.
-
-    The name of its child does not matter.
-    """
-    return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _TOLERANCE
+    """Return whether a joint has the rotation of an optical frame, as in REP 103, whatever its child is called."""
+    return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _ANGLE_TOLERANCE
 
 
 def _is_tiny(shape: Geometry) -> bool:
@@ -325,22 +331,22 @@ def _is_tiny(shape: Geometry) -> bool:
     Some simulators require a shape on every link.
     """
     if isinstance(shape, Box):
-        return max(shape.size) <= _TINY
-    return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _TINY
+        return max(shape.size) <= _MAX_MARKER_SIZE
+    return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _MAX_MARKER_SIZE
 
 
 def _same_camera(stem: str, parent: str) -> bool:
     """Return whether the names suggest that a parent link is the body frame of the camera."""
     base = re.sub(r"_(link|frame)$", "", parent)
-    return bool(stem) and (base == stem or (stem.startswith(f"{base}_") and bool(_CAMERA.search(base))))
+    return bool(stem) and (base == stem or (stem.startswith(f"{base}_") and bool(_CAMERA_NAME.search(base))))
 
 
-def _is_slip(turned: Matrix) -> bool:
+def _has_only_right_angles(rotation_matrix: Matrix) -> bool:
     """Return whether a rotation consists of right angles only, so that it is probably a mistake.
 
     A camera that looks in another direction has other angles.
     """
-    return all(min(abs(value), abs(abs(value) - 1.0)) < 0.02 for row in turned for value in row)
+    return all(min(abs(value), abs(abs(value) - 1.0)) < 0.02 for row in rotation_matrix for value in row)
 
 
 class CameraWithoutOpticalFrame(Rule):
@@ -414,11 +420,11 @@ class HumanoidFrames(Rule):
         names = {link.name.lower() for link in subject.links}
         has_feet = sum(bool(re.search(r"(foot|ankle|sole)(?!print)", name)) for name in names) >= 2
         has_hands = sum(bool(re.search("hand|wrist|gripper", name)) for name in names) >= 2
-        missing = [name for name in _HUMANOID if name not in names]
-        if has_feet and has_hands and missing:
-            listed = ", ".join(f"'{name}'" for name in missing)
+        missing_frames = [name for name in _HUMANOID_FRAMES if name not in names]
+        if has_feet and has_hands and missing_frames:
+            names_text = ", ".join(f"'{name}'" for name in missing_frames)
             yield self.report(
-                phrase("this humanoid robot lacks frames that REP 120 names: {listed}", listed=listed),
+                phrase("this humanoid robot lacks frames that REP 120 names: {listed}", listed=names_text),
                 subject.root,
                 "name",
             )

@@ -78,12 +78,12 @@ class RobotNameUnusual(Rule):
         name = subject.root.attributes.get("name", "")
         if not name or re.fullmatch(r"[A-Za-z0-9_\-]+", name):
             return
-        better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+        suggestion = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
         hint = (
-            phrase("use a name such as '{better}'", better=better)
-            if better
+            phrase("use a name such as '{better}'", better=suggestion)
+            if suggestion
             else phrase("use letters a to z, digits and underscores")
         )
-        fix = replace_value(subject.root, "name", better, safe=False) if better else None
+        fix = replace_value(subject.root, "name", suggestion, safe=False) if suggestion else None
         message = phrase("the name of the robot '{name}' has characters that ROS names do not allow", name=name)
         yield self.report(message, subject.root, "name", hint=hint, fix=fix)

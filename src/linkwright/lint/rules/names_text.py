@@ -11,8 +11,8 @@ from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Element
 
-_USUAL = lazy_pattern(r"[A-Za-z0-9_./\- ]*")
-_DOUBLED = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
+_USUAL_CHARACTERS = lazy_pattern(r"[A-Za-z0-9_./\- ]*")
+_REPEATED_SUFFIX = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
 
 
 def named(subject: Subject) -> Iterator[tuple[str, str, Element]]:
@@ -88,9 +88,9 @@ class NameBlank(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for kind, name, element in named(subject):
-            inner = name.strip()
-            if re.search(r"\s", inner):
-                hint = phrase("write '{sub}' in all places", sub=re.sub(chr(92) + "s+", "_", inner))
+            stripped = name.strip()
+            if re.search(r"\s", stripped):
+                hint = phrase("write '{sub}' in all places", sub=re.sub(chr(92) + "s+", "_", stripped))
                 yield self.report(
                     phrase("the name of the {kind} '{name}' contains a space", kind=term(kind), name=name),
                     element,
@@ -163,14 +163,14 @@ class NameNotAscii(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for kind, name, element in named(subject):
-            strange = sorted({character for character in name if not character.isascii()})
-            if strange:
-                listed = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in strange)
+            non_ascii = sorted({character for character in name if not character.isascii()})
+            if non_ascii:
+                characters_text = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in non_ascii)
                 message = phrase(
                     "the name of the {kind} '{name}' contains letters outside ASCII: {listed}",
                     kind=term(kind),
                     name=name,
-                    listed=listed,
+                    listed=characters_text,
                 )
                 yield self.report(message, element, "name", hint=phrase("use letters a to z, digits and underscores"))
 
@@ -202,13 +202,15 @@ class NameUnusualCharacter(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for kind, name, element in named(subject):
-            strange = sorted({sign for sign in name if sign.isascii() and not _USUAL.fullmatch(sign)})
-            if strange and "${" not in name and "$(" not in name and not any(sign.isspace() for sign in strange):
+            unusual = sorted(
+                {character for character in name if character.isascii() and not _USUAL_CHARACTERS.fullmatch(character)}
+            )
+            if unusual and "${" not in name and "$(" not in name and not any(sign.isspace() for sign in unusual):
                 message = phrase(
                     "the name of the {kind} '{name}' contains unusual characters: {strange}",
                     kind=term(kind),
                     name=name,
-                    strange=" ".join(strange),
+                    strange=" ".join(unusual),
                 )
                 yield self.report(message, element, "name", hint=phrase("use letters a to z, digits and underscores"))
 
@@ -243,11 +245,13 @@ class NameUpperCase(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for kind, name, element in named(subject):
             if name != name.lower() or "-" in name:
-                snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).replace("-", "_").lower()
+                snake_case = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).replace("-", "_").lower()
                 message = phrase(
                     "the name of the {kind} '{name}' is not in lower case with underscores", kind=term(kind), name=name
                 )
-                yield self.report(message, element, "name", hint=phrase("the usual form is '{snake}'", snake=snake))
+                yield self.report(
+                    message, element, "name", hint=phrase("the usual form is '{snake}'", snake=snake_case)
+                )
 
 
 class NamesDifferInCase(Rule):
@@ -278,17 +282,17 @@ class NamesDifferInCase(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        first: dict[tuple[str, str], tuple[str, Element]] = {}
+        first_elements: dict[tuple[str, str], tuple[str, Element]] = {}
         for kind, name, element in named(subject):
-            other, where = first.setdefault((kind, name.casefold()), (name, element))
-            if other != name:
+            first_name, first_element = first_elements.setdefault((kind, name.casefold()), (name, element))
+            if first_name != name:
                 message = phrase(
                     "the {kind}s '{other}' and '{name}' differ only in upper and lower case",
                     kind=term(kind),
-                    other=other,
+                    other=first_name,
                     name=name,
                 )
-                note = Note(phrase("'{other}' is defined here", other=other), where.attribute_span("name"))
+                note = Note(phrase("'{other}' is defined here", other=first_name), first_element.attribute_span("name"))
                 yield self.report(message, element, "name", notes=[note], hint=phrase("give one of them another name"))
 
 
@@ -318,7 +322,7 @@ class NameSuffixDoubled(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for kind, name, element in named(subject):
-            match = _DOUBLED.fullmatch(name)
+            match = _REPEATED_SUFFIX.fullmatch(name)
             if match:
                 message = phrase(
                     "the name of the {kind} '{name}' ends with '{match}' twice",
@@ -326,5 +330,5 @@ class NameSuffixDoubled(Rule):
                     name=name,
                     match=match[1],
                 )
-                shorter = name[: -len(match[1]) - 1]
-                yield self.report(message, element, "name", hint=phrase("write '{shorter}'", shorter=shorter))
+                suggestion = name[: -len(match[1]) - 1]
+                yield self.report(message, element, "name", hint=phrase("write '{shorter}'", shorter=suggestion))

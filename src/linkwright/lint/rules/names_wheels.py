@@ -13,20 +13,20 @@ from math import cos, radians
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
 from linkwright.geometry.shapes import Placement, placement, rotated
-from linkwright.geometry.single import dot, length, subtracted
+from linkwright.geometry.single import dot, length, subtract_vectors
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
 
-_NO_WHEEL = lazy_pattern(
+_OTHER_PART = lazy_pattern(
     r"steer|swivel|knuckle|suspension|caster|castor|drop|arm|hub|axle|mount|fork|plate|holder|base|shaft|rocker|bogie"
     r"|pivot|roller|turn|rotate|yaw|slipping|cover|support|bracket|motor|encoder|arch|guard",
     re.IGNORECASE,
 )
-_SIDES = {"left": "right", "l": "r", "lhs": "rhs"}
-_APART = 1e-3
+_OPPOSITE_SIDES = {"left": "right", "l": "r", "lhs": "rhs"}
+_POSITION_TOLERANCE = 1e-3
 _AXIS_TOLERANCE = cos(radians(10.0))
 
 
@@ -42,34 +42,34 @@ class Wheel(NamedTuple):
     axis: Vector3
 
 
-def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Wheel]:
+def wheels(subject: Subject, joint_type: str = "continuous") -> Iterator[Wheel]:
     """Yield the wheels of a robot whose joints have the given type, in source order."""
     robot, frames = subject.robot, subject.frames
     if robot is None:
         return
     base = frames.get("base_link", frames[robot.root])
     for joint in robot.joints.values():
-        if joint.type == type_of_joint and is_wheel(joint) and joint.child in frames:
+        if joint.type == joint_type and is_wheel(joint) and joint.child in frames:
             frame = frames[joint.child].seen_from(base)
             axis = rotated(frame.rotation, joint.axis)
-            size = length(axis)
-            if size > 0:
-                unit = (axis[0] / size, axis[1] / size, axis[2] / size)
-                yield Wheel(joint, robot.links[joint.child], frame, unit)
+            axis_length = length(axis)
+            if axis_length > 0:
+                unit_axis = (axis[0] / axis_length, axis[1] / axis_length, axis[2] / axis_length)
+                yield Wheel(joint, robot.links[joint.child], frame, unit_axis)
 
 
 def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
     """Yield a joint and the joints above it, up to the root."""
-    moving = {joint.child: joint for joint in robot.joints.values()}
-    while (above := moving.get(joint.parent)) is not None:
-        yield above
-        joint = above
+    joints_by_child = {joint.child: joint for joint in robot.joints.values()}
+    while (parent_joint := joints_by_child.get(joint.parent)) is not None:
+        yield parent_joint
+        joint = parent_joint
 
 
 def is_wheel(joint: Joint) -> bool:
     """Return whether the names of a joint and its child suggest that it belongs to a wheel."""
     names = f"{joint.name} {joint.child}"
-    return "wheel" in names.lower() and not _NO_WHEEL.search(names)
+    return "wheel" in names.lower() and not _OTHER_PART.search(names)
 
 
 def words(name: str) -> list[str]:
@@ -77,19 +77,19 @@ def words(name: str) -> list[str]:
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
 
 
-def pairs(found: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
+def pairs(all_wheels: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
     """Yield pairs of left and right wheels whose names differ only in the side."""
-    by_words = {tuple(words(wheel.joint.name)): wheel for wheel in found}
-    for wheel in found:
-        own = words(wheel.joint.name)
-        sides = [index for index, word in enumerate(own) if word in _SIDES]
-        if len(sides) != 1:
+    wheels_by_words = {tuple(words(wheel.joint.name)): wheel for wheel in all_wheels}
+    for wheel in all_wheels:
+        name_words = words(wheel.joint.name)
+        side_indexes = [index for index, word in enumerate(name_words) if word in _OPPOSITE_SIDES]
+        if len(side_indexes) != 1:
             continue
-        other = [*own]
-        other[sides[0]] = _SIDES[own[sides[0]]]
-        match = by_words.get(tuple(other))
-        if match is not None:
-            yield wheel, match
+        opposite_words = [*name_words]
+        opposite_words[side_indexes[0]] = _OPPOSITE_SIDES[name_words[side_indexes[0]]]
+        opposite_wheel = wheels_by_words.get(tuple(opposite_words))
+        if opposite_wheel is not None:
+            yield wheel, opposite_wheel
 
 
 class WheelSide(Rule):
@@ -120,8 +120,8 @@ class WheelSide(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for left, right in pairs(list(wheels(subject))):
-            gap = subtracted(left.frame.position, right.frame.position)
-            if gap[1] < -_APART and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
+            gap = subtract_vectors(left.frame.position, right.frame.position)
+            if gap[1] < -_POSITION_TOLERANCE and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
                 note = Note(
                     phrase("'{name}' is at y = {position:g}", name=right.joint.name, position=right.frame.position[1]),
                     _place(right.joint),
@@ -170,11 +170,13 @@ class WheelHasLimits(Rule):
         robot = subject.robot
         if robot is None:
             return
-        turning = [joint for joint in robot.joints.values() if joint.type == "continuous"]
-        carrying = {other.parent for joint in turning for other in (joint, *joints_above(robot, joint))}
+        continuous_joints = [joint for joint in robot.joints.values() if joint.type == "continuous"]
+        carrier_links = {
+            upper_joint.parent for joint in continuous_joints for upper_joint in (joint, *joints_above(robot, joint))
+        }
         for wheel in wheels(subject, "revolute"):
             joint = wheel.joint
-            if joint.child in carrying or "wheel" not in joint.child.lower() or _allows_many_turns(joint):
+            if joint.child in carrier_links or "wheel" not in joint.child.lower() or _allows_many_turns(joint):
                 continue
             if joint.element is None or not _rolls_about_own_axis(wheel):
                 continue
@@ -218,22 +220,22 @@ class WheelAxis(Rule):
         for wheel in wheels(subject):
             discs = list(_disc_axes(wheel.link))
             axis = wheel.joint.axis
-            size = length(axis)
-            if not discs or size == 0 or wheel.joint.element is None:
+            axis_length = length(axis)
+            if not discs or axis_length == 0 or wheel.joint.element is None:
                 continue
-            if any(abs(dot(disc, axis)) / size >= _AXIS_TOLERANCE for disc in discs):
+            if any(abs(dot(disc, axis)) / axis_length >= _AXIS_TOLERANCE for disc in discs):
                 continue
-            shown = _rounded(discs[0])
+            cylinder_axis_text = _axis_text(discs[0])
             element = wheel.joint.element.first("axis")
-            written = " ".join(f"{value:g}" for value in axis)
+            axis_text = " ".join(f"{value:g}" for value in axis)
             message = phrase(
                 "the wheel '{name}' turns about '{written}', but the axis of its cylinder is '{shown}'",
                 name=wheel.link.name,
-                written=written,
-                shown=shown,
+                written=axis_text,
+                shown=cylinder_axis_text,
             )
             attribute = "xyz" if element is not None else None
-            hint = phrase('write <axis xyz="{shown}"/>, or turn the cylinder', shown=shown)
+            hint = phrase('write <axis xyz="{shown}"/>, or turn the cylinder', shown=cylinder_axis_text)
             yield self.report(message, element if element is not None else wheel.joint.element, attribute, hint=hint)
 
 
@@ -268,9 +270,11 @@ class WheelAxesOpposed(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for left, right in pairs(list(wheels(subject))):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
-                note = Note(phrase("'{name}' turns the other way", name=left.joint.name), _place(left.joint))
+                note = Note(
+                    phrase(("'{name}' turns in the opposite direction"), name=left.joint.name), _place(left.joint)
+                )
                 message = phrase(
-                    "'{name}' turns against '{joint_name}' for velocities of the same sign",
+                    "'{name}' and '{joint_name}' turn in opposite directions at velocities of the same sign",
                     name=right.joint.name,
                     joint_name=left.joint.name,
                 )
@@ -308,7 +312,7 @@ class WheelsNotMirrored(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for left, right in pairs(list(wheels(subject))):
             (lx, ly, lz), (rx, ry, rz) = left.frame.position, right.frame.position
-            if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _APART and right.joint.element is not None:
+            if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _POSITION_TOLERANCE and right.joint.element is not None:
                 note = Note(
                     phrase("'{name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", name=left.joint.name, lx=lx, ly=ly, lz=lz),
                     _place(left.joint),
@@ -378,11 +382,11 @@ def _is_driven(subject: Subject, joint: Joint) -> bool:
 
 def _disc_axes(link: Link) -> Iterator[Vector3]:
     """Yield the axes of a link's flat cylinders in the link's frame."""
-    parts: tuple[Visual | Collision, ...] = (*link.collisions, *link.visuals)
-    for part in parts:
-        shape = part.geometry
+    shapes: tuple[Visual | Collision, ...] = (*link.collisions, *link.visuals)
+    for visual_or_collision in shapes:
+        shape = visual_or_collision.geometry
         if isinstance(shape, Cylinder) and 0 < shape.length < 1.5 * shape.radius:
-            yield rotated(placement(part.origin).rotation, (0.0, 0.0, 1.0))
+            yield rotated(placement(visual_or_collision.origin).rotation, (0.0, 0.0, 1.0))
 
 
 def _rolls_about_own_axis(wheel: Wheel) -> bool:
@@ -393,8 +397,8 @@ def _rolls_about_own_axis(wheel: Wheel) -> bool:
     discs = list(_disc_axes(wheel.link))
     if not discs:
         return abs(wheel.axis[1]) >= _AXIS_TOLERANCE
-    size = length(wheel.joint.axis)
-    return any(abs(dot(disc, wheel.joint.axis)) / size >= _AXIS_TOLERANCE for disc in discs)
+    axis_length = length(wheel.joint.axis)
+    return any(abs(dot(disc, wheel.joint.axis)) / axis_length >= _AXIS_TOLERANCE for disc in discs)
 
 
 def _allows_many_turns(joint: Joint) -> bool:
@@ -402,7 +406,7 @@ def _allows_many_turns(joint: Joint) -> bool:
     return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
 
 
-def _rounded(axis: Vector3) -> str:
+def _axis_text(axis: Vector3) -> str:
     """Return an axis as text, rounded, and reversed if its largest component is negative.
 
     The sign of a wheel's axis has no meaning here.

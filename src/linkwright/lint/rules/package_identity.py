@@ -127,12 +127,12 @@ class PackageName(ManifestRule):
             return
         if not name:
             return  # LW802 reports a missing name
-        for found in check_package_name(name):
+        for finding in check_package_name(name):
             if is_accepted_name(name):
-                advice = found if iskeyword(name) else rep_144_warning(name)
-                yield self.report(advice.message, element, hint=advice.hint, severity=Severity.INFO)
+                warning = finding if iskeyword(name) else rep_144_warning(name)
+                yield self.report(warning.message, element, hint=warning.hint, severity=Severity.INFO)
             else:
-                yield self.report(found.message, element, hint=found.hint, severity=Severity.ERROR)
+                yield self.report(finding.message, element, hint=finding.hint, severity=Severity.ERROR)
 
 
 class FolderNameDiffers(PackageRule):
@@ -204,11 +204,11 @@ class MaintainerEmail(ManifestRule):
             if element.tag not in ("maintainer", "author"):
                 continue
             email = element.attributes.get("email")
-            who = " ".join(element.text().split())
+            maintainer_name = " ".join(element.text().split())
             if not email:
                 if element.tag == "maintainer":
                     yield self.report(
-                        phrase("the maintainer '{who}' has no e-mail address", who=who),
+                        phrase("the maintainer '{who}' has no e-mail address", who=maintainer_name),
                         element,
                         hint=phrase('add email="..."'),
                     )
@@ -259,13 +259,15 @@ class ManifestPlaceholder(ManifestRule):
                     )
                 elif _PLACEHOLDER.search(text):
                     yield self.report(
-                        phrase("<{tag}> is a placeholder: '{text}'", tag=tag, text=text), element, hint=_advice(tag)
+                        phrase("<{tag}> is a placeholder: '{text}'", tag=tag, text=text),
+                        element,
+                        hint=_placeholder_hint(tag),
                     )
 
 
-def _advice(tag: str) -> Phrase:
+def _placeholder_hint(tag: str) -> Phrase:
     if tag == "license":
-        return phrase("name it by its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause")
+        return phrase("write its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause")
     return (
         phrase("describe the purpose of the package in a sentence")
         if tag == "description"

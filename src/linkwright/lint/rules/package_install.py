@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
-from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake, submodule_of
+from linkwright.lint.made_files import is_created_by_cmake, is_ignored_by_git, submodule_of
 from linkwright.lint.package_fixes import cmake_folder_fix, setup_folders_fix
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from linkwright.packages.readers.cmake import CMakeFile
     from linkwright.packages.readers.setup_py import DataFile, SetupFile
 
-_SHARED = lazy_pattern(
+_SHARED_FILE = lazy_pattern(
     r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
     re.IGNORECASE,
 )
-_USUAL = frozenset(
+_USUAL_FOLDERS = frozenset(
     {
         *("launch", "urdf", "xacro", "robot", "robots", "description", "mesh", "meshes", "model", "models", "media"),
         *("materials", "world", "worlds", "config", "configs", "cfg", "param", "params", "rviz", "map", "maps", "srdf"),
     }
 )
-"""The names of folders whose files are meant to be installed; others may have templates or sources."""
-_SETTINGS = lazy_pattern(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
-_NOT_SHARED = lazy_pattern(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
+"""The names of folders with files that are usually installed; other folders may contain templates or sources."""
+_SETTINGS_FILE = lazy_pattern(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
+_UNSHARED_FOLDER = lazy_pattern(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
 
 
 class PatternMatchesNothing(PackageRule):
@@ -68,14 +68,14 @@ class PatternMatchesNothing(PackageRule):
         setup = package.setup
         if setup is None:
             return
-        served = {item.text.rpartition("/")[0] for item in setup.installed if item.files(package.folder)}
+        matched_folders = {item.text.rpartition("/")[0] for item in setup.installed if item.files(package.folder)}
         for item in setup.installed:
             if not item.is_pattern or item.files(package.folder):
                 continue
             folder = item.text.rpartition("/")[0]
-            like = near_folder(package, folder)
-            if like:
-                hint: Phrase | None = phrase("did you mean the folder '{like}'?", like=like)
+            suggested_folder = nearest_folder(package, folder)
+            if suggested_folder:
+                hint: Phrase | None = phrase("did you mean the folder '{like}'?", like=suggested_folder)
             elif folder and package.has(folder):
                 hint = (
                     phrase("there are other files in '{folder}'", folder=folder)
@@ -84,7 +84,7 @@ class PatternMatchesNothing(PackageRule):
                 )
             else:
                 hint = phrase("there is no folder '{folder}'", folder=folder) if folder else None
-            is_doubtful = like or (folder and package.has(folder) and folder not in served)
+            is_doubtful = suggested_folder or (folder and package.has(folder) and folder not in matched_folders)
             severity = self.severity if is_doubtful else Severity.INFO
             message = phrase("the pattern '{text}' in setup.py matches no file", text=item.text)
             yield self.report(message, span=item.span, source=setup.source, hint=hint, severity=severity)
@@ -131,16 +131,20 @@ class FolderNotInstalled(PackageRule):
             yield from self._check_cmake(package, package.cmake)
 
     def _check_setup(self, package: PackageContext, setup: SetupFile) -> Iterator[Diagnostic]:
-        if not setup.call or not setup.is_complete:
+        if not setup.has_call or not setup.is_complete:
             return
         files = {file for item in setup.installed for file in item.files(package.folder)}
-        installed = {file.rpartition("/")[0] for file in files}
-        empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
-        meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 reports these folders
-        lacking: dict[str, list[str]] = {}
-        for folder in _uninstalled_folders(package, lambda folder: folder in installed or folder in meant):
-            lacking.setdefault(_top(folder), []).append(folder)
-        for folder, *others in lacking.values():
+        installed_folders = {file.rpartition("/")[0] for file in files}
+        empty_patterns = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
+        intended_folders = {
+            nearest_folder(package, item.text.rpartition("/")[0]) for item in empty_patterns
+        }  # LW821 reports these folders
+        uninstalled_folders: dict[str, list[str]] = {}
+        for folder in _uninstalled_folders(
+            package, lambda folder: folder in installed_folders or folder in intended_folders
+        ):
+            uninstalled_folders.setdefault(_top_folder(folder), []).append(folder)
+        for folder, *others in uninstalled_folders.values():
             message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
             if others:
                 message = phrase("{message} (and {count} more)", message=message, count=len(others))
@@ -158,14 +162,15 @@ class FolderNotInstalled(PackageRule):
             return
 
         def is_installed(folder: str) -> bool:
-            covered = any(_covers(item.text, folder) for item in cmake.directories)
-            return covered or any(item.text.startswith(f"{folder}/") for item in cmake.files)
+            is_covered = any(_covers(item.text, folder) for item in cmake.directories)
+            return is_covered or any(item.text.startswith(f"{folder}/") for item in cmake.files)
 
-        kept = {_top(folder) for folder in filter(is_installed, shared_folders(package))}
-        lacking = (
-            folder if _top(folder) in kept else _top(folder) for folder in _uninstalled_folders(package, is_installed)
+        partly_installed = {_top_folder(folder) for folder in filter(is_installed, shared_folders(package))}
+        uninstalled_folders = (
+            folder if _top_folder(folder) in partly_installed else _top_folder(folder)
+            for folder in _uninstalled_folders(package, is_installed)
         )
-        for folder in dict.fromkeys(lacking):
+        for folder in dict.fromkeys(uninstalled_folders):
             message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
             parent = f"/{folder.rpartition('/')[0]}" if "/" in folder else ""
             hint = phrase(
@@ -180,10 +185,10 @@ class FolderNotInstalled(PackageRule):
 
     def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
         """Return the severity, an information for settings that no launch file of the package reads."""
-        inside = tuple(f"{folder}/" for folder in folders)
-        held = [file for file in package.files if file.startswith(inside) and _is_shared(file)]
-        is_unread = not any(path.startswith(inside) for path in _paths_named_by_launch_files(package))
-        return Severity.INFO if is_unread and all(map(_SETTINGS.search, held)) else self.severity
+        prefixes = tuple(f"{folder}/" for folder in folders)
+        shared_files = [file for file in package.files if file.startswith(prefixes) and _is_shared(file)]
+        is_unread = not any(path.startswith(prefixes) for path in _paths_named_by_launch_files(package))
+        return Severity.INFO if is_unread and all(map(_SETTINGS_FILE.search, shared_files)) else self.severity
 
 
 class FileNotInstalled(PackageRule):
@@ -216,23 +221,23 @@ class FileNotInstalled(PackageRule):
         setup = package.setup
         if setup is None or package.cmake is not None or not setup.is_complete:
             return
-        places: dict[str, DataFile] = {}
+        patterns_by_folder: dict[str, DataFile] = {}
         files: set[str] = set()
         for item in setup.installed:
             for file in item.files(package.folder):
                 files.add(file)
                 if item.is_pattern:
-                    places.setdefault(file.rpartition("/")[0], item)
+                    patterns_by_folder.setdefault(file.rpartition("/")[0], item)
         for file in package.files:
             folder = file.rpartition("/")[0]
-            pattern = places.get(folder)
+            pattern = patterns_by_folder.get(folder)
             if folder and pattern is not None and file not in files and _is_shared(file):
                 message = phrase("setup.py installs '{text}', which leaves out '{file}'", text=pattern.text, file=file)
                 yield self.report(
                     message,
                     span=pattern.span,
                     source=setup.source,
-                    hint=phrase("write for example glob('{folder}/*')", folder=folder),
+                    hint=phrase("write, for example, glob('{folder}/*')", folder=folder),
                 )
 
 
@@ -272,16 +277,20 @@ class InstalledFileMissing(PackageRule):
                 ):
                     continue
                 message = phrase("setup.py installs '{text}', which does not exist", text=item.text)
-                hint = checkout_hint(package, item.text) or near_file(package, item.text)
+                hint = checkout_hint(package, item.text) or nearest_file_hint(package, item.text)
                 yield self.report(message, span=item.span, source=setup.source, hint=hint)
         if cmake is not None:
             for argument in cmake.required:
                 text = argument.text.rstrip("/")
                 if text and not text.startswith("/") and "<" not in text and not _exists_or_is_generated(package, text):
                     message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=argument.text)
-                    like = near_folder(package, text)
-                    near = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
-                    hint = checkout_hint(package, text) or near
+                    suggested_folder = nearest_folder(package, text)
+                    suggestion = (
+                        phrase("did you mean {names}?", names=quoted(suggested_folder))
+                        if suggested_folder
+                        else nearest_file_hint(package, text)
+                    )
+                    hint = checkout_hint(package, text) or suggestion
                     yield self.report(message, span=cmake.span(argument), source=argument.source, hint=hint)
 
 
@@ -290,9 +299,9 @@ def _exists_or_is_generated(package: PackageContext, path: str) -> bool:
 
     Files that git ignores, and files that CMake creates, count as created.
     """
-    place = package.folder / path
-    is_ignored = is_ignored_by_git(place) or is_ignored_by_git(place / "_")
-    return package.has(path) or is_ignored or is_made_by_cmake(package, path)
+    absolute_path = package.folder / path
+    is_ignored = is_ignored_by_git(absolute_path) or is_ignored_by_git(absolute_path / "_")
+    return package.has(path) or is_ignored or is_created_by_cmake(package, path)
 
 
 def shared_folders(package: PackageContext) -> list[str]:
@@ -305,37 +314,38 @@ def _uninstalled_folders(package: PackageContext, is_installed: Callable[[str], 
 
     Only folders with a usual name, and folders that a launch file uses, are returned.
     """
-    asked = _paths_named_by_launch_files(package)
+    launch_paths = _paths_named_by_launch_files(package)
     return [
         folder
         for folder in shared_folders(package)
-        if not is_installed(folder) and (_top(folder) in _USUAL or any(path.startswith(f"{folder}/") for path in asked))
+        if not is_installed(folder)
+        and (_top_folder(folder) in _USUAL_FOLDERS or any(path.startswith(f"{folder}/") for path in launch_paths))
     ]
 
 
 def _paths_named_by_launch_files(package: PackageContext) -> set[str]:
     """Return the paths in share folders that the package's launch files name."""
-    return {shared.path for file in package.launch_files.values() for shared in file.paths}
+    return {shared_file.path for file in package.launch_files.values() for shared_file in file.paths}
 
 
-def _top(folder: str) -> str:
+def _top_folder(folder: str) -> str:
     return folder.partition("/")[0]
 
 
-def near_folder(package: PackageContext, folder: str) -> str | None:
-    """Return the folder whose name is most similar to that of a missing folder, or None.
+def nearest_folder(package: PackageContext, folder: str) -> str | None:
+    """Return the folder with the name that is most similar to the name of a missing folder, or None.
 
     Only folders in the same parent folder are compared. The result is also None if the folder exists.
     """
     if not folder or package.has(folder):
         return None
     parent = folder.rpartition("/")[0]
-    beside = [folder for folder in package.folders if folder.rpartition("/")[0] == parent]
-    return next(iter(nearest(folder, beside, 1)), None)
+    siblings = [folder for folder in package.folders if folder.rpartition("/")[0] == parent]
+    return next(iter(nearest(folder, siblings, 1)), None)
 
 
 def _is_shared(file: str) -> bool:
-    return bool(_SHARED.match(file)) and not _NOT_SHARED.search(file)
+    return bool(_SHARED_FILE.match(file)) and not _UNSHARED_FOLDER.search(file)
 
 
 def _covers(directory: str, folder: str) -> bool:
@@ -351,9 +361,9 @@ def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
     return phrase("'{folder}' is a submodule of Git: run git submodule update --init", folder=submodule)
 
 
-def near_file(package: PackageContext, path: str) -> Phrase | None:
+def nearest_file_hint(package: PackageContext, path: str) -> Phrase | None:
     """Return a hint that names the most similar file in the folder of a path, or None."""
     folder = path.rpartition("/")[0]
-    beside = [file for file in package.files if file.rpartition("/")[0] == folder]
-    like = next(iter(nearest(path, beside, 1)), None)
-    return phrase("did you mean {names}?", names=quoted(like)) if like else None
+    siblings = [file for file in package.files if file.rpartition("/")[0] == folder]
+    nearest_path = next(iter(nearest(path, siblings, 1)), None)
+    return phrase("did you mean {names}?", names=quoted(nearest_path)) if nearest_path else None

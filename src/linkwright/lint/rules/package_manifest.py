@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from linkwright.packages.readers.package_xml import Dependency, Manifest
 
 _REQUIRED = ("name", "version", "description", "maintainer", "license")
-_FILLED = frozenset({"name", "version", "description", "license"})
-"""Elements that catkin_pkg refuses when they are empty; a maintainer may be an address alone."""
-_DOUBLED_BY_DEPEND = frozenset({"build_depend", "build_export_depend", "exec_depend"})
+_NON_EMPTY_ELEMENTS = frozenset({"name", "version", "description", "license"})
+"""Elements that catkin_pkg refuses if they are empty; a maintainer may consist of an e-mail address only."""
+_INCLUDED_IN_DEPEND = frozenset({"build_depend", "build_export_depend", "exec_depend"})
 _BUILD_FILES = {
     "ament_python": "setup.py",
     "ament_cmake": "CMakeLists.txt",
@@ -85,13 +85,13 @@ class ManifestMalformed(PackageRule):
         """Yield a finding if the ``package.xml`` of the package is malformed."""
         error = package.manifest_error
         if error is not None:
-            found = error.diagnostics[0]
+            diagnostic = error.diagnostics[0]
             yield self.report(
-                phrase("package.xml cannot be read: {message}", message=found.message),
-                span=found.span,
-                source=found.source,
-                notes=found.notes,
-                hint=found.hint,
+                phrase("package.xml cannot be read: {message}", message=diagnostic.message),
+                span=diagnostic.span,
+                source=diagnostic.source,
+                notes=diagnostic.notes,
+                hint=diagnostic.hint,
             )
 
 
@@ -131,14 +131,16 @@ class ManifestIncomplete(ManifestRule):
         if root.tag != "package":
             yield self.report(phrase("the root of package.xml is <{tag}>, not <package>", tag=root.tag), root)
             return
-        missing = [tag for tag in _REQUIRED if root.first(tag) is None]
-        if missing:
-            listed = " and ".join(f"<{tag}>" for tag in missing)
+        missing_tags = [tag for tag in _REQUIRED if root.first(tag) is None]
+        if missing_tags:
+            tags_text = " and ".join(f"<{tag}>" for tag in missing_tags)
             yield self.report(
-                phrase("package.xml lacks {listed}", listed=listed), root, hint=phrase("add {listed}", listed=listed)
+                phrase("package.xml lacks {listed}", listed=tags_text),
+                root,
+                hint=phrase("add {listed}", listed=tags_text),
             )
         for element in root.elements():
-            if element.tag not in _FILLED:
+            if element.tag not in _NON_EMPTY_ELEMENTS:
                 continue
             if not element.text().strip() and next(element.elements(), None) is None:
                 tag = element.tag
@@ -210,21 +212,25 @@ class DependencyRepeated(ManifestRule):
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
         """Yield a finding for each repeated dependency in a manifest."""
-        generic = {
+        depend_elements = {
             dependency.name: dependency for dependency in reversed(manifest.dependencies) if dependency.tag == "depend"
         }
-        seen: dict[tuple[str, str], Dependency] = {}
+        first_dependencies: dict[tuple[str, str], Dependency] = {}
         for dependency in manifest.dependencies:
-            first = seen.setdefault((dependency.name, dependency.tag), dependency)
-            if dependency.tag in _DOUBLED_BY_DEPEND and first is dependency:
-                first = generic.get(dependency.name, dependency)
-            if first is not dependency and _same_condition(first.element.attributes, dependency.element.attributes):
-                note = Note(phrase("<{tag}> is here", tag=first.tag), first.element.span())
+            first_dependency = first_dependencies.setdefault((dependency.name, dependency.tag), dependency)
+            if dependency.tag in _INCLUDED_IN_DEPEND and first_dependency is dependency:
+                first_dependency = depend_elements.get(dependency.name, dependency)
+            if first_dependency is not dependency and _same_condition(
+                first_dependency.element.attributes, dependency.element.attributes
+            ):
+                note = Note(
+                    phrase(("the first <{tag}> is here"), tag=first_dependency.tag), first_dependency.element.span()
+                )
                 message = phrase("the dependency on '{name}' is listed twice", name=dependency.name)
                 fix = remove_element(dependency.element)
-                harmless = Severity.INFO if first.tag == dependency.tag else None
+                severity = Severity.INFO if first_dependency.tag == dependency.tag else None
                 yield self.report(
-                    message, dependency.element, notes=[note], hint=phrase("remove it"), fix=fix, severity=harmless
+                    message, dependency.element, notes=[note], hint=phrase("remove it"), fix=fix, severity=severity
                 )
 
 
@@ -295,27 +301,29 @@ class BuildTypeDiffers(PackageRule):
         manifest = package.manifest
         if manifest is None:
             return
-        has = {name: package.has(name) for name in ("setup.py", "CMakeLists.txt")}
-        if has["setup.py"] == has["CMakeLists.txt"]:
+        file_exists = {name: package.has(name) for name in ("setup.py", "CMakeLists.txt")}
+        if file_exists["setup.py"] == file_exists["CMakeLists.txt"]:
             return
         build_type = manifest.build_type
-        wanted = _BUILD_FILES.get(build_type or "catkin")
-        if wanted is None or has[wanted]:
+        expected_file = _BUILD_FILES.get(build_type or "catkin")
+        if expected_file is None or file_exists[expected_file]:
             return
-        right = "ament_python" if has["setup.py"] else "ament_cmake"
-        there = "setup.py" if has["setup.py"] else "CMakeLists.txt"
+        expected_type = "ament_python" if file_exists["setup.py"] else "ament_cmake"
+        existing_file = "setup.py" if file_exists["setup.py"] else "CMakeLists.txt"
         export = manifest.root.first("export")
         element = (export and export.first("build_type")) or export or manifest.root
         if build_type:
             message = phrase(
-                "the build type is '{build_type}', but the package has a {file}", build_type=build_type, file=there
+                "the build type is '{build_type}', but the package has a {file}",
+                build_type=build_type,
+                file=existing_file,
             )
         else:
             message = phrase(
-                "the build type is not given, which means catkin, but the package has a {file}", file=there
+                "the build type is not given, which means catkin, but the package has a {file}", file=existing_file
             )
         yield self.report(
-            message, element, hint=phrase("write <build_type>{right}</build_type> in <export>", right=right)
+            message, element, hint=phrase("write <build_type>{right}</build_type> in <export>", right=expected_type)
         )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.lint.package_fixes import setup_file_fix
-from linkwright.lint.rules.package_install import checkout_hint, near_file
+from linkwright.lint.rules.package_install import checkout_hint, nearest_file_hint
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -15,8 +15,8 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
-_MARKERS = "share/ament_index/resource_index/packages"
-_DRIVER_OF_WEBOTS = lazy_pattern(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
+_INDEX_FOLDER = "share/ament_index/resource_index/packages"
+_WEBOTS_DRIVER = lazy_pattern(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
 """A class that webots_ros2_driver loads by its name; the executable in its tutorial is never run."""
 _SCRIPT_FOLDERS = lazy_pattern(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
 
@@ -53,7 +53,7 @@ class SetupSyntaxError(PackageRule):
         """Yield a finding if the ``setup.py`` of a package has a syntax error."""
         setup = package.setup
         if setup is not None and setup.error is not None:
-            message = phrase("setup.py is not Python: {message}", message=foreign(setup.error.message))
+            message = phrase("setup.py is not valid Python: {message}", message=foreign(setup.error.message))
             yield self.report(message, span=setup.error.span, source=setup.source)
 
 
@@ -84,17 +84,17 @@ class MarkerMissing(PackageRule):
         if setup is None or not is_ament_python(package):
             return
         marker = f"resource/{package.name}"
-        wants = next((item for item in setup.installed if item.text == marker), None)
-        if wants is None or package.has(marker):
+        marker_entry = next((item for item in setup.installed if item.text == marker), None)
+        if marker_entry is None or package.has(marker):
             return
-        others = [file for file in package.files if file.startswith("resource/")]
+        resource_files = [file for file in package.files if file.startswith("resource/")]
         hint = (
-            phrase("rename '{others}'", others=others[0])
-            if len(others) == 1
+            phrase("rename '{others}'", others=resource_files[0])
+            if len(resource_files) == 1
             else phrase("create an empty file '{marker}'", marker=marker)
         )
         message = phrase("setup.py installs the marker file '{marker}', which does not exist", marker=marker)
-        yield self.report(message, span=wants.span, source=setup.source, hint=hint)
+        yield self.report(message, span=marker_entry.span, source=setup.source, hint=hint)
 
 
 class MarkerNotInstalled(PackageRule):
@@ -130,22 +130,24 @@ class MarkerNotInstalled(PackageRule):
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
         """Yield a finding for the marker and for the ``package.xml`` if they are not installed."""
         setup = package.setup
-        if setup is None or not setup.call or not setup.is_complete or not is_ament_python(package):
+        if setup is None or not setup.has_call or not setup.is_complete or not is_ament_python(package):
             return
-        marked = any(item.destination == _MARKERS or item.text.startswith("resource/") for item in setup.installed)
-        if not marked:
+        has_marker = any(
+            item.destination == _INDEX_FOLDER or item.text.startswith("resource/") for item in setup.installed
+        )
+        if not has_marker:
             message = phrase("setup.py does not install the marker file of the package '{name}'", name=package.name)
             has_marker = (package.folder / "resource" / package.name).is_file()
             hint = (
-                phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_MARKERS, name=package.name)
+                phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_INDEX_FOLDER, name=package.name)
                 if has_marker
                 else phrase(
                     "create an empty file 'resource/{name}', and add ('{markers}', ['resource/{name}']) to data_files",
-                    markers=_MARKERS,
+                    markers=_INDEX_FOLDER,
                     name=package.name,
                 )
             )
-            fix = setup_file_fix(package, setup, _MARKERS, f"resource/{package.name}") if has_marker else None
+            fix = setup_file_fix(package, setup, _INDEX_FOLDER, f"resource/{package.name}") if has_marker else None
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix)
         if not any(item.text == "package.xml" for item in setup.installed):
             message = phrase("setup.py does not install package.xml")
@@ -184,8 +186,8 @@ class EntryPointMissing(PackageRule):
         if setup is None:
             return
         for entry in setup.entry_points:
-            top = entry.module.partition(".")[0]
-            if not package.has(top):
+            top_package = entry.module.partition(".")[0]
+            if not package.has(top_package):
                 continue  # a module of another package, or in another folder
             path = entry.module.replace(".", "/")
             file = next((name for name in (f"{path}.py", f"{path}/__init__.py") if package.has(name)), None)
@@ -195,7 +197,9 @@ class EntryPointMissing(PackageRule):
                     executable=entry.executable,
                     module=entry.module,
                 )
-                yield self.report(message, span=entry.span, source=setup.source, hint=near_file(package, f"{path}.py"))
+                yield self.report(
+                    message, span=entry.span, source=setup.source, hint=nearest_file_hint(package, f"{path}.py")
+                )
             elif entry.function is not None and not _defines(package, file, entry.function.partition(".")[0]):
                 message = phrase(
                     "the executable '{executable}' runs '{function}', which '{file}' does not define",
@@ -275,15 +279,15 @@ class SetupCfgDiffers(PackageRule):
         setup = package.setup
         if setup is None or not setup.entry_points or not is_ament_python(package):
             return
-        wanted = f"$base/lib/{package.name}"
+        script_folder = f"$base/lib/{package.name}"
         source = package.text("setup.cfg")
         if source is None:
             message = phrase("without a setup.cfg, ros2 run does not find the executables of this package")
-            hint = phrase("write a setup.cfg with install_scripts={wanted} in [install]", wanted=wanted)
+            hint = phrase("write a setup.cfg with install_scripts={wanted} in [install]", wanted=script_folder)
             yield self.report(message, span=setup.entry_points[0].span, source=setup.source, hint=hint)
             return
         for match in _SCRIPT_FOLDERS.finditer(source.text):
-            if match[2] != wanted:
+            if match[2] != script_folder:
                 span = source.span(*match.span(2))
                 message = phrase(
                     "setup.cfg puts executables into '{match}', where ros2 run does not look", match=match[2]
@@ -292,7 +296,7 @@ class SetupCfgDiffers(PackageRule):
                     message,
                     span=span,
                     source=source,
-                    hint=phrase("write {match}={wanted}", match=match[1], wanted=wanted),
+                    hint=phrase("write {match}={wanted}", match=match[1], wanted=script_folder),
                 )
 
 
@@ -314,4 +318,4 @@ def _defines(package: PackageContext, file: str, name: str) -> bool:
     )
     text = source.text
     is_defined = re.search(rf"^({'|'.join(patterns)})", text, re.MULTILINE) or "__getattr__" in text
-    return bool(is_defined or _DRIVER_OF_WEBOTS.search(text))
+    return bool(is_defined or _WEBOTS_DRIVER.search(text))

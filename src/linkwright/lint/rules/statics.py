@@ -22,8 +22,8 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.urdf import Cylinder, Link, Robot, Sphere, Vector3
 
 _CASTER = lazy_pattern(r"cast(?:e|o)r|ball_?wheel", re.IGNORECASE)
-_LEVEL = 0.2
-"""The sine up to which a wheel's axis counts as level."""
+_MAX_LEVEL_SINE = 0.2
+"""The sine of the tilt up to which a wheel's axis counts as level."""
 
 Point = tuple[float, float]
 
@@ -33,12 +33,12 @@ class Contact(NamedTuple):
 
     Attributes:
         link: the link of the wheel or caster.
-        place: the lowest point of the link in the frame of the base, in m.
+        lowest_point: the lowest point of the link in the frame of the base, in m.
         is_wheel: whether the link is a wheel and not a caster.
     """
 
     link: Link
-    place: Vector3
+    lowest_point: Vector3
     is_wheel: bool
 
 
@@ -51,23 +51,23 @@ def contacts(subject: Subject) -> list[Contact] | None:
     if robot is None:
         return None
     base = frames.get("base_link", frames[robot.root])
-    driven = {wheel.link.name for wheel in wheels(subject)}
-    found = []
+    wheel_names = {wheel.link.name for wheel in wheels(subject)}
+    all_contacts = []
     for name, link in robot.links.items():
-        is_wheel = name in driven
+        is_wheel = name in wheel_names
         if name not in frames or not (is_wheel or (_CASTER.search(name) and (link.visuals or link.collisions))):
             continue
         lowest = None
         for shape in link.collisions or link.visuals:
-            place = placement(shape.origin).inside(frames[name]).seen_from(base)
-            x, y, z = place.position
-            depth = _depth(shape.geometry, place.rotation[2][2])
+            pose = placement(shape.origin).inside(frames[name]).seen_from(base)
+            x, y, z = pose.position
+            depth = _depth(shape.geometry, pose.rotation[2][2])
             if depth is not None and (lowest is None or z - depth < lowest[2]):
                 lowest = (x, y, z - depth)
         if lowest is None:
             return None
-        found.append(Contact(link, lowest, is_wheel))
-    return found
+        all_contacts.append(Contact(link, lowest, is_wheel))
+    return all_contacts
 
 
 class WheelsNotLevel(Rule):
@@ -93,30 +93,30 @@ class WheelsNotLevel(Rule):
     options = (Option("tolerance", 0.01, "how far above the ground a wheel may be, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        found = subject.once(contacts)
-        if found is None or sum(contact.is_wheel for contact in found) < 2:
+        all_contacts = subject.once(contacts)
+        if all_contacts is None or sum(contact.is_wheel for contact in all_contacts) < 2:
             return
         tolerance = self.option(subject, "tolerance", float)
-        driven = [contact for contact in found if contact.is_wheel]
-        ground = min(contact.place[2] for contact in driven)
-        lowest = min(driven, key=lambda item: item.place[2]).link
-        springing = _lifted_wheels(subject)
-        for contact in found:
-            gap = contact.place[2] - ground
-            if abs(gap) > tolerance and springing.isdisjoint((contact.link.name, lowest.name)):
-                where = phrase("above") if gap > 0 else phrase("below")
+        wheel_contacts = [contact for contact in all_contacts if contact.is_wheel]
+        ground = min(contact.lowest_point[2] for contact in wheel_contacts)
+        lowest = min(wheel_contacts, key=lambda item: item.lowest_point[2]).link
+        lifted_wheels = _lifted_wheels(subject)
+        for contact in all_contacts:
+            gap = contact.lowest_point[2] - ground
+            if abs(gap) > tolerance and lifted_wheels.isdisjoint((contact.link.name, lowest.name)):
+                direction = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
                     phrase(
-                        "'{name}' ends {gap:.3g} mm {where} the ground that '{lowest_name}' touches",
+                        "the lowest point of '{name}' is {gap:.3g} mm {where} the ground that '{lowest_name}' touches",
                         name=contact.link.name,
                         gap=abs(gap) * 1000,
-                        where=where,
+                        where=direction,
                         lowest_name=lowest.name,
                     ),
                     contact.link.element,
                     "name",
                     notes=[Note(phrase("'{name}' is defined here", name=lowest.name), _place(lowest))],
-                    hint=phrase("check the heights of their joints, and the radii"),
+                    hint=phrase("check the heights of their joints, and the radii of the wheels"),
                 )
 
 
@@ -126,17 +126,17 @@ def _lifted_wheels(subject: Subject) -> set[str]:
     Steering joints, which rotate about z, do not count.
     """
     robot, frames = subject.robot, subject.frames
-    found: set[str] = set()
+    names: set[str] = set()
     if robot is None:
-        return found
+        return names
     for joint in robot.joints.values():
-        for above in joints_above(robot, joint):
-            if above.type == "fixed" or above.child not in frames:
+        for upper_joint in joints_above(robot, joint):
+            if upper_joint.type == "fixed" or upper_joint.child not in frames:
                 continue
-            level = hypot(*rotated(frames[above.child].rotation, above.axis)[:2])
-            if (level > _LEVEL) is (above.type != "prismatic"):
-                found.add(joint.child)
-    return found
+            horizontal = hypot(*rotated(frames[upper_joint.child].rotation, upper_joint.axis)[:2])
+            if (horizontal > _MAX_LEVEL_SINE) is (upper_joint.type != "prismatic"):
+                names.add(joint.child)
+    return names
 
 
 class CenterBeyondWheels(Rule):
@@ -162,16 +162,16 @@ class CenterBeyondWheels(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         robot = subject.robot
-        found = subject.once(contacts)
-        if robot is None or found is None or len(found) < 3:
+        all_contacts = subject.once(contacts)
+        if robot is None or all_contacts is None or len(all_contacts) < 3:
             return
-        corners = _hull([contact.place[:2] for contact in found])
+        corners = _convex_hull([contact.lowest_point[:2] for contact in all_contacts])
         center = _center_of_mass(robot, subject.frames)
         if len(corners) < 3 or center is None:
             return
         distance = _distance_outside(center, corners)
         if distance > self.option(subject, "margin", float):
-            holder = max(
+            heaviest_link = max(
                 (link for link in robot.links.values() if link.inertial is not None),
                 key=lambda link: link.inertial.mass if link.inertial is not None else 0.0,
             )
@@ -180,7 +180,7 @@ class CenterBeyondWheels(Rule):
                     "the centre of mass of the robot is {distance:.3g} cm beyond its wheels, so it tips over",
                     distance=distance * 100,
                 ),
-                holder.element,
+                heaviest_link.element,
                 "name",
                 notes=[
                     Note(
@@ -190,9 +190,9 @@ class CenterBeyondWheels(Rule):
                             other_center=center[1],
                         )
                     ),
-                    Note(phrase("'{name}' is the heaviest link", name=holder.name)),
+                    Note(phrase("'{name}' is the heaviest link", name=heaviest_link.name)),
                 ],
-                hint=phrase("check the origins of the heavy links' <inertial>, and where the casters are"),
+                hint=phrase("check the <inertial> origins of the heavy links, and the positions of the casters"),
             )
 
 
@@ -203,7 +203,7 @@ def _depth(shape: object, upward: float) -> float | None:
     """
     if isinstance(shape, Sphere):
         return shape.radius
-    if isinstance(shape, Cylinder) and abs(upward) < _LEVEL:
+    if isinstance(shape, Cylinder) and abs(upward) < _MAX_LEVEL_SINE:
         return shape.radius * sqrt(1 - upward * upward) + shape.length / 2 * abs(upward)
     return None
 
@@ -214,19 +214,19 @@ def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | No
     total = x = y = 0.0
     for name, link in robot.links.items():
         if link.inertial is not None and link.inertial.mass > 0 and name in frames:
-            place = frames[name].seen_from(base).point(link.inertial.origin.xyz)
+            position = frames[name].seen_from(base).point(link.inertial.origin.xyz)
             total += link.inertial.mass
-            x += link.inertial.mass * place[0]
-            y += link.inertial.mass * place[1]
+            x += link.inertial.mass * position[0]
+            y += link.inertial.mass * position[1]
     return (x / total, y / total) if total > 0 else None
 
 
-def _hull(points: Sequence[Point]) -> list[Point]:
+def _convex_hull(points: Sequence[Point]) -> list[Point]:
     """Return the corners of the convex hull in counter-clockwise order.
 
     There are fewer than three corners if all points are on a line. The algorithm is Andrew's monotone chain.
     """
-    ordered = sorted(set(points))
+    sorted_points = sorted(set(points))
 
     def half(sequence: Iterable[Point]) -> list[Point]:
         chain: list[Point] = []
@@ -236,7 +236,7 @@ def _hull(points: Sequence[Point]) -> list[Point]:
             chain.append(point)
         return chain[:-1]
 
-    return half(ordered) + half(reversed(ordered))
+    return half(sorted_points) + half(reversed(sorted_points))
 
 
 def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
@@ -245,12 +245,12 @@ def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
     The distance is measured from the line through the edge that the point exceeds most. The corners are
     counter-clockwise.
     """
-    farthest = 0.0
+    max_distance = 0.0
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
         edge = hypot(end[0] - start[0], end[1] - start[1])
         if edge > 0:
-            farthest = max(farthest, -turn(start, end, point) / edge)
-    return farthest
+            max_distance = max(max_distance, -turn(start, end, point) / edge)
+    return max_distance
 
 
 def _place(link: Link) -> Span | None:

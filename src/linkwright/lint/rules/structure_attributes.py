@@ -10,10 +10,10 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     attribute_name_span,
-    hints_of_reader,
     intended_attribute,
     is_expected_attribute,
     is_misspelt,
+    reader_hints,
 )
 
 
@@ -43,20 +43,20 @@ class MisspeltAttribute(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread attribute whose name is similar to that of an absent URDF attribute."""
-        hints = hints_of_reader(subject)
-        for place, attribute in subject.structure.unknown_attributes:
-            meant = intended_attribute(place, attribute)
-            if meant is None or f"'{attribute}'" in hints.get(place.element.span(), ""):
+        """Report every unread attribute whose name is similar to the name of an absent URDF attribute."""
+        hints = reader_hints(subject)
+        for schema_element, attribute in subject.structure.unknown_attributes:
+            intended = intended_attribute(schema_element, attribute)
+            if intended is None or f"'{attribute}'" in hints.get(schema_element.element.span(), ""):
                 continue
-            span = attribute_name_span(place.element, attribute)
+            span = attribute_name_span(schema_element.element, attribute)
             yield self.report(
-                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=place),
-                place.element,
+                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=schema_element),
+                schema_element.element,
                 span=span,
-                hint=phrase("did you mean {names}?", names=quoted(meant)),
-                fix=rename_attribute(place.element, attribute, meant, safe=False)
-                if is_misspelt(attribute, meant)
+                hint=phrase("did you mean {names}?", names=quoted(intended)),
+                fix=rename_attribute(schema_element.element, attribute, intended, safe=False)
+                if is_misspelt(attribute, intended)
                 else None,
             )
 
@@ -87,20 +87,20 @@ class UnknownAttribute(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread attribute that `MisspeltAttribute` does not report."""
-        hints = hints_of_reader(subject)
-        for place, attribute in subject.structure.unknown_attributes:
+        hints = reader_hints(subject)
+        for schema_element, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):
                 continue
-            if intended_attribute(place, attribute) is not None:
+            if intended_attribute(schema_element, attribute) is not None:
                 continue
-            if f"'{attribute}'" in hints.get(place.element.span(), ""):
+            if f"'{attribute}'" in hints.get(schema_element.element.span(), ""):
                 continue
-            known = ", ".join(f"'{rule.name}'" for rule in place.rule.attributes)
+            allowed = ", ".join(f"'{rule.name}'" for rule in schema_element.rule.attributes)
             yield self.report(
-                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=place),
-                place.element,
-                span=attribute_name_span(place.element, attribute),
-                hint=phrase("only {known} can be used here", known=known)
-                if known
-                else phrase("<{tag}> has no attributes", tag=place.rule.tag),
+                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=schema_element),
+                schema_element.element,
+                span=attribute_name_span(schema_element.element, attribute),
+                hint=phrase("only {known} can be used here", known=allowed)
+                if allowed
+                else phrase("<{tag}> has no attributes", tag=schema_element.rule.tag),
             )

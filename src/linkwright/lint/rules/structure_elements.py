@@ -10,13 +10,13 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.structure import Place
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
-    HOMES,
     INNER_EXTENSIONS,
-    hints_of_reader,
+    PARENT_TAGS,
     intended_element,
     is_expected_element,
     is_misspelt,
     location_phrase,
+    reader_hints,
 )
 from linkwright.lint.walk import values
 from linkwright.urdf import schema
@@ -51,16 +51,16 @@ class MisspeltElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread element that probably misspells an element allowed in its parent."""
-        reported = hints_of_reader(subject)
-        for place, child in subject.structure.unknown_elements:
-            meant = intended_element(place.rule, child)
-            if meant is None or child.span() in reported:
+        reported_spans = reader_hints(subject)
+        for schema_element, child in subject.structure.unknown_elements:
+            intended = intended_element(schema_element.rule, child)
+            if intended is None or child.span() in reported_spans:
                 continue
             yield self.report(
-                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
+                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
                 child,
-                hint=phrase("did you mean <{tag}>?", tag=meant),
-                fix=rename_element(child, meant, safe=False) if is_misspelt(child.tag, meant) else None,
+                hint=phrase("did you mean <{tag}>?", tag=intended),
+                fix=rename_element(child, intended, safe=False) if is_misspelt(child.tag, intended) else None,
             )
 
 
@@ -99,35 +99,39 @@ class MisplacedElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread URDF element that other parents allow, except materials in collisions."""
-        reported = hints_of_reader(subject)
-        for place, child in subject.structure.unknown_elements:
-            homes = HOMES.get(child.tag, ())
-            if not homes or child.span() in reported or (place.rule.tag, child.tag) == ("collision", "material"):
+        reported_spans = reader_hints(subject)
+        for schema_element, child in subject.structure.unknown_elements:
+            parent_tags = PARENT_TAGS.get(child.tag, ())
+            if (
+                not parent_tags
+                or child.span() in reported_spans
+                or (schema_element.rule.tag, child.tag) == ("collision", "material")
+            ):
                 continue
-            if child.tag == "origin" and _is_no_offset(child):
+            if child.tag == "origin" and _is_zero(child):
                 continue
-            listed = " or ".join(f"<{home}>" for home in _nearest_homes(homes, place))
+            parents_text = " or ".join(f"<{tag}>" for tag in _nearest_parents(parent_tags, schema_element))
             yield self.report(
-                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
+                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
                 child,
-                hint=phrase("it belongs directly in {listed}", listed=listed),
+                hint=phrase("put it directly in {listed}", listed=parents_text),
             )
 
 
-def _is_no_offset(origin: Element) -> bool:
+def _is_zero(origin: Element) -> bool:
     """Return whether an origin is zero, so that it would have no effect even if it were read."""
     return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
-def _nearest_homes(homes: Sequence[str], place: Place) -> Sequence[str]:
+def _nearest_parents(parent_tags: Sequence[str], place: Place) -> Sequence[str]:
     """Return the allowed parents of a misplaced element that are closest to its current parent.
 
     The closest ones are children of the current parent, then the parent of the current parent, then all allowed
     parents.
     """
-    around = place.parent.tag if place.parent is not None else ""
-    inside = [home for home in homes if home in place.rule.child_rules]
-    return inside or ((around,) if around in homes else homes)
+    outer_tag = place.parent.tag if place.parent is not None else ""
+    child_tags = [tag for tag in parent_tags if tag in place.rule.child_rules]
+    return child_tags or ((outer_tag,) if outer_tag in parent_tags else parent_tags)
 
 
 class UnknownElement(Rule):
@@ -159,20 +163,20 @@ class UnknownElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread element that the other rules do not report."""
-        reported = hints_of_reader(subject)
-        for place, child in subject.structure.unknown_elements:
-            if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
+        reported_spans = reader_hints(subject)
+        for schema_element, child in subject.structure.unknown_elements:
+            if schema_element.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in PARENT_TAGS:
                 continue
             if not is_expected_element(child.tag):
                 continue
-            if intended_element(place.rule, child) is None and child.span() not in reported:
-                known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)
+            if intended_element(schema_element.rule, child) is None and child.span() not in reported_spans:
+                allowed = ", ".join(f"<{rule.tag}>" for rule in schema_element.rule.children)
                 yield self.report(
-                    phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
+                    phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
                     child,
-                    hint=phrase("only {known} can be used here", known=known)
-                    if known
-                    else phrase("<{tag}> has no child elements", tag=place.rule.tag),
+                    hint=phrase("only {known} can be used here", known=allowed)
+                    if allowed
+                    else phrase("<{tag}> has no child elements", tag=schema_element.rule.tag),
                 )
 
 
@@ -208,11 +212,11 @@ class MaterialInCollision(Rule):
         """Report every material of a collision."""
         from linkwright.lint.fix import remove_element
 
-        for place in subject.structure.places:
-            if place.rule.tag == "collision":
-                for material in place.element.elements("material"):
+        for schema_element in subject.structure.places:
+            if schema_element.rule.tag == "collision":
+                for material in schema_element.element.elements("material"):
                     yield self.report(
-                        phrase("<material> in {place} is not read", place=place),
+                        phrase("<material> in {place} is not read", place=schema_element),
                         material,
                         hint=phrase("write it in the <visual>"),
                         fix=remove_element(material),

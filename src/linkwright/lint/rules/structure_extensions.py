@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, phrase, quoted
-from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
 from linkwright.lint.fix import rename_attribute, rename_element
 from linkwright.lint.rule import Rule
@@ -43,24 +43,24 @@ class MisspeltExtension(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every element and attribute in the extensions whose name misspells a known one."""
-        for top in subject.elements():
-            if top.tag not in CHILDREN:
+        for extension in subject.elements():
+            if extension.tag not in CHILDREN:
                 continue
-            waiting = [(top, top.tag)]
-            while waiting:
-                element, path = waiting.pop()
+            pending = [(extension, extension.tag)]
+            while pending:
+                element, path = pending.pop()
                 yield from self._attributes(element, path)
                 for child in element.elements():
-                    known = CHILDREN.get(path)
-                    if known is None:
+                    allowed_tags = CHILDREN.get(path)
+                    if allowed_tags is None:
                         continue
-                    if child.tag not in known:
-                        yield from self._element(child, element, known)
-                    waiting.append((child, f"{path}/{child.tag}"))
+                    if child.tag not in allowed_tags:
+                        yield from self._element_findings(child, element, allowed_tags)
+                    pending.append((child, f"{path}/{child.tag}"))
 
-    def _element(self, child: Element, parent: Element, known: tuple[str, ...]) -> Iterator[Diagnostic]:
-        near = misspelling_of(child.tag, known)
-        if near:
+    def _element_findings(self, child: Element, parent: Element, allowed_tags: tuple[str, ...]) -> Iterator[Diagnostic]:
+        intended_tag = find_misspelt(child.tag, allowed_tags)
+        if intended_tag:
             yield self.report(
                 phrase(
                     "no program reads <{tag}> in <{parent_tag}>",
@@ -68,21 +68,21 @@ class MisspeltExtension(Rule):
                     parent_tag=parent.tag,
                 ),
                 child,
-                hint=phrase("did you mean <{tag}>?", tag=near),
-                fix=rename_element(child, near, safe=False),
+                hint=phrase("did you mean <{tag}>?", tag=intended_tag),
+                fix=rename_element(child, intended_tag, safe=False),
             )
 
     def _attributes(self, element: Element, path: str) -> Iterator[Diagnostic]:
-        known = ATTRIBUTES.get(path, ())
+        allowed = ATTRIBUTES.get(path, ())
         for attribute in element.attributes:
-            if attribute in known:
+            if attribute in allowed:
                 continue
-            near = misspelling_of(attribute, [name for name in known if name not in element.attributes])
-            if near:
+            intended = find_misspelt(attribute, [name for name in allowed if name not in element.attributes])
+            if intended:
                 yield self.report(
                     phrase("'{attribute}' in <{tag}> is not read", attribute=attribute, tag=element.tag),
                     element,
                     span=attribute_name_span(element, attribute),
-                    hint=phrase("did you mean {names}?", names=quoted(near)),
-                    fix=rename_attribute(element, attribute, near, safe=False),
+                    hint=phrase("did you mean {names}?", names=quoted(intended)),
+                    fix=rename_attribute(element, attribute, intended, safe=False),
                 )

@@ -41,15 +41,15 @@ class XacroInUrdf(Rule):
         """Report every URI with an expression; the reader reports expressions in place of numbers."""
         if subject.expansion is not None:
             return
-        for place in subject.structure.places:
-            for attribute, written in place.element.attributes.items():
-                rule = place.rule.attribute_rules.get(attribute)
+        for schema_element in subject.structure.places:
+            for attribute, value in schema_element.element.attributes.items():
+                rule = schema_element.rule.attribute_rules.get(attribute)
                 if rule is None or rule.type is not TEXT:
                     continue
-                if "${" in written or "$(" in written:
+                if "${" in value or "$(" in value:
                     yield self.report(
-                        phrase("'{written}' is not evaluated in a file that is not xacro", written=written),
-                        place.element,
+                        phrase("'{written}' is not evaluated in a file that is not xacro", written=value),
+                        schema_element.element,
                         attribute,
                         hint=phrase(
                             'declare xmlns:xacro="http://www.ros.org/wiki/xacro" on <robot> and call the file'
@@ -87,10 +87,12 @@ class StrayText(Rule):
 
         A text is left out if the reader reports a missing value at the same element.
         """
-        reported = {found.span for found in subject.reading.diagnostics}
-        for place in subject.structure.places:
-            texts = [child for child in place.element.children if isinstance(child, Text) and child.data.strip()]
-            if not texts or place.element.span() in reported:
+        reported_spans = {diagnostic.span for diagnostic in subject.reading.diagnostics}
+        for schema_element in subject.structure.places:
+            texts = [
+                child for child in schema_element.element.children if isinstance(child, Text) and child.data.strip()
+            ]
+            if not texts or schema_element.element.span() in reported_spans:
                 continue
             for child in texts:
                 text = " ".join(child.data.split())
@@ -101,9 +103,11 @@ class StrayText(Rule):
                     span = child.source.span(start, start + len(child.data.strip().partition("\n")[0]))
                 yield self.report(
                     phrase(
-                        "the text '{text}' in {place} is not read", text=text, place=place if place.owner else "<robot>"
+                        "the text '{text}' in {place} is not read",
+                        text=text,
+                        place=schema_element if schema_element.owner else "<robot>",
                     ),
-                    place.element,
+                    schema_element.element,
                     span=span,
                     source=child.source,
                     hint=phrase("make it a comment: <!-- {text} -->", text=text)
@@ -140,8 +144,8 @@ class EmptyName(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every name that is empty or blank."""
-        named = [element for element in subject.elements() if element.tag in ("link", "joint")]
-        for element in [subject.root, *named]:
+        named_elements = [element for element in subject.elements() if element.tag in ("link", "joint")]
+        for element in [subject.root, *named_elements]:
             name = element.attributes.get("name")
             if name is not None and not name.strip():
                 yield self.report(

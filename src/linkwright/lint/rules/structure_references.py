@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, phrase, quoted
-from linkwright.diagnostics.misspellings import misspelling_of
-from linkwright.lint.extension_names import INTERFACES, OF_JOINTS, OF_LINKS
+from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.lint.extension_names import INTERFACES, JOINT_ELEMENTS, LINK_ELEMENTS
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -15,40 +15,42 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
 _NUMBER = lazy_pattern(r"\d+")
-_MISSED = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
-"""Elements whose loss matters to a user, unlike that of a colour."""
-_UNFILLED = frozenset("${}")
-"""Letters of a name that a program was to fill in."""
+_IMPORTANT_ELEMENTS = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
+"""Elements whose absence affects a user, unlike the absence of a colour."""
+_PLACEHOLDER_CHARACTERS = frozenset("${}")
+"""Characters of a name with a placeholder that a program did not fill in."""
 
 
 def _names(subject: Subject, tag: str) -> set[str]:
     return {element.attributes.get("name", "") for element in subject.elements(tag)}
 
 
-def _without_siblings(name: str, known: Iterable[str]) -> list[str]:
-    """Return the known names that contain the same numbers as a name.
+def _without_siblings(name: str, candidates: Iterable[str]) -> list[str]:
+    """Return the candidates that contain the same numbers as a name.
 
     Other names are siblings: ``arm_1`` is not a misspelling of ``arm_2``.
     """
-    return [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
+    return [candidate for candidate in candidates if _NUMBER.findall(candidate) == _NUMBER.findall(name)]
 
 
 def _intended_kind(gazebo: Element, name: str) -> str:
-    """Return what a `<gazebo>` probably refers to: ``link``, ``joint``, or empty if unknown.
+    """Return the kind of object that a `<gazebo>` probably refers to: ``link``, ``joint``, or empty if unknown.
 
     The content of the `<gazebo>` decides, or else the name.
     """
-    held = {child.tag for child in gazebo.elements()}
-    if held & OF_JOINTS:
+    child_tags = {child.tag for child in gazebo.elements()}
+    if child_tags & JOINT_ELEMENTS:
         return "joint"
-    if held & OF_LINKS:
+    if child_tags & LINK_ELEMENTS:
         return "link"
     return next((kind for kind in ("link", "joint") if kind in name.casefold()), "")
 
 
 def _is_left_over(gazebo: Element, name: str) -> bool:
     """Return whether a `<gazebo>` with an unknown reference seems to belong to an absent part."""
-    return _UNFILLED.isdisjoint(name) and not any(child.tag in _MISSED for child in gazebo.elements())
+    return _PLACEHOLDER_CHARACTERS.isdisjoint(name) and not any(
+        child.tag in _IMPORTANT_ELEMENTS for child in gazebo.elements()
+    )
 
 
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
@@ -87,24 +89,24 @@ class GazeboReferenceUnknown(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every reference to a link or joint that does not exist."""
         links, joints = _names(subject, "link"), _names(subject, "joint")
-        named = [
+        references = [
             (element, name) for element in subject.elements("gazebo") if (name := element.attributes.get("reference"))
         ]
-        lost = [(element, name) for element, name in named if name not in links | joints]
-        are_few = 2 * len(lost) < len(named)
-        for element, name in lost:
+        unknown_references = [(element, name) for element, name in references if name not in links | joints]
+        are_exceptions = 2 * len(unknown_references) < len(references)
+        for element, name in unknown_references:
             kind = _intended_kind(element, name)
-            known = {"link": links, "joint": joints}.get(kind, links | joints)
-            alike = _without_siblings(name, known)
-            meant = misspelling_of(name, alike)
-            near = did_you_mean(name, alike)
+            candidates = {"link": links, "joint": joints}.get(kind, links | joints)
+            plausible_names = _without_siblings(name, candidates)
+            intended = find_misspelt(name, plausible_names)
+            suggestion = did_you_mean(name, plausible_names)
             yield self.report(
                 phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
                 element,
                 "reference",
-                hint=near or phrase("give the name of a link or joint"),
-                fix=replace_value(element, "reference", meant, safe=False) if meant else None,
-                severity=Severity.INFO if are_few and not near and _is_left_over(element, name) else None,
+                hint=suggestion or phrase("give the name of a link or joint"),
+                fix=replace_value(element, "reference", intended, safe=False) if intended else None,
+                severity=Severity.INFO if are_exceptions and not suggestion and _is_left_over(element, name) else None,
             )
 
 
@@ -132,18 +134,21 @@ class TransmissionJointUnknown(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every transmission of a missing joint, including those in ``<ros2_control>``."""
-        known = _names(subject, "joint")
-        tops = list(subject.elements("transmission"))
-        tops += [inner for system in subject.elements("ros2_control") for inner in system.elements("transmission")]
-        for transmission in tops:
+        joint_names = _names(subject, "joint")
+        transmissions = list(subject.elements("transmission"))
+        transmissions += [
+            nested for system in subject.elements("ros2_control") for nested in system.elements("transmission")
+        ]
+        for transmission in transmissions:
             for joint in transmission.elements("joint"):
                 name = joint.attributes.get("name")
-                if name and name not in known:
+                if name and name not in joint_names:
                     yield self.report(
                         phrase("<transmission> names joint '{name}', which does not exist", name=name),
                         joint,
                         "name",
-                        hint=did_you_mean(name, _without_siblings(name, known)) or phrase("give the name of a joint"),
+                        hint=did_you_mean(name, _without_siblings(name, joint_names))
+                        or phrase("give the name of a joint"),
                     )
 
 
@@ -172,20 +177,20 @@ class ControlJointUnknown(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint of ros2_control that the robot does not have."""
-        known = _names(subject, "joint")
-        if not known:
+        joint_names = _names(subject, "joint")
+        if not joint_names:
             return  # a file without joints describes only the hardware
         for _, joint in _control_joints(subject):
             name = joint.attributes.get("name")
-            if name and name not in known:
-                meant = misspelling_of(name, known)
+            if name and name not in joint_names:
+                intended = find_misspelt(name, joint_names)
                 yield self.report(
-                    phrase("<ros2_control> has joint '{name}', which the robot does not have", name=name),
+                    phrase("<ros2_control> names the joint '{name}', which the robot does not have", name=name),
                     joint,
                     "name",
-                    hint=did_you_mean(name, _without_siblings(name, known))
+                    hint=did_you_mean(name, _without_siblings(name, joint_names))
                     or phrase('add <joint name="{name}" ...> to the robot', name=name),
-                    fix=replace_value(joint, "name", meant, safe=False) if meant else None,
+                    fix=replace_value(joint, "name", intended, safe=False) if intended else None,
                 )
 
 
@@ -221,14 +226,14 @@ class ControlInterfaceMisspelt(Rule):
                 if interface.tag not in ("command_interface", "state_interface"):
                     continue
                 name = interface.attributes.get("name", "")
-                near = misspelling_of(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
-                if near is not None:
+                intended = find_misspelt(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
+                if intended is not None:
                     yield self.report(
                         phrase("no controller requests an interface '{name}'", name=name),
                         interface,
                         "name",
-                        hint=phrase("did you mean {names}?", names=quoted(near)),
-                        fix=replace_value(interface, "name", near, safe=False),
+                        hint=phrase("did you mean {names}?", names=quoted(intended)),
+                        fix=replace_value(interface, "name", intended, safe=False),
                     )
 
 
@@ -265,18 +270,18 @@ class ControlPluginMissing(Rule):
         """Report every ros2_control without a plugin."""
         for system in subject.elements("ros2_control"):
             hardware = system.first("hardware")
-            if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
+            if hardware is None and any(find_misspelt(child.tag, ["hardware"]) for child in system.elements()):
                 continue  # a misspelt <hardware>, which another rule reports
             plugin = hardware.first("plugin") if hardware is not None else None
-            if plugin is None and ("<hardware" if hardware is None else "<plugin") in _written(system):
+            if plugin is None and ("<hardware" if hardware is None else "<plugin") in _source_text(system):
                 continue  # the file has this element in a branch that xacro left out
             if plugin is None or not plugin.text().strip():
-                missing = "<hardware>" if hardware is None else "<plugin>"
+                missing_tag = "<hardware>" if hardware is None else "<plugin>"
                 yield self.report(
                     phrase(
                         "<ros2_control> '{attributes}' has no {missing}",
                         attributes=system.attributes.get("name", ""),
-                        missing=missing,
+                        missing=missing_tag,
                     ),
                     plugin or hardware or system,
                     hint=phrase(
@@ -285,10 +290,10 @@ class ControlPluginMissing(Rule):
                 )
 
 
-def _written(element: Element) -> str:
+def _source_text(element: Element) -> str:
     """Return the text of an element in its file, including the parts that xacro left out."""
-    found = element_range(element)
-    return "" if element.source is None or found is None else element.source.text[slice(*found)]
+    element_span = element_range(element)
+    return "" if element.source is None or element_span is None else element.source.text[slice(*element_span)]
 
 
 class ControlJointRepeated(Rule):
@@ -318,17 +323,17 @@ class ControlJointRepeated(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint after the first one with the same name in a ``<ros2_control>``."""
         for system in subject.elements("ros2_control"):
-            first: dict[str, Element] = {}
+            first_joints: dict[str, Element] = {}
             for joint in system.elements("joint"):
                 name = joint.attributes.get("name", "")
-                before = first.setdefault(name, joint)
-                if name and before is not joint:
+                first_joint = first_joints.setdefault(name, joint)
+                if name and first_joint is not joint:
                     yield self.report(
                         phrase("joint '{name}' is in this <ros2_control> twice", name=name),
                         joint,
                         "name",
                         hint=phrase("write all its interfaces in one <joint>"),
-                        notes=(Note(phrase("it is listed first here"), before.span()),),
+                        notes=(Note(phrase("it is first listed here"), first_joint.span()),),
                     )
 
 
@@ -356,10 +361,10 @@ class ControlOfFixedJoint(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every command interface of a fixed joint."""
-        fixed = {joint.name: joint for joint in subject.joints if joint.type == "fixed"}
-        for _, entry in _control_joints(subject):
-            joint = fixed.get(entry.attributes.get("name", ""))
-            command = entry.first("command_interface")
+        fixed_joints = {joint.name: joint for joint in subject.joints if joint.type == "fixed"}
+        for _, control_joint in _control_joints(subject):
+            joint = fixed_joints.get(control_joint.attributes.get("name", ""))
+            command = control_joint.first("command_interface")
             if joint is None or command is None or joint.element is None:
                 continue
             if joint.element.attributes.get("type") != "fixed":
@@ -411,13 +416,13 @@ class TransmissionIgnored(Rule):
         manifest = subject.package.manifest if subject.package is not None else None
         if manifest is None or manifest.is_ros1 or any(subject.elements("ros2_control")):
             return
-        found = list(subject.elements("transmission"))
-        if found:
+        transmissions = list(subject.elements("transmission"))
+        if transmissions:
             message = phrase("nothing in ROS 2 reads <transmission> directly in <robot>")
-            if len(found) > 1:
-                message = phrase("{message} (and {count} more)", message=message, count=len(found) - 1)
+            if len(transmissions) > 1:
+                message = phrase("{message} (and {count} more)", message=message, count=len(transmissions) - 1)
             yield self.report(
                 message,
-                found[0],
+                transmissions[0],
                 hint=phrase("write <ros2_control> with the joints and their interfaces"),
             )

@@ -48,14 +48,14 @@ class NoShapes(Rule):
             link.element is not None and (link.element.first("visual") or link.element.first("collision"))
             for link in robot.links.values()
         ):
-            is_of_frames = all(joint.type == "fixed" for joint in robot.joints.values())
+            has_only_frames = all(joint.type == "fixed" for joint in robot.joints.values())
             yield self.report(
                 phrase(
                     "none of the {count} links of robot '{name}' has a shape", count=len(robot.links), name=robot.name
                 ),
                 subject.root,
                 hint=phrase("give the links a <visual>"),
-                severity=Severity.INFO if is_of_frames else None,
+                severity=Severity.INFO if has_only_frames else None,
             )
 
 
@@ -96,27 +96,27 @@ class DisconnectedPart(Rule):
         """
         links = {link.name: link for link in subject.links if link.name}
         joints = [joint for joint in subject.joints if joint.parent in links and joint.child in links]
-        above = {joint.child: joint.parent for joint in joints}
-        roots = [name for name in links if name not in above]
+        parents = {joint.child: joint.parent for joint in joints}
+        roots = [name for name in links if name not in parents]
         if len(roots) < 2 or len(links) > 100_000:
             return
-        sizes = Counter(root for name in links if (root := _root_of(name, above)) is not None)
-        main = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
-        reported = roots[1] if roots[1] != main else roots[0]  # the reader's finding is at the second root
+        sizes = Counter(root for name in links if (root := _root_of(name, parents)) is not None)
+        main_root = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
+        reported_root = roots[1] if roots[1] != main_root else roots[0]  # the reader's finding is at the second root
         for root in roots:
             element = links[root].element
-            if root in (main, reported) or element is None:
+            if root in (main_root, reported_root) or element is None:
                 continue
-            below = sizes[root] - 1
-            if below:
+            links_below = sizes[root] - 1
+            if links_below:
                 message = phrase(
                     "link '{root}' and the {count} below it are not connected to '{main}'",
                     root=root,
-                    count=below,
-                    main=main,
+                    count=links_below,
+                    main=main_root,
                 )
             else:
-                message = phrase("link '{root}' is not connected to '{main}'", root=root, main=main)
+                message = phrase("link '{root}' is not connected to '{main}'", root=root, main=main_root)
             yield self.report(
                 message,
                 element,
@@ -124,7 +124,7 @@ class DisconnectedPart(Rule):
                     'add <joint name="{root}_joint" type="fixed"><parent link="{main}"/><child '
                     'link="{root}"/></joint>, with the intended parent',
                     root=root,
-                    main=main,
+                    main=main_root,
                 ),
             )
 
@@ -156,19 +156,23 @@ class RepeatedElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every repetition of an element that may occur only once."""
-        for place in subject.structure.places:
-            first: dict[str, Element] = {}
-            for child in place.element.elements():
-                rule = place.rule.child_rules.get(child.tag)
-                if rule is None or rule.many or place.rule is schema.GEOMETRY:
+        for schema_element in subject.structure.places:
+            first_elements: dict[str, Element] = {}
+            for child in schema_element.element.elements():
+                rule = schema_element.rule.child_rules.get(child.tag)
+                if rule is None or rule.many or schema_element.rule is schema.GEOMETRY:
                     continue
-                before = first.setdefault(child.tag, child)
-                if before is not child:
+                first_element = first_elements.setdefault(child.tag, child)
+                if first_element is not child:
                     yield self.report(
-                        phrase("{place} has more than one <{tag}>; only the first is read", place=place, tag=child.tag),
+                        phrase(
+                            "{place} has more than one <{tag}>; only the first is read",
+                            place=schema_element,
+                            tag=child.tag,
+                        ),
                         child,
                         hint=phrase("keep the intended one"),
-                        notes=(Note(phrase("this one is read"), before.span()),),
+                        notes=(Note(phrase("only this element is read"), first_element.span()),),
                         fix=remove_element(child, safe=False),
                     )
 
@@ -200,21 +204,21 @@ class NewerVersion(Rule):
         """Report a description with a version above 1.0."""
         robot = subject.robot
         if robot is not None and robot.version > (1, 0):
-            written = ".".join(map(str, robot.version))
+            version = ".".join(map(str, robot.version))
             yield self.report(
-                phrase("URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older", written=written),
+                phrase("URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older", written=version),
                 subject.root,
                 "version",
                 hint=phrase('write version="1.0" if the file uses nothing newer'),
             )
 
 
-def _root_of(name: str, above: dict[str, str]) -> str | None:
+def _root_of(name: str, parents: dict[str, str]) -> str | None:
     """Return the topmost link above a link; None if the joints form a cycle."""
     steps = 0
-    while name in above:
-        name = above[name]
+    while name in parents:
+        name = parents[name]
         steps += 1
-        if steps > len(above):
+        if steps > len(parents):
             return None
     return name

@@ -46,32 +46,32 @@ class DeprecatedFunction(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         from linkwright.lint.xacro_names import DEPRECATED
 
-        taken = {definition.name for file in facts.files.values() for definition in file.properties}
+        property_names = {definition.name for file in facts.files.values() for definition in file.properties}
         for file in facts.files.values():
             for use in file.uses:
                 if use.attribute is None or use.attribute == "params":
                     continue
                 for call in use.found.bare_calls:
-                    if call.name not in taken and not _is_called_by(DEPRECATED[call.name], file):
+                    if call.name not in property_names and not _is_called_by(DEPRECATED[call.name], file):
                         yield self._found(use.element, use.attribute, call.name, call.offset)
 
-    def _found(self, element: Element, attribute: str, name: str, at: int) -> Diagnostic:
+    def _found(self, element: Element, attribute: str, name: str, offset: int) -> Diagnostic:
         from linkwright.lint.xacro_names import DEPRECATED
-        from linkwright.xacro.faults import attribute_part
+        from linkwright.xacro.faults import attribute_span
 
-        better = DEPRECATED[name]
-        span = attribute_part(element, attribute, at, at + len(name))
+        full_name = DEPRECATED[name]
+        span = attribute_span(element, attribute, offset, offset + len(name))
         source = element.source
         fix = None
         if source is not None:
-            written = attribute_value_range(source.text, element.offset, attribute)
-            if written is not None:
-                start = raw_offset(source.text, *written, at)
+            value_range = attribute_value_range(source.text, element.offset, attribute)
+            if value_range is not None:
+                start = raw_offset(source.text, *value_range, offset)
                 if source.text.startswith(name, start):
-                    fix = Fix((Edit(source.name, start, start, better.removesuffix(name)),))
+                    fix = Fix((Edit(source.name, start, start, full_name.removesuffix(name)),))
         message = phrase("calling '{name}' by its bare name is deprecated", name=name)
         return self.report(
-            message, element, attribute, span=span, hint=phrase("write {better}", better=better), fix=fix
+            message, element, attribute, span=span, hint=phrase("write {better}", better=full_name), fix=fix
         )
 
 
@@ -120,7 +120,8 @@ class ConstantCondition(XacroRule):
                 if value and is_constant(value):
                     message = phrase("the condition of '{tag}' is always '{value}'", tag=element.tag, value=value)
                     hint = phrase(
-                        "make the condition an argument, or remove the tag, and its content if that is never used"
+                        "make the condition depend on an argument, or remove the tag, and also its content if "
+                        "it is never used"
                     )
                     yield self.report(message, element, "value", hint=hint)
 
@@ -157,14 +158,14 @@ class UndeclaredArgument(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library:
             return
-        known = set(facts.given)
-        known |= {definition.name for file in facts.files.values() for definition in file.arguments}
-        if any("$" in name for name in known):
+        declared_names = set(facts.arguments)
+        declared_names |= {definition.name for file in facts.files.values() for definition in file.arguments}
+        if any("$" in name for name in declared_names):
             return
         for file in facts.own.values():
             for use in file.uses:
                 text = use.element.attributes.get(use.attribute, "") if use.attribute else ""
-                for name in sorted(use.found.arguments - known):
+                for name in sorted(use.found.arguments - declared_names):
                     if f"$(arg {name})" in text:
                         message = phrase(
                             "nothing declares the argument '{name}', which a branch that is not taken uses", name=name

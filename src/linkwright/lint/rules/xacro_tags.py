@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 
 ADDRESS = "http://www.ros.org/wiki/xacro"
-_OLD_ADDRESSES = lazy_pattern(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
-_NEEDED: dict[str, tuple[str, ...]] = {
+_OLD_NAMESPACE_URI = lazy_pattern(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
+_REQUIRED_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "property": ("name",),
     "include": ("filename",),
     "macro": ("name",),
@@ -33,8 +33,8 @@ _NEEDED: dict[str, tuple[str, ...]] = {
     "insert_block": ("name",),
 }
 _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
-_FOREIGN = frozenset({"gazebo", "plugin", "ros2_control", "sensor", "world", "sdf", "transmission"})
-_ABSOLUTE = lazy_pattern(r"(/|~|file:///|[A-Za-z]:[\\/])")
+_SIMULATOR_ELEMENTS = frozenset({"gazebo", "plugin", "ros2_control", "sensor", "world", "sdf", "transmission"})
+_ABSOLUTE_PATH = lazy_pattern(r"(/|~|file:///|[A-Za-z]:[\\/])")
 
 
 class XacroPrefixMissing(Rule):
@@ -67,18 +67,18 @@ class XacroPrefixMissing(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         documents = subject.sources.values()
-        described = [(document.root, list(_described(document.root))) for document in documents]
-        macros = _macro_names(elements for _, elements in described)
-        for root, elements in described:
+        elements_by_root = [(document.root, list(_description_elements(document.root))) for document in documents]
+        macros = _macro_names(elements for _, elements in elements_by_root)
+        for root, elements in elements_by_root:
             if root.tag != "robot":
                 continue
             for element in elements:
-                needed = _NEEDED.get(element.tag)
-                if needed is None and element.tag in macros:
-                    needed = ()
-                if needed is None or not all(name in element.attributes for name in needed):
+                required = _REQUIRED_ATTRIBUTES.get(element.tag)
+                if required is None and element.tag in macros:
+                    required = ()
+                if required is None or not all(name in element.attributes for name in required):
                     continue
-                message = phrase("<{tag}> without the prefix 'xacro:' means nothing", tag=element.tag)
+                message = phrase("<{tag}> lacks the prefix 'xacro:', so xacro does not process it", tag=element.tag)
                 hint = phrase("write <xacro:{tag} ...>", tag=element.tag)
                 fix = rename_element(element, f"xacro:{element.tag}", safe=False)
                 if "xmlns:xacro" not in root.attributes:
@@ -87,9 +87,9 @@ class XacroPrefixMissing(Rule):
                         tag=element.tag,
                         address=ADDRESS,
                     )
-                    declared = add_attribute(root, "xmlns:xacro", ADDRESS)
-                    if fix is not None and declared is not None:
-                        fix = Fix((*declared.edits, *fix.edits), safe=False)
+                    declaration = add_attribute(root, "xmlns:xacro", ADDRESS)
+                    if fix is not None and declaration is not None:
+                        fix = Fix((*declaration.edits, *fix.edits), safe=False)
                 yield self.report(message, element, hint=hint, fix=fix)
 
 
@@ -101,11 +101,11 @@ def _macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
         for element in elements
         if element.tag == "xacro:macro"
     )
-    return set(macros) - _elements_of(ROBOT)
+    return set(macros) - _element_tags(ROBOT)
 
 
-def _elements_of(rule: ElementRule) -> set[str]:
-    return {rule.tag}.union(*map(_elements_of, rule.children))
+def _element_tags(rule: ElementRule) -> set[str]:
+    return {rule.tag}.union(*map(_element_tags, rule.children))
 
 
 class XacroNamespaceMissing(XacroRule):
@@ -140,7 +140,7 @@ class XacroNamespaceMissing(XacroRule):
         root = file.document.root
         if "xmlns:xacro" in root.attributes or not file.uses:
             return
-        if any(_NEEDED.get(element.tag) for element in _described(root)):
+        if any(_REQUIRED_ATTRIBUTES.get(element.tag) for element in _description_elements(root)):
             return  # the prefix is missing, too, which another rule reports
         message = phrase("this file has xacro expressions but does not declare the prefix 'xacro'")
         fix = add_attribute(root, "xmlns:xacro", ADDRESS)
@@ -181,10 +181,10 @@ class XacroNamespaceAddress(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for document in subject.sources.values():
             root = document.root
-            address = root.attributes.get("xmlns:xacro", ADDRESS)
-            if address == ADDRESS:
+            uri = root.attributes.get("xmlns:xacro", ADDRESS)
+            if uri == ADDRESS:
                 continue
-            if _OLD_ADDRESSES.fullmatch(address):
+            if _OLD_NAMESPACE_URI.fullmatch(uri):
                 message = phrase("the prefix 'xacro' is declared with an old URI")
             else:
                 message = phrase("the prefix 'xacro' is declared with a URI other than that of ROS")
@@ -222,7 +222,7 @@ class IncludeAbsolutePath(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for file in facts.own.values():
             for include in file.includes:
-                if _ABSOLUTE.match(include.name):
+                if _ABSOLUTE_PATH.match(include.name):
                     message = phrase("the file '{name}' is included by an absolute path", name=include.name)
                     hint = phrase("write a path relative to this file, or $(find PACKAGE)/...")
                     yield self.report(message, include.element, "filename", hint=hint)
@@ -308,24 +308,24 @@ class UndeclaredPackage(Rule):
             return
         from linkwright.lint.dependencies import would_form_cycle
         from linkwright.lint.package_fixes import dependency_fix
-        from linkwright.xacro.faults import attribute_part
+        from linkwright.xacro.faults import attribute_span
 
         facts = subject.xacro
         package = facts.package
         if package is None or package.manifest is None:
             return
-        reported: set[str] = set()
+        reported_packages: set[str] = set()
         for is_optional, file in product((False, True), facts.own.values()):
             for use in file.uses:
                 if _CONDITIONS.isdisjoint(parent.tag for parent in use.parents) is is_optional:
                     continue
-                for name, at in use.found.packages:
-                    if name in reported or package.manifest.declares(name) or use.attribute is None:
+                for name, offset in use.found.packages:
+                    if name in reported_packages or package.manifest.declares(name) or use.attribute is None:
                         continue
-                    reported.add(name)
+                    reported_packages.add(name)
                     if would_form_cycle(package.manifest, name, subject.finder):
                         continue
-                    span = attribute_part(use.element, use.attribute, at, at + len(name))
+                    span = attribute_span(use.element, use.attribute, offset, offset + len(name))
                     message = phrase(
                         "the package '{name}' is used here, but the package.xml of '{package_name}' does not name it",
                         name=name,
@@ -444,13 +444,13 @@ class MacroDefinedTwice(XacroRule):
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for file in facts.own.values():
-            first: dict[tuple[str, int], Definition] = {}
+            first_macros: dict[tuple[str, int], Definition] = {}
             for macro in file.macros:
                 if macro.is_conditional or not macro.name:
                     continue
-                earlier = first.setdefault((macro.name, id(macro.parents[-1])), macro)
-                if earlier is not macro:
-                    note = Note(phrase("it is first defined here"), earlier.element.attribute_span("name"))
+                first_macro = first_macros.setdefault((macro.name, id(macro.parents[-1])), macro)
+                if first_macro is not macro:
+                    note = Note(phrase("it is first defined here"), first_macro.element.attribute_span("name"))
                     message = phrase("the macro '{name}' is defined twice in this file", name=macro.name)
                     yield self.report(
                         message, macro.element, "name", notes=[note], hint=phrase("rename or remove one of them")
@@ -461,17 +461,17 @@ def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None
     for call in file.calls_by_macro.get(id(macro.element), ()):
         if call.name != macro.name or call.element.tag != f"xacro:{macro.name}":
             continue
-        inside = call.parents[call.parents.index(macro.element) + 1 :]
-        if not any(parent.tag.startswith("xacro:") for parent in inside):
+        inner_parents = call.parents[call.parents.index(macro.element) + 1 :]
+        if not any(parent.tag.startswith("xacro:") for parent in inner_parents):
             return call
     return None
 
 
-def _described(root: Element) -> Iterator[Element]:
+def _description_elements(root: Element) -> Iterator[Element]:
     """Yield the elements of a description, except the content for simulators and plugins."""
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
+    pending = [root]
+    while pending:
+        element = pending.pop()
         if element is not root:
             yield element
-        waiting.extend(inner for inner in reversed(list(element.elements())) if inner.tag not in _FOREIGN)
+        pending.extend(child for child in reversed(list(element.elements())) if child.tag not in _SIMULATOR_ELEMENTS)

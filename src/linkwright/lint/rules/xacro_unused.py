@@ -14,7 +14,7 @@ from math import isclose, pi
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
-from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.loading.deferred import lazy_pattern
@@ -24,12 +24,12 @@ from linkwright.xmltree import Element
 if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 
-_SPEAKING = lazy_pattern(r"\b(?:fatal|error|warning|message)\s*\(")
-"""Functions that are called for what they do."""
+_MESSAGE_CALL = lazy_pattern(r"\b(?:fatal|error|warning|message)\s*\(")
+"""Functions that are called for their side effect."""
 
 _CONSTANTS = (pi / 4, pi / 2, pi, 2 * pi, pi / 180, 180 / pi)
-_ROUNDED = 6e-4
-"""The greatest difference between a number such as 3.14 or 1.57 and its constant."""
+_ROUNDING_TOLERANCE = 6e-4
+"""The greatest relative difference between a rounded number, such as 3.14 or 1.57, and its constant."""
 _COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
 _CALL = lazy_pattern(r"<xacro:([\w.-]+)")
 
@@ -73,7 +73,7 @@ class UnusedProperty(XacroRule):
         for file in facts.own.values():
             for definition in file.properties:
                 name, element = definition.name, definition.element
-                if "$" in name or not name or name in facts.names or _is_remove(element) or _shows_message(element):
+                if "$" in name or not name or name in facts.names or _is_removal(element) or _shows_message(element):
                     continue
                 if _is_mathematics(element.attributes.get("value", "")):
                     continue
@@ -85,7 +85,7 @@ class UnusedProperty(XacroRule):
                     "name",
                     hint=_hint(name, facts.names),
                     fix=remove_element(element, safe=False),
-                    severity=Severity.INFO if _is_of_table(definition, file, facts.names) else None,
+                    severity=Severity.INFO if _belongs_to_table(definition, file, facts.names) else None,
                 )
 
 
@@ -258,19 +258,21 @@ class UnusedMacroParameter(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.calls_open:
             return  # Macros that are called by a computed name must all accept the same parameters.
-        shared = _shared_parameters(facts)
+        shared_names = _shared_parameters(facts)
         for file in facts.own.values():
             if file.has_bare_tags:
                 continue
             for macro in file.macros:
                 if next(macro.element.elements(), None) is None:
                     continue  # an empty macro with the parameters of others that replace it
-                yield from (each for name, each in self._check_macro(macro, file, facts) if name not in shared)
+                yield from (
+                    finding for name, finding in self._check_macro(macro, file, facts) if name not in shared_names
+                )
 
     def _check_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
         from linkwright.lint.xacro_facts import parameter_span
 
-        used, blocks, is_open = _used_inside(macro.element, file)
+        used_names, blocks, is_open = _used_inside(macro.element, file)
         calls_others = bool(file.calls_by_macro.get(id(macro.element)))
         for parameter in file.parameters(macro.element):
             name = parameter.name.lstrip("*")
@@ -281,7 +283,7 @@ class UnusedMacroParameter(XacroRule):
             else:
                 # A called macro sees the parameters of its caller, so a name that is used elsewhere may be this
                 # parameter.
-                is_used = name in used or is_open or (calls_others and (name in facts.names or facts.is_open))
+                is_used = name in used_names or is_open or (calls_others and (name in facts.names or facts.is_open))
                 is_used = is_used or (bool(blocks) and name in facts.names)
             if name and not is_used and name.isidentifier():
                 span = parameter_span(macro.element, parameter)
@@ -299,13 +301,13 @@ def _shared_parameters(facts: XacroFacts) -> set[str]:
 
     A macro need not use such a parameter.
     """
-    taken = Counter(
+    counts = Counter(
         name
         for file in facts.files.values()
         for macro in file.macros
         for name in {parameter.name.lstrip("*") for parameter in file.parameters(macro.element)}
     )
-    return {name for name, count in taken.items() if count > 1}
+    return {name for name, count in counts.items() if count > 1}
 
 
 def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
@@ -315,9 +317,9 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
     """
     names: set[str] = set()
     is_open = False
-    for use in (*file.uses_by_macro.get(id(macro), ()), *file.uses_of_parameters.get(id(macro), ())):
+    for use in (*file.uses_by_macro.get(id(macro), ()), *file.parameter_uses.get(id(macro), ())):
         names |= use.found.names
-        is_open = is_open or use.found.is_open or bool(use.found.pasted)
+        is_open = is_open or use.found.is_open or bool(use.found.pasted_arguments)
     blocks: set[str] = set()
     for element in macro.walk():
         if element.tag == "xacro:insert_block":
@@ -331,22 +333,24 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
 
 def _shows_message(element: Element) -> bool:
     """Return whether a property is evaluated at its definition and shows a message to the user."""
-    lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
-    return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
+    is_lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
+    return (not is_lazy or "scope" in element.attributes) and bool(
+        _MESSAGE_CALL.search(element.attributes.get("value", ""))
+    )
 
 
-def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) -> bool:
+def _belongs_to_table(definition: Definition, file: FileFacts, used_names: frozenset[str]) -> bool:
     """Return whether a property belongs to a table of properties, most of which are used.
 
     The properties of a table are in one file, and their names differ only in the last word.
     """
     table, _, _ = definition.name.rpartition("_")
-    if "_" not in table or misspelling_of(definition.name, used) is not None:
+    if "_" not in table or find_misspelt(definition.name, used_names) is not None:
         return False
-    others = {definition.name for definition in file.properties if definition.name.rpartition("_")[0] == table} - {
+    siblings = {definition.name for definition in file.properties if definition.name.rpartition("_")[0] == table} - {
         definition.name
     }
-    return len(others & used) >= max(2, len(others - used) + 1)
+    return len(siblings & used_names) >= max(2, len(siblings - used_names) + 1)
 
 
 def _is_mathematics(value: str) -> bool:
@@ -357,10 +361,10 @@ def _is_mathematics(value: str) -> bool:
         number = abs(float(value))
     except ValueError:
         return False
-    return any(isclose(number, constant, rel_tol=_ROUNDED) for constant in _CONSTANTS)
+    return any(isclose(number, constant, rel_tol=_ROUNDING_TOLERANCE) for constant in _CONSTANTS)
 
 
-def _is_remove(element: Element) -> bool:
+def _is_removal(element: Element) -> bool:
     return "remove" in element.attributes
 
 
@@ -369,10 +373,10 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
     return first is definition
 
 
-def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
-    meant = misspelling_of(name, used)
-    if meant is not None:
-        return phrase("did you mean '{close}', which is used? Otherwise remove it", close=meant)
+def _hint(name: str, used_names: frozenset[str], form: str = "${...}") -> Phrase:
+    intended = find_misspelt(name, used_names)
+    if intended is not None:
+        return phrase("did you mean '{close}', which is used? If not, remove it", close=intended)
     return phrase("use it with {form}, or remove it", form=form)
 
 
@@ -381,17 +385,17 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
 
     Only includes with a literal file name are contained.
     """
-    found: dict[int, Path] = {}
-    by_name: dict[str, list[Path]] = {}
+    paths: dict[int, Path] = {}
+    paths_by_name: dict[str, list[Path]] = {}
     for path in facts.files:
-        by_name.setdefault(path.name, []).append(path)
+        paths_by_name.setdefault(path.name, []).append(path)
     for file in facts.files.values():
         for include in file.includes:
             name = include.name.replace("\\", "/").rpartition("/")[2]
-            matching = by_name.get(name, [])
-            if len(matching) == 1 and "ns" not in include.element.attributes:
-                found[id(include.element)] = matching[0]
-    return found
+            matching_paths = paths_by_name.get(name, [])
+            if len(matching_paths) == 1 and "ns" not in include.element.attributes:
+                paths[id(include.element)] = matching_paths[0]
+    return paths
 
 
 def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
@@ -399,10 +403,10 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
 
     The author can enable such a call, so the include is useful.
     """
-    defined = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
+    macro_names = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
     texts = (file.document.source.text for file in facts.own.values() if file.document.source is not None)
     comments = (comment for text in texts for comment in _COMMENT.findall(text))
-    return any(called in defined for comment in comments for called in _CALL.findall(comment))
+    return any(call_name in macro_names for comment in comments for call_name in _CALL.findall(comment))
 
 
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
@@ -410,33 +414,33 @@ def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
 
     An empty file counts as contributing, because it is probably unfinished.
     """
-    inside: dict[Path, FileFacts] = {}
-    waiting = [path]
-    while waiting:
-        current = waiting.pop()
-        if current in inside:
+    nested_files: dict[Path, FileFacts] = {}
+    pending = [path]
+    while pending:
+        current = pending.pop()
+        if current in nested_files:
             continue
         file = facts.files.get(current)
         if file is None:
             return True
-        inside[current] = file
+        nested_files[current] = file
         for include in file.includes:
-            nested = paths.get(id(include.element))
-            if nested is None:
+            nested_path = paths.get(id(include.element))
+            if nested_path is None:
                 return True
-            waiting.append(nested)
-    if not any(file.macros or file.properties or file.arguments for file in inside.values()):
+            pending.append(nested_path)
+    if not any(file.macros or file.properties or file.arguments for file in nested_files.values()):
         return True
-    outside = [file for other, file in facts.files.items() if other not in inside]
-    names = {name for file in outside for name in file.names | file.blocks}
-    called = {name for file in outside for name in file.called}
+    other_files = [file for other_path, file in facts.files.items() if other_path not in nested_files]
+    names = {name for file in other_files for name in file.names | file.blocks}
+    called_names = {name for file in other_files for name in file.called_macros}
     arguments = {name for file in facts.files.values() for name in file.used_arguments}
-    for file in inside.values():
+    for file in nested_files.values():
         if file.has_content or file.is_open or any(call.macro is None for call in file.calls):
             return True
         if any(definition.name in names or "$" in definition.name for definition in file.properties):
             return True
-        if any(definition.name in called for definition in file.macros):
+        if any(definition.name in called_names for definition in file.macros):
             return True
         if any(definition.name in arguments for definition in file.arguments):
             return True

@@ -14,7 +14,9 @@ from linkwright.xmltree import Element
 if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 
-_NAMES = frozenset({"name", "link", "joint", "reference", "filename", "joint1", "joint2", "frame", "parent", "child"})
+_NAME_ATTRIBUTES = frozenset(
+    {"name", "link", "joint", "reference", "filename", "joint1", "joint2", "frame", "parent", "child"}
+)
 
 
 class LiteralChangesType(XacroRule):
@@ -47,7 +49,7 @@ class LiteralChangesType(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for file in facts.own.values():
             for call in file.calls:
-                yield from self._of_call(call, facts)
+                yield from self._call_findings(call, facts)
             for definition in file.properties:
                 value = definition.element.attributes.get("value")
                 if value is not None and _is_changed_by_literal_rule(value):
@@ -55,7 +57,7 @@ class LiteralChangesType(XacroRule):
                     if use is not None:
                         yield self._found(definition.element, "value", definition.name, value, use, quotes="''")
 
-    def _of_call(self, call: Definition, facts: XacroFacts) -> Iterator[Diagnostic]:
+    def _call_findings(self, call: Definition, facts: XacroFacts) -> Iterator[Diagnostic]:
         macros = [
             (file, macro)
             for file in facts.files.values()
@@ -73,13 +75,13 @@ class LiteralChangesType(XacroRule):
     def _found(
         self, element: Element, attribute: str, name: str, value: str, use: tuple[Element, str], quotes: str
     ) -> Diagnostic:
-        changed = literal(value)
+        converted = literal(value)
         note = Note(phrase("'{name}' becomes part of a name here", name=name), use[0].attribute_span(use[1]))
         message = phrase(
             "xacro reads '{value}' as {kind} and writes '{changed}' into a name",
             value=value,
-            kind=_kind(changed),
-            changed=changed,
+            kind=_kind(converted),
+            changed=converted,
         )
         hint = phrase(
             'write {attribute}="{quotes}{value}{quotes}" to keep it unchanged',
@@ -127,9 +129,7 @@ class PropertyDefinedTwice(XacroRule):
                 for first, second in pairwise(definitions):
                     if self._is_lost(first, second, file, facts):
                         note = Note(
-                            phrase(
-                                "the value '{value}' given here has no effect", value=first.element.attributes["value"]
-                            ),
+                            phrase("the value '{value}' has no effect here", value=first.element.attributes["value"]),
                             first.element.attribute_span("value"),
                         )
                         message = phrase(
@@ -141,17 +141,19 @@ class PropertyDefinedTwice(XacroRule):
                         )
 
     def _is_lost(self, first: Definition, second: Definition, file: FileFacts, facts: XacroFacts) -> bool:
-        one, other = first.element.attributes, second.element.attributes
-        if one["value"] == other["value"] or one.get("scope") != other.get("scope"):
+        first_attributes, second_attributes = first.element.attributes, second.element.attributes
+        if first_attributes["value"] == second_attributes["value"] or first_attributes.get(
+            "scope"
+        ) != second_attributes.get("scope"):
             return False
         name = first.name
         for use in file.uses:
             if first.order < use.order <= second.order and (name in use.found.names or use.found.is_open):
                 return False
-        between = [
+        calls_between = [
             call for call in (*file.calls, *file.includes) if first.order < call.order < second.order
         ]  # the content of a called macro or included file may use the name
-        return not between or not (facts.is_open or name in facts.names)
+        return not calls_between or not (facts.is_open or name in facts.names)
 
 
 class ShadowedProperty(XacroRule):
@@ -185,33 +187,40 @@ class ShadowedProperty(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         from linkwright.lint.xacro_facts import parameter_span
 
-        outer: dict[str, Definition] = {}
+        outer_properties: dict[str, Definition] = {}
         for file in facts.files.values():
             for definition in file.properties:
                 if definition.macro is None and "$" not in definition.name:
-                    outer.setdefault(definition.name, definition)
+                    outer_properties.setdefault(definition.name, definition)
         for file in facts.own.values():
             for macro in file.macros:
                 for parameter in file.parameters(macro.element):
-                    if parameter.name in outer and not parameter.forward:
+                    if parameter.name in outer_properties and not parameter.forward:
                         span = parameter_span(macro.element, parameter)
-                        what = phrase(
+                        subject = phrase(
                             "the parameter '{name}' of the macro '{macro_name}'",
                             name=parameter.name,
                             macro_name=macro.name,
                         )
-                        yield self._found(macro.element, span, what, outer[parameter.name])
-            for inner in file.properties:
-                if inner.macro is not None and inner.name in outer and "scope" not in inner.element.attributes:
-                    span = inner.element.attribute_span("name")
+                        yield self._found(macro.element, span, subject, outer_properties[parameter.name])
+            for inner_property in file.properties:
+                if (
+                    inner_property.macro is not None
+                    and inner_property.name in outer_properties
+                    and "scope" not in inner_property.element.attributes
+                ):
+                    span = inner_property.element.attribute_span("name")
                     yield self._found(
-                        inner.element, span, phrase("the property '{name}'", name=inner.name), outer[inner.name]
+                        inner_property.element,
+                        span,
+                        phrase("the property '{name}'", name=inner_property.name),
+                        outer_properties[inner_property.name],
                     )
 
-    def _found(self, element: Element, span: Span | None, what: str, outer: Definition) -> Diagnostic:
-        note = Note(phrase("the outer one is defined here"), outer.element.attribute_span("name"))
+    def _found(self, element: Element, span: Span | None, subject: str, outer_property: Definition) -> Diagnostic:
+        note = Note(phrase("the outer property is defined here"), outer_property.element.attribute_span("name"))
         return self.report(
-            phrase("{what} hides a property of the same name", what=what), element, span=span, notes=[note]
+            phrase("{what} hides a property of the same name", what=subject), element, span=span, notes=[note]
         )
 
 
@@ -250,7 +259,7 @@ class ParameterHidesGlobal(XacroRule):
                 for parameter in file.parameters(macro.element):
                     if is_global(parameter.name) or parameter.name in DEPRECATED:
                         message = phrase(
-                            "the parameter '{name}' of the macro '{macro_name}' hides a name of xacro",
+                            "the parameter '{name}' of the macro '{macro_name}' hides a name that xacro provides",
                             name=parameter.name,
                             macro_name=macro.name,
                         )
@@ -275,12 +284,19 @@ def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[E
     """
     for file in facts.files.values():
         for use in file.uses:
-            if use.attribute not in _NAMES or use.element.tag.startswith("xacro:") or name not in use.found.names:
+            if (
+                use.attribute not in _NAME_ATTRIBUTES
+                or use.element.tag.startswith("xacro:")
+                or name not in use.found.names
+            ):
                 continue
             if f"${{{name}}}" not in use.element.attributes[use.attribute].replace(" ", ""):
                 continue
-            around = [parent for parent in use.parents if parent.tag == "xacro:macro"]
-            hidden = any(name in {parameter.name for parameter in file.parameters(each_macro)} for each_macro in around)
-            if (macro is not None and macro in around) or (macro is None and not hidden):
+            enclosing_macros = [parent for parent in use.parents if parent.tag == "xacro:macro"]
+            is_hidden = any(
+                name in {parameter.name for parameter in file.parameters(enclosing_macro)}
+                for enclosing_macro in enclosing_macros
+            )
+            if (macro is not None and macro in enclosing_macros) or (macro is None and not is_hidden):
                 return use.element, use.attribute
     return None

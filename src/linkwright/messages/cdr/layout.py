@@ -1,8 +1,8 @@
 """The layout of CDR, for the reader and the writer: alignment, sizes, runs of fields.
 
 CDR (OMG, classic, "XCDR1") aligns each primitive to a multiple of its size, counted from the end of the four header
-bytes. After a string or a sequence, the position is known only in part, such as "a multiple of four". Generated code
-then computes the padding only where it may be needed.
+bytes. After a string or a sequence, only the remainder of the position is known, such as "a multiple of four".
+Generated code computes padding only where it may be needed.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from typing import NamedTuple
 from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, Field, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
-MOST_INLINE = 40
-"""A nested structure of more leaves than these is written and read by a function of its own."""
+MAX_INLINE_LEAVES = 40
+"""The maximum number of leaves of a nested structure whose code is inlined; larger ones have separate functions."""
 
-DEEPEST_LOOP = 5
-"""Loops inside of loops beyond this go to functions of their own; Python's limit is 20."""
+MAX_LOOP_DEPTH = 5
+"""The maximum depth of nested loops in one function; Python's limit for nested blocks is 20."""
 
 
 class Place(NamedTuple):
-    """A position of which only the remainder `rest` modulo `modulus` (1, 2, 4 or 8) is known."""
+    """The known part of a position: its remainder `rest` after division by `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
     rest: int
@@ -30,10 +30,10 @@ class Place(NamedTuple):
         return Place(self.modulus, (self.rest + size) % self.modulus)
 
     def padding(self, size: int) -> int | None:
-        """Return the number of bytes up to the next multiple of `size`; None if it is not known."""
+        """Return the number of bytes up to the next multiple of `size`, or None if it is not known."""
         return (-self.rest) % size if self.modulus >= size else None
 
-    def met(self, other: Place) -> Place:
+    def common(self, other: Place) -> Place:
         """Return what is known about a position that may be either this one or the other."""
         modulus = min(self.modulus, other.modulus)
         while (self.rest - other.rest) % modulus:
@@ -46,12 +46,12 @@ ANYWHERE = Place(1, 0)
 
 
 class Facts(NamedTuple):
-    """Properties of the layout of a structure or a field.
+    """The layout of a structure or a field.
 
     Attributes:
-        least: the minimum number of bytes on the wire, without padding.
+        least: the minimum serialized size in bytes, without padding.
         leaves: the number of primitives, strings and sequences, including those of nested structures.
-        first: the alignment in bytes that the first primitive requires.
+        first: the alignment of the first primitive in bytes.
     """
 
     least: int
@@ -64,12 +64,14 @@ _facts: dict[str, Facts] = {}
 
 def facts(structure: Structure) -> Facts:
     """Return the layout properties of a structure."""
-    found = _facts.get(structure.type_name)
-    if found is None:
-        parts = [field_facts(field) for field in structure.wire_fields]
-        found = Facts(sum(f.least for f in parts), sum(f.leaves for f in parts), parts[0].first)
-        _facts[structure.type_name] = found
-    return found
+    layout_facts = _facts.get(structure.type_name)
+    if layout_facts is None:
+        facts_of_fields = [field_facts(field) for field in structure.wire_fields]
+        layout_facts = Facts(
+            sum(f.least for f in facts_of_fields), sum(f.leaves for f in facts_of_fields), facts_of_fields[0].first
+        )
+        _facts[structure.type_name] = layout_facts
+    return layout_facts
 
 
 def field_facts(field: Field) -> Facts:
@@ -79,8 +81,10 @@ def field_facts(field: Field) -> Facts:
     if kind.container is Container.SEQUENCE:
         leaves = 1 if primitive is not None else 1 + facts(LIBRARY.structure(kind.base)).leaves
         return Facts(4, leaves, 4)
-    one = Facts(primitive.size, 1, primitive.size) if primitive is not None else facts(LIBRARY.structure(kind.base))
+    item_facts = (
+        Facts(primitive.size, 1, primitive.size) if primitive is not None else facts(LIBRARY.structure(kind.base))
+    )
     if kind.container is Container.ARRAY:
         assert kind.size is not None
-        return Facts(one.least * kind.size, one.leaves, one.first)
-    return one
+        return Facts(item_facts.least * kind.size, item_facts.leaves, item_facts.first)
+    return item_facts

@@ -1,9 +1,9 @@
 """Compiles the functions that deserialize structures from CDR.
 
-Such a function unpacks runs of fixed fields, including those of nested structures, with one `struct` call each,
-directly into the slots of the objects. The checks on assignment are not repeated. The function trusts no length in the
-data: no length can make it read or allocate more than the data contain. All errors that it raises for bad data are
-listed in `linkwright.messages.cdr.values.READ_FAULTS`.
+Such a function unpacks each run of fields of fixed size, also across nested structures, with one `struct` call directly
+into the slots of the objects. The checks on assignment are skipped. The function does not trust lengths in the data: no
+length can make it read or allocate more than the data contains. `linkwright.messages.cdr.values.READ_FAULTS` lists all
+errors that it raises for bad data.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from itertools import count
 from typing import Any, Literal
 
 from linkwright.messages.cdr import values as cdr_values
-from linkwright.messages.cdr.layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
+from linkwright.messages.cdr.layout import ANYWHERE, MAX_INLINE_LEAVES, MAX_LOOP_DEPTH, START, Place, facts
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
@@ -35,14 +35,14 @@ _SCOPE: dict[str, Any] = {
     "array": array,
 }
 
-_parts: dict[tuple[str, str], Callable[..., Any]] = {}
+_part_readers: dict[tuple[str, str], Callable[..., Any]] = {}
 
 ClassOf = Callable[[Structure], type]
 Order = Literal["<", ">"]
 
 
 def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") -> Callable[[bytes], Any]:
-    """Compile the function that creates a message from bytes, which include the header.
+    """Return a new function that creates a message from its bytes, including the header.
 
     Args:
         structure: the structure to read.
@@ -59,19 +59,19 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
 
 
 def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Callable[..., Any]:
-    """Compile the function that reads a nested structure at an offset.
+    """Return the function that reads a nested structure at an offset, which is compiled on first use.
 
-    The function returns the object and the offset of its end.
+    The function returns the object and the offset after it.
     """
-    found = _parts.get((structure.type_name, order))
-    if found is None:
+    reader = _part_readers.get((structure.type_name, order))
+    if reader is None:
         code = _ReaderCode(ANYWHERE, class_of, order, known=None)
         name = code.made(structure)
         code.structure(structure, name)
         code.end_run()
         source = f"def read(d, p, e):\n{code.body()}    return {name}, p\n"
-        found = _parts[structure.type_name, order] = code.compiled(source, structure)
-    return found
+        reader = _part_readers[structure.type_name, order] = code.compiled(source, structure)
+    return reader
 
 
 class _ReaderCode:
@@ -82,8 +82,8 @@ class _ReaderCode:
 
     def __init__(self, place: Place, class_of: ClassOf, order: Order, known: int | None) -> None:
         self.place = place
-        self._known = known
-        """The place as a number, as long as it is the same for all messages."""
+        self._known_position = known
+        """The position as a number; None once it differs between messages."""
         self._class_of = class_of
         self._order = order
         self._lines: list[str] = []
@@ -104,67 +104,67 @@ class _ReaderCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def made(self, structure: Structure) -> str:
-        """Generate the creation of an object of a structure's class; return the object's variable."""
+        """Generate code that creates an object for a structure, and return the name of its variable."""
         name = f"m{next(self._names)}"
-        self._line(f"{name} = new({self._given(self._class_of(structure), 'C')})")
+        self._add_line(f"{name} = new({self._constant_name(self._class_of(structure), 'C')})")
         return name
 
     def structure(self, structure: Structure, target: str) -> None:
         if not structure.fields:
-            self._primitive("B", 1, "_")
+            self._read_primitive("B", 1, "_")
         for field in structure.fields:
-            self._field(field, f"{target}._{field.name}")
+            self._read_field(field, f"{target}._{field.name}")
 
-    def _field(self, field: Field, target: str) -> None:
+    def _read_field(self, field: Field, target: str) -> None:
         kind = field.type
         if kind.container is Container.ONE:
-            self._one(field.name, kind, target)
+            self._read_single(field.name, kind, target)
         elif kind.container is Container.ARRAY:
             self._array(field, target)
         else:
             self._sequence(field, target)
 
-    def _one(self, name: str, kind: FieldType, target: str) -> None:
+    def _read_single(self, name: str, kind: FieldType, target: str) -> None:
         primitive = kind.primitive
         if primitive is None:
-            self._nested(kind, target)
+            self._read_nested(kind, target)
         elif primitive.python is str:
             self._text(name, kind, target)
         elif primitive.python is bool:
             value = f"b{next(self._names)}"
-            self._primitive("B", 1, value)
+            self._read_primitive("B", 1, value)
             self._after_run += [f"if {value} > 1: bad_bool({value})", f"{target} = {value} == 1"]
         else:
             assert primitive.code is not None
-            self._primitive(primitive.code, primitive.size, target)
+            self._read_primitive(primitive.code, primitive.size, target)
 
-    def _nested(self, kind: FieldType, target: str) -> None:
+    def _read_nested(self, kind: FieldType, target: str) -> None:
         structure = LIBRARY.structure(kind.base)
-        if facts(structure).leaves > MOST_INLINE or self._loops >= DEEPEST_LOOP:
+        if facts(structure).leaves > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self._write_position()
             part = _compile_part(structure, self._class_of, self._order)
-            self._line(f"{target}, p = {self._given(part, 'R')}(d, p, e)")
+            self._add_line(f"{target}, p = {self._constant_name(part, 'R')}(d, p, e)")
             self.place = ANYWHERE
         else:
             name = self.made(structure)
-            self._line(f"{target} = {name}")
+            self._add_line(f"{target} = {name}")
             self.structure(structure, name)
 
     def _text(self, name: str, kind: FieldType, target: str) -> None:
-        length = self._length()
+        length = self._read_length()
         if kind.base == "wstring":
-            self._line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
+            self._add_line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
             self.place = Place(4, 0)
         else:
-            self._line(f"if {length}:")
-            self._line(f"    q = p + {length} - 1")
-            self._line("    if d[q]: unterminated()")
-            self._line(f"    {target} = str(d[p:q], 'utf-8')")
-            self._line("    p = q + 1")
-            self._line(f"else: {target} = ''")
+            self._add_line(f"if {length}:")
+            self._add_line(f"    q = p + {length} - 1")
+            self._add_line("    if d[q]: unterminated()")
+            self._add_line(f"    {target} = str(d[p:q], 'utf-8')")
+            self._add_line("    p = q + 1")
+            self._add_line(f"else: {target} = ''")
             self.place = ANYWHERE
         if kind.string_bound is not None:
-            self._line(f"if len({target}) > {kind.string_bound}: too_long({name!r}, {kind.string_bound})")
+            self._add_line(f"if len({target}) > {kind.string_bound}: too_long({name!r}, {kind.string_bound})")
 
     def _array(self, field: Field, target: str) -> None:
         kind, primitive, size = field.type, field.type.primitive, field.type.size
@@ -176,99 +176,100 @@ class _ReaderCode:
             import numpy as np
 
             dtype = np.dtype(primitive.dtype).newbyteorder(self._order)
-            data = f"{self._given(np.frombuffer, 'F')}(d, {self._given(dtype, 'T')}, {size}, {self._here()})"
+            function, element = self._constant_name(np.frombuffer, "F"), self._constant_name(dtype, "T")
+            data = f"{function}(d, {element}, {size}, {self._position_expression()})"
             native = f".astype({primitive.dtype!r})" if self._order == ">" else ".copy()"
-            self._line(f"{target} = {data}{native}")
+            self._add_line(f"{target} = {data}{native}")
             self._skip(size * primitive.size)
         elif primitive is not None and primitive.python in (bool, bytes):
             self._write_position()
-            self._small_values(primitive, str(size), target)
+            self._read_small_values(primitive, str(size), target)
         else:
-            self._repeated(field, target, str(size))
+            self._read_repeated(field, target, str(size))
 
     def _sequence(self, field: Field, target: str) -> None:
         kind, primitive = field.type, field.type.primitive
-        length = self._length()
+        length = self._read_length()
         if kind.size is not None:
-            self._line(f"if {length} > {kind.size}: too_long({field.name!r}, {kind.size})")
+            self._add_line(f"if {length} > {kind.size}: too_long({field.name!r}, {kind.size})")
         if kind.is_numeric_array:
             assert primitive is not None
-            self._numbers(primitive, length, target)
+            self._read_numbers(primitive, length, target)
         elif primitive is not None and primitive.python in (bool, bytes):
-            self._small_values(primitive, length, target)
+            self._read_small_values(primitive, length, target)
         elif kind.base == "string" and self._order == "<":
-            self._line(f"{target}, p = texts(d, p, {length})")
+            self._add_line(f"{target}, p = texts(d, p, {length})")
             self.place = ANYWHERE
             if kind.string_bound is not None:
-                self._line(f"check_bounds({field.name!r}, {target}, {kind.string_bound})")
+                self._add_line(f"check_bounds({field.name!r}, {target}, {kind.string_bound})")
         else:
-            least = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).least
-            self._line(f"if {length} * {least} > e - p: truncated()")
-            self._repeated(field, target, length)
+            min_size = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).least
+            self._add_line(f"if {length} * {min_size} > e - p: truncated()")
+            self._read_repeated(field, target, length)
 
-    def _numbers(self, primitive: Primitive, length: str, target: str) -> None:
+    def _read_numbers(self, primitive: Primitive, length: str, target: str) -> None:
         code = primitive.array_code
-        self._line(f"if {length}:")
+        self._add_line(f"if {length}:")
         self._depth += 1
         if primitive.size == 8:
             padding = self.place.padding(8)
             if padding is None:
-                self._line("p = (p + 3 & -8) + 4")
+                self._add_line("p = (p + 3 & -8) + 4")
             elif padding:
-                self._line(f"p += {padding}")
-        self._line(f"q = p + {length}" + (f" * {primitive.size}" if primitive.size > 1 else ""))
-        self._line(f"{target} = numbers({code!r}, d, p, q)")
+                self._add_line(f"p += {padding}")
+        self._add_line(f"q = p + {length}" + (f" * {primitive.size}" if primitive.size > 1 else ""))
+        self._add_line(f"{target} = numbers({code!r}, d, p, q)")
         if self._order == ">" and primitive.size > 1:
-            self._line(f"{target}.byteswap()")
-        self._line("p = q")
+            self._add_line(f"{target}.byteswap()")
+        self._add_line("p = q")
         self._depth -= 1
-        self._line(f"else: {target} = array({code!r})")
+        self._add_line(f"else: {target} = array({code!r})")
         self.place = Place(min(primitive.size, 4), 0)
 
-    def _small_values(self, primitive: Primitive, length: str, target: str) -> None:
+    def _read_small_values(self, primitive: Primitive, length: str, target: str) -> None:
         reader = "bools" if primitive.python is bool else "single_bytes"
-        self._line(f"q = p + {length}")
-        self._line(f"{target} = {reader}(d, p, q)")
-        self._line("p = q")
+        self._add_line(f"q = p + {length}")
+        self._add_line(f"{target} = {reader}(d, p, q)")
+        self._add_line("p = q")
         self.place = ANYWHERE
 
-    def _repeated(self, field: Field, target: str, length: str) -> None:
+    def _read_repeated(self, field: Field, target: str, length: str) -> None:
         """Generate a loop over the values of a field.
 
-        At the start of the loop, the code relies only on an alignment that holds in every iteration.
+        The code at the start of the loop assumes only an alignment that holds in every iteration.
         """
-        one = FieldType(field.type.base, field.type.string_bound)
+        item_type = FieldType(field.type.base, field.type.string_bound)
         self._write_position()
         values, value = f"l{next(self._names)}", f"x{next(self._names)}"
-        self._line(f"{target} = {values} = []")
-        before = self.place
+        self._add_line(f"{target} = {values} = []")
+        start_place = self.place
         while True:
-            lines = len(self._lines)
-            self.place = before
+            line_count = len(self._lines)
+            self.place = start_place
             with self._loop(length):
-                self._one(field.name, one, value)
+                self._read_single(field.name, item_type, value)
                 self._write_position()
-                self._line(f"{values}.append({value})")
-            met = before.met(self.place)
-            if met == before:
+                self._add_line(f"{values}.append({value})")
+            common_place = start_place.common(self.place)
+            if common_place == start_place:
                 break
-            before = met
-            del self._lines[lines:]
-        self.place = before
+            start_place = common_place
+            del self._lines[line_count:]
+        self.place = start_place
 
     # --- positions and runs ---------------------------------------------------------------------------------
 
-    def _length(self) -> str:
-        """Generate the reading of the length of a string or a sequence; return its variable.
+    def _read_length(self) -> str:
+        """Generate code that reads the length of a string or sequence, and return the name of its variable.
 
         After this code, `p` is the position after the length.
         """
         name = f"n{next(self._names)}"
-        self._primitive("I", 4, name)
+        self._read_primitive("I", 4, name)
         self._write_position()
         return name
 
-    def _primitive(self, code: str, size: int, target: str) -> None:
+    def _read_primitive(self, code: str, size: int, target: str) -> None:
         self._align(size)
         self._run.append((code, target))
         self.place = self.place.after(size)
@@ -277,7 +278,7 @@ class _ReaderCode:
         padding = self.place.padding(size)
         if padding is None:
             self.end_run()
-            self._line({2: "p += p & 1", 4: "p += -p & 3", 8: "p = (p + 3 & -8) + 4"}[size])
+            self._add_line({2: "p += p & 1", 4: "p += -p & 3", 8: "p = (p + 3 & -8) + 4"}[size])
             self.place = Place(size, 0)
         elif padding:
             if self._run:
@@ -287,17 +288,19 @@ class _ReaderCode:
             self.place = self.place.after(padding)
 
     def end_run(self) -> None:
-        """Generate the unpacking of the fields in the current run."""
+        """Generate the code that unpacks the fields of the current run, and start a new run."""
         if not self._run:
             return
-        form = struct.Struct(self._order + "".join(code for code, _ in self._run))
+        run_struct = struct.Struct(self._order + "".join(code for code, _ in self._run))
         targets = ", ".join(target for _, target in self._run if target)
         comma = "" if "," in targets else ","
-        self._line(f"{targets}{comma} = {self._given(form.unpack_from, 'U')}(d, {self._here()})")
-        self._skip_bytes(form.size)
+        self._add_line(
+            f"{targets}{comma} = {self._constant_name(run_struct.unpack_from, 'U')}(d, {self._position_expression()})"
+        )
+        self._skip_bytes(run_struct.size)
         self._run = []
         for line in self._after_run:
-            self._line(line)
+            self._add_line(line)
         self._after_run = []
 
     def _skip(self, size: int) -> None:
@@ -305,34 +308,34 @@ class _ReaderCode:
         self.place = self.place.after(size)
 
     def _skip_bytes(self, size: int) -> None:
-        if self._known is None:
-            self._line(f"p += {size}")
+        if self._known_position is None:
+            self._add_line(f"p += {size}")
         else:
-            self._known += size
+            self._known_position += size
 
-    def _here(self) -> str:
-        return "p" if self._known is None else str(self._known)
+    def _position_expression(self) -> str:
+        return "p" if self._known_position is None else str(self._known_position)
 
     def _write_position(self) -> None:
-        """End the run. In the following code, only `p` holds the position."""
+        """End the run, and store the position in `p`, which the code uses from here on."""
         self.end_run()
-        if self._known is not None:
-            self._line(f"p = {self._known}")
-            self._known = None
+        if self._known_position is not None:
+            self._add_line(f"p = {self._known_position}")
+            self._known_position = None
 
     # --- lines and names ------------------------------------------------------------------------------------
 
-    def _line(self, text: str) -> None:
+    def _add_line(self, text: str) -> None:
         self._lines.append("    " * self._depth + text + "\n")
 
-    def _given(self, value: Any, letter: str) -> str:
+    def _constant_name(self, value: Any, letter: str) -> str:
         name = f"{letter}{len(self._scope)}"
         self._scope[name] = value
         return name
 
     @contextmanager
     def _loop(self, length: str) -> Iterator[None]:
-        self._line(f"for _ in range({length}):")
+        self._add_line(f"for _ in range({length}):")
         self._depth += 1
         self._loops += 1
         yield

@@ -1,8 +1,8 @@
-"""Run-time support for generated CDR code: strings, lists of strings, errors for bad data.
+"""The functions that generated CDR code calls: for strings, lists of strings, and errors in bad data.
 
-Publishers send the same names repeatedly. Therefore the bytes of short strings, and of lists of strings, are cached
-when they are written, and lists of strings are cached by their bytes when they are read. This way, reading the names of
-twelve joints costs one comparison.
+Publishers send the same names repeatedly. Therefore, the bytes of short strings and of lists of strings are cached when
+they are written, and lists of strings are cached by their bytes when they are read. With this cache, reading the names
+of twelve joints takes one comparison.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from typing import Any
 from linkwright.diagnostics import phrase
 
 _LENGTH = struct.Struct("<I")
-_LONGEST_KEPT = 128
-_MOST_TEXTS = 4096
-_LONGEST_BLOCK_KEPT = 8192
-_MOST_BLOCKS = 64
-_KEY = 28
-_COPIED_AT_ONCE = 4096
-_LAST_UNIT = 0xFFFF
+_MAX_CACHED_TEXT = 128
+_MAX_CACHED_TEXTS = 4096
+_MAX_CACHED_BLOCK_SIZE = 8192
+_MAX_CACHED_BLOCKS = 64
+_KEY_SIZE = 28
+_MAX_DIRECT_COPY = 4096
+_MAX_UTF16_UNIT = 0xFFFF
 
 
 READ_FAULTS = (struct.error, IndexError, ValueError)
-"""The errors of a reader on bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""
+"""All errors that a reader raises for bad data; UnicodeDecodeError and DataFaultError are ValueErrors."""
 
 
 class DataFaultError(ValueError):
-    """Raised inside this package when bytes are not a message; the error's text is the reason.
+    """Raised inside this package when bytes are not a valid message; the text of the error is the reason.
 
-    Callers of the package receive another error instead.
+    The package's public functions convert it to a `MessageDataError`.
     """
 
 
@@ -42,14 +42,14 @@ class Texts(dict[str, bytes]):
         self._alignment = alignment
 
     def __missing__(self, text: str) -> bytes:
-        raw = text.encode()
-        piece = _LENGTH.pack(len(raw) + 1) + raw + b"\0"
-        piece += bytes(-len(piece) % self._alignment)
-        if len(raw) <= _LONGEST_KEPT:
-            if len(self) >= _MOST_TEXTS:
+        encoded = text.encode()
+        serialized = _LENGTH.pack(len(encoded) + 1) + encoded + b"\0"
+        serialized += bytes(-len(serialized) % self._alignment)
+        if len(encoded) <= _MAX_CACHED_TEXT:
+            if len(self) >= _MAX_CACHED_TEXTS:
                 self.clear()
-            self[text] = piece
-        return piece
+            self[text] = serialized
+        return serialized
 
 
 class TextLists(dict[tuple[str, ...], bytes]):
@@ -60,17 +60,17 @@ class TextLists(dict[tuple[str, ...], bytes]):
 
     def __init__(self, alignment: int) -> None:
         super().__init__()
-        self._last = TEXT1 if alignment == 1 else TEXT4
+        self._last_texts = TEXT1 if alignment == 1 else TEXT4
 
     def __missing__(self, texts: tuple[str, ...]) -> bytes:
-        piece = _LENGTH.pack(len(texts)) + b"".join([TEXT4[text] for text in texts[:-1]])
+        serialized = _LENGTH.pack(len(texts)) + b"".join([TEXT4[text] for text in texts[:-1]])
         if texts:
-            piece += self._last[texts[-1]]
-        if len(piece) <= _LONGEST_BLOCK_KEPT:
-            if len(self) >= _MOST_BLOCKS:
+            serialized += self._last_texts[texts[-1]]
+        if len(serialized) <= _MAX_CACHED_BLOCK_SIZE:
+            if len(self) >= _MAX_CACHED_BLOCKS:
                 self.clear()
-            self[texts] = piece
-        return piece
+            self[texts] = serialized
+        return serialized
 
 
 TEXT1 = Texts(1)
@@ -79,53 +79,53 @@ TEXT_LIST1 = TextLists(1)
 TEXT_LIST4 = TextLists(4)
 
 _blocks: dict[bytes, tuple[bytes, list[str], int]] = {}
-"""Their beginning -> the bytes of a list of texts, the texts, and the length of the bytes."""
+"""Cached lists of strings by their first bytes: all their bytes, the strings, and the number of bytes."""
 
 
 def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
     """Read a list of strings from a message.
 
     Args:
-        data: the message.
+        data: the bytes of the message.
         at: the offset of the first string's length, a multiple of four.
         count: the number of strings.
 
     Returns:
         The strings, and the offset of the end of the last one.
     """
-    key = data[at - 4 : at + _KEY]
-    kept = _blocks.get(key)
-    if kept is not None and data.startswith(kept[0], at):
-        return kept[1].copy(), at + kept[2]
+    key = data[at - 4 : at + _KEY_SIZE]
+    cached_block = _blocks.get(key)
+    if cached_block is not None and data.startswith(cached_block[0], at):
+        return cached_block[1].copy(), at + cached_block[2]
     start, end = at, len(data)
     if count * 4 > end - at:
         truncated()
     texts = []
-    length_at = _LENGTH.unpack_from
+    unpack_length = _LENGTH.unpack_from
     for _ in range(count):
         at = (at + 3) & ~3
-        (length,) = length_at(data, at)
+        (length,) = unpack_length(data, at)
         at += 4
         if length:
-            last = at + length - 1
-            if data[last]:
+            terminator = at + length - 1
+            if data[terminator]:
                 unterminated()
-            texts.append(str(data[at:last], "utf-8"))
-            at = last + 1
+            texts.append(str(data[at:terminator], "utf-8"))
+            at = terminator + 1
         else:
             texts.append("")
-    if count and at - start <= _LONGEST_BLOCK_KEPT:
-        if len(_blocks) >= _MOST_BLOCKS:
+    if count and at - start <= _MAX_CACHED_BLOCK_SIZE:
+        if len(_blocks) >= _MAX_CACHED_BLOCKS:
             _blocks.clear()
         _blocks[key] = (data[start:at], texts.copy(), at - start)
     return texts, at
 
 
 def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
-    """Return the numbers in a range of a message, after checking the message's length."""
+    """Return the numbers in a range of a message, or raise if the message is too short."""
     if end > len(data):
         truncated()
-    if end - start <= _COPIED_AT_ONCE:
+    if end - start <= _MAX_DIRECT_COPY:
         return array(code, data[start:end])
     numbers = array(code)
     numbers.frombytes(memoryview(data)[start:end])
@@ -133,17 +133,17 @@ def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
 
 
 def read_bools(data: bytes, start: int, end: int) -> list[bool]:
-    """Return the bools in a range of a message, after checking the message's length."""
-    raw = data[start:end]
-    if len(raw) < end - start:
+    """Return the bools in a range of a message, or raise if the message is too short."""
+    values = data[start:end]
+    if len(values) < end - start:
         truncated()
-    if raw.translate(None, b"\0\1"):
-        bad_bool(max(raw))
-    return list(map(bool, raw))
+    if values.translate(None, b"\0\1"):
+        bad_bool(max(values))
+    return list(map(bool, values))
 
 
 def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
-    """Return the single bytes in a range of a message, after checking the message's length."""
+    """Return each byte in a range of a message, or raise if the message is too short."""
     if end > len(data):
         truncated()
     return [data[at : at + 1] for at in range(start, end)]
@@ -170,10 +170,10 @@ def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, i
     units = array("I", data[at:end])
     if order == ">":
         units.byteswap()
-    most = max(units, default=0)
-    if most > _LAST_UNIT:
+    largest_unit = max(units, default=0)
+    if largest_unit > _MAX_UTF16_UNIT:
         raise DataFaultError(
-            phrase("a wide string contains a unit of {value}; units of UTF-16 are at most 65535", value=most)
+            phrase("a wide string contains the UTF-16 unit {value}, but units are at most 65535", value=largest_unit)
         )
     return str(array("H", units).tobytes(), "utf-16-le"), end
 
@@ -185,26 +185,26 @@ def write_wide_text(text: str) -> bytes:
 
 
 def truncated() -> None:
-    """Raise the error for truncated data, or for an impossible length in the data."""
+    """Raise a DataFaultError for truncated data, or for an impossible length in the data."""
     raise DataFaultError(phrase("the data ends in the middle of the message, or a length in it is wrong"))
 
 
 def unterminated() -> None:
-    """Raise the error for a string that does not end with NUL."""
+    """Raise a DataFaultError for a string that does not end with NUL."""
     raise DataFaultError(phrase("the end of a string does not match its length"))
 
 
 def bad_bool(value: int) -> None:
-    """Raise the error for a bool that is neither 0 nor 1."""
-    raise DataFaultError(phrase("a bool has the value {value}", value=value))
+    """Raise a DataFaultError for a bool that is neither 0 nor 1."""
+    raise DataFaultError(phrase("a bool has the invalid value {value}", value=value))
 
 
 def too_long(name: str, bound: int) -> None:
-    """Raise the error for a field with more values or characters than its bound allows."""
-    raise DataFaultError(phrase("'{name}' is longer than its bound of {bound}", name=name, bound=bound))
+    """Raise a DataFaultError for a field with more values or characters than its bound allows."""
+    raise DataFaultError(phrase("'{name}' is longer than its maximum length of {bound}", name=name, bound=bound))
 
 
 def check_bounds(name: str, texts: list[str], bound: int) -> None:
-    """Check that no string is longer than a bound."""
+    """Raise a DataFaultError if a string is longer than a bound."""
     if any(len(text) > bound for text in texts):
         too_long(name, bound)

@@ -1,7 +1,7 @@
 """Compiles the functions that serialize structures to CDR.
 
-Such a function packs runs of fixed fields, including those of nested structures, with one `struct` call each, takes
-encoded strings from a cache, uses arrays without copying them, and joins all parts at the end. Nothing is copied twice.
+Such a function packs each run of fields of fixed size, also across nested structures, with one `struct` call. It takes
+encoded strings from a cache, uses arrays without copying them, and joins all pieces at the end.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from itertools import count
 from typing import Any
 
 from linkwright.messages.cdr import values as cdr_values
-from linkwright.messages.cdr.layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts, field_facts
+from linkwright.messages.cdr.layout import ANYWHERE, MAX_INLINE_LEAVES, MAX_LOOP_DEPTH, START, Place, facts, field_facts
 from linkwright.messages.definitions.interfaces import EMPTY_MEMBER, Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
 _HEADER = 0x100
-"""The four bytes before a message, 00 01 00 00, as a little-endian number."""
+"""The four header bytes of a message, 00 01 00 00, as a little-endian number."""
 
 
 class LengthFaultError(ValueError):
@@ -47,11 +47,11 @@ _SCOPE: dict[str, Any] = {
     "check_bound": _check_bound,
 }
 
-_parts: dict[str, Callable[..., int]] = {}
+_part_writers: dict[str, Callable[..., int]] = {}
 
 
 def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
-    """Compile the function that serializes a message, including the header, to bytes."""
+    """Return a new function that serializes a message to bytes, including the header."""
     code = _WriterCode(START)
     code.pack("I", str(_HEADER), place=START)
     code.structure(structure, "m", 0)
@@ -61,24 +61,29 @@ def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
 
 
 def _compile_part(structure: Structure) -> Callable[..., int]:
-    """Compile the function that serializes a nested structure.
+    """Return the function that serializes a nested structure, which is compiled on first use.
 
-    The function appends the bytes to a list of parts and returns the position of their end.
+    The function appends the bytes to a list of pieces and returns the position after them.
     """
-    found = _parts.get(structure.type_name)
-    if found is None:
+    writer = _part_writers.get(structure.type_name)
+    if writer is None:
         code = _WriterCode(ANYWHERE)
         code.structure(structure, "m", 0)
         code.flush()
         code.sync()
         code.needs_position = True
         body = code.body(start="")
-        found = _parts[structure.type_name] = code.compiled(f"def write(o, m, p):\n{body}    return p\n", structure)
-    return found
+        writer = _part_writers[structure.type_name] = code.compiled(
+            f"def write(o, m, p):\n{body}    return p\n", structure
+        )
+    return writer
 
 
 class _WriterCode:
-    """Generates the code of a writer."""
+    """Generates the code of a writer.
+
+    In the code, `p` is the position after the header, and `o` is the list of pieces.
+    """
 
     def __init__(self, place: Place) -> None:
         self.place = place
@@ -88,7 +93,7 @@ class _WriterCode:
         self._loops = 0
         self._run: list[tuple[str, str]] = []
         self._pieces: list[str] = []
-        self._unsynced: list[str] = []
+        self._unsynced_sizes: list[str] = []
         self._uses_list = False
         self._names = count(1)
         self._scope = dict(_SCOPE)
@@ -97,10 +102,10 @@ class _WriterCode:
 
     def body(self, start: str = "    p = 0\n") -> str:
         lines = [line for line in self._lines if self.needs_position or not line.lstrip().startswith("p += ")]
-        head = start if self.needs_position else ""
+        setup = start if self.needs_position else ""
         if self._uses_list and start:
-            head += "    o = []\n"
-        return head + "".join(lines)
+            setup += "    o = []\n"
+        return setup + "".join(lines)
 
     def result(self) -> str:
         self._end_run()
@@ -117,45 +122,45 @@ class _WriterCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def structure(self, structure: Structure, source: str, following: int) -> None:
-        """Generate the writing of a structure's fields.
+        """Generate the code that writes a structure's fields.
 
         Args:
             structure: the structure to write.
-            source: the expression for the structure.
-            following: the alignment of the data after the structure; 0 if it is not known.
+            source: the Python expression for the structure.
+            following: the alignment of the data after the structure in bytes; 0 if it is not known.
         """
         fields = structure.wire_fields
-        for number, field in enumerate(fields):
-            after = field_facts(fields[number + 1]).first if number + 1 < len(fields) else following
+        for index, field in enumerate(fields):
+            next_alignment = field_facts(fields[index + 1]).first if index + 1 < len(fields) else following
             value = "0" if field.name == EMPTY_MEMBER else f"{source}._{field.name}"
-            self._field(field, value, after)
+            self._write_field(field, value, next_alignment)
 
-    def _field(self, field: Field, value: str, following: int) -> None:
+    def _write_field(self, field: Field, value: str, following: int) -> None:
         kind = field.type
         if kind.container is Container.ONE:
-            self._one(field.name, kind, value, following)
+            self._write_single(field.name, kind, value, following)
             return
         if kind.is_numeric_array:
-            self._numbers(field, value)
+            self._write_numbers(field, value)
             return
-        values = self._named(value)
+        values = self._assign_variable(value)
         if kind.container is Container.ARRAY:
-            self._line(f"check_length({field.name!r}, {values}, {kind.size})")
+            self._add_line(f"check_length({field.name!r}, {values}, {kind.size})")
         else:
             if kind.size is not None:
-                self._line(f"check_bound({field.name!r}, {values}, {kind.size})")
+                self._add_line(f"check_bound({field.name!r}, {values}, {kind.size})")
             if kind.base != "string":
                 self.align(4)
                 self.pack("I", f"len({values})")
         self._values(field, values, following)
 
-    def _one(self, name: str, kind: FieldType, value: str, following: int) -> None:
+    def _write_single(self, name: str, kind: FieldType, value: str, following: int) -> None:
         primitive = kind.primitive
         if primitive is None:
-            self._nested(kind, value, following)
+            self._write_nested(kind, value, following)
         elif primitive.python is str:
             if kind.string_bound is not None:
-                self._line(f"check_bound({name!r}, {value}, {kind.string_bound})")
+                self._add_line(f"check_bound({name!r}, {value}, {kind.string_bound})")
             self._text(kind, value, following)
         else:
             assert primitive.code is not None
@@ -165,24 +170,24 @@ class _WriterCode:
     def _text(self, kind: FieldType, value: str, following: int) -> None:
         self.align(4)
         if kind.base == "wstring":
-            self._piece(self._named(f"wide({value})"), Place(4, 0))
+            self._add_piece(self._assign_variable(f"wide({value})"), Place(4, 0))
         elif following >= 4:
-            self._piece(self._named(f"TEXT4[{value}]"), Place(4, 0))
+            self._add_piece(self._assign_variable(f"TEXT4[{value}]"), Place(4, 0))
         else:
-            self._piece(self._named(f"TEXT1[{value}]"), ANYWHERE)
+            self._add_piece(self._assign_variable(f"TEXT1[{value}]"), ANYWHERE)
 
-    def _nested(self, kind: FieldType, value: str, following: int) -> None:
+    def _write_nested(self, kind: FieldType, value: str, following: int) -> None:
         structure = LIBRARY.structure(kind.base)
-        if facts(structure).leaves > MOST_INLINE or self._loops >= DEEPEST_LOOP:
+        if facts(structure).leaves > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self.flush()
             self.sync()
             self.needs_position = self._uses_list = True
-            self._line(f"p = {self._given(_compile_part(structure), 'W')}(o, {value}, p)")
+            self._add_line(f"p = {self._constant_name(_compile_part(structure), 'W')}(o, {value}, p)")
             self.place = ANYWHERE
         else:
-            self.structure(structure, value if value.isidentifier() else self._named(value), following)
+            self.structure(structure, value if value.isidentifier() else self._assign_variable(value), following)
 
-    def _numbers(self, field: Field, value: str) -> None:
+    def _write_numbers(self, field: Field, value: str) -> None:
         kind, primitive = field.type, field.type.primitive
         assert primitive is not None
         if kind.container is Container.ARRAY:
@@ -192,10 +197,10 @@ class _WriterCode:
             self._pieces.append(f"{value}.tobytes()")
             self._advance(kind.size * primitive.size)
             return
-        values = self._named(value)
+        values = self._assign_variable(value)
         if kind.size is not None:
-            self._line(f"check_bound({field.name!r}, {values}, {kind.size})")
-        length = self._named(f"len({values})")
+            self._add_line(f"check_bound({field.name!r}, {values}, {kind.size})")
+        length = self._assign_variable(f"len({values})")
         self.align(4)
         self.pack("I", length)
         self._end_run()
@@ -204,103 +209,103 @@ class _WriterCode:
             if self.place.padding(8) is None:
                 self.sync()
                 self.needs_position = True
-                padding = self._named(f"-p & 4 if {length} else 0")
+                padding = self._assign_variable(f"-p & 4 if {length} else 0")
             else:
-                padding = self._named(f"{self.place.padding(8)} if {length} else 0")
+                padding = self._assign_variable(f"{self.place.padding(8)} if {length} else 0")
             self._pieces.append(f"PAD[{padding}]")
-            self._unsynced.append(padding)
+            self._unsynced_sizes.append(padding)
         self._pieces.append(values)
-        self._unsynced.append(f"{primitive.size} * {length}" if primitive.size > 1 else length)
+        self._unsynced_sizes.append(f"{primitive.size} * {length}" if primitive.size > 1 else length)
         self.place = Place(min(primitive.size, 4), 0)
 
     def _values(self, field: Field, values: str, following: int) -> None:
         kind, primitive = field.type, field.type.primitive
         if primitive is not None and primitive.python in (bool, bytes):
-            self._small_values(primitive, values)
+            self._write_small_values(primitive, values)
         elif kind.base == "string" and kind.container is Container.SEQUENCE:
             if kind.string_bound is not None:
                 with self._loop("e", values) as item:
-                    self._line(f"check_bound({field.name!r}, {item}, {kind.string_bound})")
+                    self._add_line(f"check_bound({field.name!r}, {item}, {kind.string_bound})")
             self.align(4)
-            pieces, place = ("LIST4", Place(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
-            self._piece(self._named(f"{pieces}[tuple({values})]"), place)
+            cache_name, place = ("LIST4", Place(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
+            self._add_piece(self._assign_variable(f"{cache_name}[tuple({values})]"), place)
         else:
-            one = FieldType(kind.base, kind.string_bound)
-            self._repeated(values, lambda item: self._one(field.name, one, item, 0))
+            item_type = FieldType(kind.base, kind.string_bound)
+            self._write_repeated(values, lambda item: self._write_single(field.name, item_type, item, 0))
 
-    def _small_values(self, primitive: Primitive, values: str) -> None:
+    def _write_small_values(self, primitive: Primitive, values: str) -> None:
         piece = f"bytes(map(bool, {values}))" if primitive.python is bool else f"join({values})"
-        self._piece(self._named(piece), ANYWHERE)
+        self._add_piece(self._assign_variable(piece), ANYWHERE)
 
-    def _repeated(self, values: str, write: Callable[[str], None]) -> None:
+    def _write_repeated(self, values: str, write_item: Callable[[str], None]) -> None:
         """Generate a loop over values.
 
-        At the start of the loop, the code relies only on an alignment that holds in every iteration.
+        The code at the start of the loop assumes only an alignment that holds in every iteration.
         """
         self.flush()
         self.sync()
-        before = self.place
+        start_place = self.place
         while True:
-            lines, unsynced, names = len(self._lines), list(self._unsynced), self._names
-            self.place = before
+            line_count, unsynced, names = len(self._lines), list(self._unsynced_sizes), self._names
+            self.place = start_place
             with self._loop("e", values) as item:
-                write(item)
+                write_item(item)
                 self.flush()
                 self.sync()
-            met = before.met(self.place)
-            if met == before:
+            common_place = start_place.common(self.place)
+            if common_place == start_place:
                 break
-            before = met
-            del self._lines[lines:]
-            self._unsynced, self._names = unsynced, names
-        self.place = before
+            start_place = common_place
+            del self._lines[line_count:]
+            self._unsynced_sizes, self._names = unsynced, names
+        self.place = start_place
 
     # --- pieces ---------------------------------------------------------------------------------------------
 
     def align(self, size: int) -> None:
-        """Generate the padding up to a multiple of `size`."""
+        """Generate the code that pads to a multiple of `size`."""
         padding = self.place.padding(size)
         if padding is None:
             self._end_run()
             self.sync()
             self.needs_position = True
-            amount = self._named(f"-p & {size - 1}")
-            self._pieces.append(f"PAD[{amount}]")
-            self._unsynced.append(amount)
+            padding_name = self._assign_variable(f"-p & {size - 1}")
+            self._pieces.append(f"PAD[{padding_name}]")
+            self._unsynced_sizes.append(padding_name)
             self.place = Place(size, 0)
         elif padding:
             self._run.append((f"{padding}x", ""))
             self._advance(padding)
 
     def pack(self, code: str, value: str, place: Place | None = None) -> None:
-        """Generate the packing of a primitive at an aligned position.
+        """Add a primitive to the current run; the position must be aligned.
 
-        If `place` is given, the position does not advance.
+        If `place` is not None, the position does not advance.
         """
         self._run.append((code, value))
         if place is None:
             self._advance(struct.calcsize("<" + code))
 
     def flush(self) -> None:
-        """Generate the code that appends the collected fields to the list of parts."""
+        """Generate the code that appends the collected pieces to the list."""
         self._end_run()
         if self._pieces:
             self._uses_list = True
-            self._line(f"o += ({', '.join(self._pieces)},)")
+            self._add_line(f"o += ({', '.join(self._pieces)},)")
             self._pieces = []
 
     def sync(self) -> None:
         """Generate the code that sets the variable `p` to the current position."""
-        if self._unsynced:
-            numbers = sum(int(term) for term in self._unsynced if term.isdigit())
-            terms = [term for term in self._unsynced if not term.isdigit()]
-            self._line("p += " + " + ".join(terms + ([str(numbers)] if numbers else [])))
-            self._unsynced = []
+        if self._unsynced_sizes:
+            constant_size = sum(int(term) for term in self._unsynced_sizes if term.isdigit())
+            terms = [term for term in self._unsynced_sizes if not term.isdigit()]
+            self._add_line("p += " + " + ".join(terms + ([str(constant_size)] if constant_size else [])))
+            self._unsynced_sizes = []
 
-    def _piece(self, name: str, place: Place) -> None:
+    def _add_piece(self, name: str, place: Place) -> None:
         self._end_run()
         self._pieces.append(name)
-        self._unsynced.append(f"len({name})")
+        self._unsynced_sizes.append(f"len({name})")
         self.place = place
 
     def _end_run(self) -> None:
@@ -308,24 +313,24 @@ class _WriterCode:
             codes = "".join(code for code, _ in self._run)
             values = ", ".join(value for _, value in self._run if value)
             pack = struct.Struct("<" + codes).pack
-            self._pieces.append(f"{self._given(pack, 'P')}({values})")
+            self._pieces.append(f"{self._constant_name(pack, 'P')}({values})")
             self._run = []
 
     def _advance(self, size: int) -> None:
-        self._unsynced.append(str(size))
+        self._unsynced_sizes.append(str(size))
         self.place = self.place.after(size)
 
     # --- lines and names ------------------------------------------------------------------------------------
 
-    def _line(self, text: str) -> None:
+    def _add_line(self, text: str) -> None:
         self._lines.append("    " * self._depth + text + "\n")
 
-    def _named(self, expression: str) -> str:
+    def _assign_variable(self, expression: str) -> str:
         name = f"v{next(self._names)}"
-        self._line(f"{name} = {expression}")
+        self._add_line(f"{name} = {expression}")
         return name
 
-    def _given(self, value: Any, letter: str) -> str:
+    def _constant_name(self, value: Any, letter: str) -> str:
         name = f"{letter}{len(self._scope)}"
         self._scope[name] = value
         return name
@@ -333,12 +338,12 @@ class _WriterCode:
     @contextmanager
     def _loop(self, letter: str, values: str) -> Iterator[str]:
         name = f"{letter}{next(self._names)}"
-        self._line(f"for {name} in {values}:")
+        self._add_line(f"for {name} in {values}:")
         self._depth += 1
         self._loops += 1
-        lines = len(self._lines)
+        line_count = len(self._lines)
         yield name
-        if len(self._lines) == lines:
-            self._line("pass")
+        if len(self._lines) == line_count:
+            self._add_line("pass")
         self._depth -= 1
         self._loops -= 1

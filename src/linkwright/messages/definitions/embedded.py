@@ -1,8 +1,8 @@
-"""The message definitions that recordings contain.
+"""Reads the message definitions that recordings contain.
 
-The text of one message comes first. The texts of the messages in it follow, each after a line of ``=`` and a line with
-its name (``MSG: geometry_msgs/Point``; ``IDL:`` for IDL). This is the format of MCAP's ``ros2msg`` and ``ros2idl``, and
-of rosbag2's SQLite files.
+The definition of a message comes first. The definitions of its nested messages follow, each after a line of ``=`` and a
+line with the name (``MSG: geometry_msgs/Point``, or ``IDL:`` for IDL). This is the format of MCAP's ``ros2msg`` and
+``ros2idl``, and of rosbag2's SQLite files.
 """
 
 from __future__ import annotations
@@ -13,30 +13,32 @@ from linkwright.diagnostics import SourceText
 from linkwright.messages.definitions.interfaces import split_name
 from linkwright.messages.definitions.library import LIBRARY
 
-_NEXT = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
+_SEPARATOR_LINES = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
 
 
 def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
-    """Register the definition of a message, and of the messages in it, from data.
+    """Register the definitions of a message and its nested messages that are contained in data.
 
     Interfaces that come with Linkwright and those of the workspace take precedence. If a name is registered twice, the
-    first text is kept. The texts are parsed when their messages are requested, and mistakes in them are reported then.
+    first definition is kept. A definition is parsed, and its mistakes are reported, when the message is requested.
 
     Args:
-        type_name: the type, such as ``my_msgs/msg/Count``; a text that is not the name of a message is ignored.
-        text: the definitions.
-        origin: the source of the texts, for messages about mistakes in them.
+        type_name: the type, such as ``my_msgs/msg/Count``; the call has no effect for an invalid name.
+        text: the definition of the message, followed by those of its nested messages.
+        origin: where the text comes from, such as a file, for messages about mistakes.
         idl: whether the first definition is IDL.
     """
-    first, *others = _NEXT.split(text)
-    _add("IDL" if idl else "MSG", type_name, first, origin)
-    for language, name, body in zip(others[::3], others[1::3], others[2::3], strict=True):
+    first_definition, *nested_definitions = _SEPARATOR_LINES.split(text)
+    _add("IDL" if idl else "MSG", type_name, first_definition, origin)
+    for language, name, body in zip(
+        nested_definitions[::3], nested_definitions[1::3], nested_definitions[2::3], strict=True
+    ):
         _add(language, name, body, origin)
 
 
 def _add(language: str, name: str, text: str, origin: str) -> None:
-    split = split_name(name)
-    if split is None or split.kind not in (None, "msg") or not text.strip():
+    interface_name = split_name(name)
+    if interface_name is None or interface_name.kind not in (None, "msg") or not text.strip():
         return
-    type_name = f"{split.package}/msg/{split.name}"
+    type_name = f"{interface_name.package}/msg/{interface_name.name}"
     LIBRARY.add_text(type_name, SourceText(f"{origin}/{type_name}.{language.lower()}", text))

@@ -1,8 +1,8 @@
-"""The type hashes that ROS 2 (Iron and newer) announces with endpoints: RIHS01.
+"""Computes the type hashes (RIHS01) that ROS 2 Iron and newer announce with endpoints.
 
-Such a hash is the SHA-256 of a type description, as in type_description_interfaces (REP 2011, REP 2016): the names and
-types of the fields, without defaults and constants, and the same for all nested structures. rosidl hashes the
-description as JSON, with exactly the separators and the order of keys used here.
+Such a hash is the SHA-256 of a type description, as in type_description_interfaces (REP 2011, REP 2016). It contains
+the names and types of the fields of a structure and of all nested structures, without defaults and constants. rosidl
+hashes the description as JSON, with the separators and the order of keys that this module uses.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from linkwright.messages.definitions.interfaces import (
 )
 from linkwright.messages.definitions.library import LIBRARY
 
-_NESTED = 1
-_BOUNDED_TEXT = 4
-"""From a text's type to that of a bounded one: 17 to 21, 18 to 22."""
+_NESTED_TYPE_ID = 1
+_BOUNDED_TEXT_OFFSET = 4
+"""The difference between the ids of a bounded and an unbounded string type: 21 and 17, or 22 and 18."""
 
-_CONTAINERS = {Container.ONE: 0, Container.ARRAY: 48, Container.SEQUENCE: 144}
-_BOUNDED_SEQUENCE = 96
+_CONTAINER_OFFSETS = {Container.ONE: 0, Container.ARRAY: 48, Container.SEQUENCE: 144}
+_BOUNDED_SEQUENCE_OFFSET = 96
 
 
 def type_hash(interface: Any) -> str:
@@ -52,8 +52,8 @@ def _hash_by_name(type_name: str) -> str:
 
 
 def hash_of(description: dict[str, Any]) -> str:
-    """Return the hash of a type description."""
-    import hashlib  # imported here because a process without a network sends no hashes
+    """Return the RIHS01 hash of a type description."""
+    import hashlib  # imported here because a process without network peers does not need hashes
     import json
 
     return "RIHS01_" + hashlib.sha256(json.dumps(description, separators=(", ", ": ")).encode()).hexdigest()
@@ -62,29 +62,32 @@ def hash_of(description: dict[str, Any]) -> str:
 def type_description(definition: Definition) -> dict[str, Any]:
     """Return the description of a type and of all nested types.
 
-    The description has the form of a type_description_interfaces/msg/TypeDescription without default values.
+    It has the fields of a type_description_interfaces/msg/TypeDescription, without default values.
     """
-    described = _individual(definition)
-    seen: dict[str, dict[str, Any]] = {}
-    waiting = _nested_names(described)
-    while waiting:
-        name = waiting.pop()
-        if name not in seen:
-            seen[name] = _individual(LIBRARY.definition(name))
-            waiting += _nested_names(seen[name])
-    return {"type_description": described, "referenced_type_descriptions": [seen[name] for name in sorted(seen)]}
+    description = _individual_description(definition)
+    nested_descriptions: dict[str, dict[str, Any]] = {}
+    pending = _nested_names(description)
+    while pending:
+        name = pending.pop()
+        if name not in nested_descriptions:
+            nested_descriptions[name] = _individual_description(LIBRARY.definition(name))
+            pending += _nested_names(nested_descriptions[name])
+    return {
+        "type_description": description,
+        "referenced_type_descriptions": [nested_descriptions[name] for name in sorted(nested_descriptions)],
+    }
 
 
-def _nested_names(described: dict[str, Any]) -> list[str]:
-    return [name for field in described["fields"] if (name := field["type"]["nested_type_name"])]
+def _nested_names(description: dict[str, Any]) -> list[str]:
+    return [name for field in description["fields"] if (name := field["type"]["nested_type_name"])]
 
 
-def _individual(definition: Definition) -> dict[str, Any]:
-    return {"type_name": definition.type_name, "fields": [_field(field) for field in _members(definition)]}
+def _individual_description(definition: Definition) -> dict[str, Any]:
+    return {"type_name": definition.type_name, "fields": [_field_description(field) for field in _members(definition)]}
 
 
 def _members(definition: Definition) -> tuple[Field, ...]:
-    """Return the fields of a definition; services and actions are described as if they had some."""
+    """Return the fields of a definition; for a service or action, a field for each of its parts."""
     if isinstance(definition, Structure):
         return definition.wire_fields
     if isinstance(definition, Service):
@@ -106,16 +109,16 @@ def _members(definition: Definition) -> tuple[Field, ...]:
     return tuple(Field(name, FieldType(part.type_name)) for name, part in parts.items())
 
 
-def _field(field: Field) -> dict[str, Any]:
+def _field_description(field: Field) -> dict[str, Any]:
     kind, primitive = field.type, field.type.primitive
-    type_id = _NESTED if primitive is None else primitive.type_id
+    type_id = _NESTED_TYPE_ID if primitive is None else primitive.type_id
     if kind.string_bound is not None:
-        type_id += _BOUNDED_TEXT
-    bounded = kind.container is Container.SEQUENCE and kind.size is not None
+        type_id += _BOUNDED_TEXT_OFFSET
+    is_bounded = kind.container is Container.SEQUENCE and kind.size is not None
     return {
         "name": field.name,
         "type": {
-            "type_id": type_id + (_BOUNDED_SEQUENCE if bounded else _CONTAINERS[kind.container]),
+            "type_id": type_id + (_BOUNDED_SEQUENCE_OFFSET if is_bounded else _CONTAINER_OFFSETS[kind.container]),
             "capacity": kind.size or 0,
             "string_capacity": kind.string_bound or 0,
             "nested_type_name": kind.base if primitive is None else "",

@@ -1,8 +1,8 @@
 """Parses ``.idl`` files, limited to the part of the language that ROS interfaces use.
 
-This is everything that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules, structures of
-primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other annotations are
-skipped. Unions, enumerations and other constructs of IDL that such files do not have are refused with their location.
+The supported constructs are those that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules,
+structures of primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other
+annotations are skipped. Any other construct, such as a union or an enumeration, is an error with its location.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from linkwright.messages.definitions.interfaces import (
 from linkwright.messages.definitions.parser import SECTIONS, KnownMessages, LiteralFault, read_constant, read_default
 from linkwright.messages.errors import DefinitionError
 
-_TOKEN = re.compile(
+_TOKEN_PATTERN = re.compile(
     r"""(?P<skip>\s+ | //[^\n]* | /\*.*?\*/ | \#[^\n]*)
       | (?P<text>L?"(?:\\.|[^"\\])*" | L?'(?:\\.|[^'\\])*')
       | (?P<number>[-+]?(?:0[xX][0-9a-fA-F]+ | (?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[dDfF]?)
@@ -46,8 +46,8 @@ _PRIMITIVES = {
     "unsigned long long": "uint64",
     **{name: name for name in ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")},
 }
-_NOT_IN_MESSAGES = {"char", "wchar", "long double", "any", "map", "fixed", "enum", "union", "bitmask", "bitset"}
-_WORDS_OF_PRIMITIVES = {"unsigned", "long", "short", "double"}
+_UNSUPPORTED_TYPES = {"char", "wchar", "long double", "any", "map", "fixed", "enum", "union", "bitmask", "bitset"}
+_PRIMITIVE_KEYWORDS = {"unsigned", "long", "short", "double"}
 
 
 class _Token(NamedTuple):
@@ -62,7 +62,7 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/msg/Count``.
-        known: knows which messages exist.
+        known: tells which messages exist, to check references.
 
     Raises:
         DefinitionError: MSG120 for text that cannot be parsed; MSG111, MSG114, MSG118 and MSG119 as for other files.
@@ -74,7 +74,7 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
 
 def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition:
     _, kind, _ = type_name.split("/")
-    parts: list[Structure] = []
+    structures: list[Structure] = []
     for suffix in SECTIONS[kind]:
         name = type_name + suffix
         if name not in reader.structures:
@@ -82,75 +82,75 @@ def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition
             message = phrase("the file does not define the structure '{name}'", name=name.replace("/", "::"))
             raise DefinitionError(Diagnostic("MSG118", message, source.span(0), hint=hint, source=source))
         fields = tuple(field for field in reader.structures[name] if field.name != EMPTY_MEMBER)
-        parts.append(Structure(name, fields, tuple(reader.constants.get(name, ()))))
-    return interface_of(type_name, parts)
+        structures.append(Structure(name, fields, tuple(reader.constants.get(name, ()))))
+    return interface_of(type_name, structures)
 
 
 class _Reader:
-    """Reads one file, token by token."""
+    """Parses the tokens of one file into structures and constants."""
 
     def __init__(self, source: SourceText, known: KnownMessages) -> None:
         self._source = source
         self._known = known
-        self._tokens = list(self._split())
+        self._tokens = list(self._tokenize())
         self._at = 0
         self._typedefs: dict[str, FieldType] = {}
         self.structures: dict[str, list[Field]] = {}
         self.constants: dict[str, list[Constant]] = {}
 
-    def _split(self) -> Iterator[_Token]:
-        text, at = self._source.text, 0
-        while at < len(text):
-            match = _TOKEN.match(text, at)
+    def _tokenize(self) -> Iterator[_Token]:
+        text, position = self._source.text, 0
+        while position < len(text):
+            match = _TOKEN_PATTERN.match(text, position)
             if match is None:
-                self._fail("MSG120", phrase("'{text}' is not expected here", text=text[at]), at, 1)
+                self._fail("MSG120", phrase("'{text}' is not expected here", text=text[position]), position, 1)
             assert match.lastgroup is not None
             if match.lastgroup != "skip":
-                yield _Token(match.lastgroup, match.group(), at)
-            at = match.end()
-        yield _Token("end", "", at)
+                yield _Token(match.lastgroup, match.group(), position)
+            position = match.end()
+        yield _Token("end", "", position)
 
     # --- definitions ----------------------------------------------------------------------------------------
 
     def definitions(self, scope: tuple[str, ...]) -> None:
         """Parse the content of a module, or of the file."""
         while self._now.kind != "end" and self._now.text != "}":
-            self._annotations()
-            word = self._expect_kind("name")
-            if word.text == "module":
+            self._read_annotations()
+            keyword = self._expect_kind("name")
+            if keyword.text == "module":
                 name = self._expect_kind("name").text
                 self._expect("{")
                 self.definitions((*scope, name))
                 self._expect("}")
                 self._expect(";")
-            elif word.text == "struct":
-                self._structure(scope)
-            elif word.text == "typedef":
+            elif keyword.text == "struct":
+                self._read_structure(scope)
+            elif keyword.text == "typedef":
                 kind = self._type()
                 name, kind = self._declared(kind)
                 self._typedefs[name] = kind
                 self._expect(";")
-            elif word.text == "const":
+            elif keyword.text == "const":
                 self._constant(scope)
             else:
                 self._fail(
                     "MSG120",
-                    phrase("'{text}' cannot be used in the IDL of messages", text=word.text),
-                    word.start,
-                    len(word.text),
+                    phrase("'{text}' cannot be used in the IDL of messages", text=keyword.text),
+                    keyword.start,
+                    len(keyword.text),
                     phrase("write the interface as a .msg, .srv or .action file"),
                 )
 
-    def _structure(self, scope: tuple[str, ...]) -> None:
+    def _read_structure(self, scope: tuple[str, ...]) -> None:
         name = "/".join((*scope, self._expect_kind("name").text))
         fields: list[Field] = []
         self._expect("{")
         while self._now.text != "}":
-            default = self._annotations()
+            default = self._read_annotations()
             kind = self._type()
             while True:
-                field_name, whole = self._declared(kind)
-                fields.append(Field(field_name, whole, self._default(default, whole)))
+                field_name, field_type = self._declared(kind)
+                fields.append(Field(field_name, field_type, self._default(default, field_type)))
                 if self._now.text != ",":
                     break
                 self._expect(",")
@@ -169,23 +169,23 @@ class _Reader:
         if kind.primitive is None or kind.container is not Container.ONE:
             self._fail(
                 "MSG114",
-                phrase("the type of the constant '{name}' is not primitive", name=name),
+                phrase("the constant '{name}' does not have a primitive type", name=name),
                 value.start,
                 len(value.text),
             )
         try:
-            constant = Constant(name, kind.base, read_constant(_plain(value), kind.base))
+            constant = Constant(name, kind.base, read_constant(_literal_text(value), kind.base))
         except LiteralFault as fault:
             self._fail(
                 "MSG114",
-                phrase("the value of '{name}' is wrong: {fault}", name=name, fault=fault),
+                phrase("the value of '{name}' is invalid: {fault}", name=name, fault=fault),
                 value.start,
                 len(value.text),
             )
         self.constants.setdefault(owner, []).append(constant)
 
-    def _annotations(self) -> _Token | None:
-        """Skip annotations; return the value of ``@default (value=...)``, or None if it is absent."""
+    def _read_annotations(self) -> _Token | None:
+        """Skip annotations, and return the value of ``@default (value=...)``, or None if there is none."""
         default = None
         while self._now.text == "@":
             self._expect("@")
@@ -206,35 +206,35 @@ class _Reader:
     def _default(self, token: _Token | None, kind: FieldType) -> object | None:
         if token is None:
             return None
-        text = _plain(token)
+        text = _literal_text(token)
         if kind.container is not Container.ONE:
             # rosidl writes the default of a list as a string: "(1, 2, 3)".
-            inside = text[1:-1] if text[:1] in {'"', "'"} else text
-            text = "[" + inside.strip().removeprefix("(").removesuffix(")") + "]"
+            content = text[1:-1] if text[:1] in {'"', "'"} else text
+            text = "[" + content.strip().removeprefix("(").removesuffix(")") + "]"
         try:
             return read_default(text, kind)
         except LiteralFault as fault:
             self._fail(
-                "MSG114", phrase("the default value is wrong: {fault}", fault=fault), token.start, len(token.text)
+                "MSG114", phrase("the default value is invalid: {fault}", fault=fault), token.start, len(token.text)
             )
 
     # --- types ----------------------------------------------------------------------------------------------
 
     def _type(self) -> FieldType:
         token = self._expect_kind("name")
-        words = [token.text]
-        while words[-1] in _WORDS_OF_PRIMITIVES and self._now.text in _WORDS_OF_PRIMITIVES:
-            words.append(self._expect_kind("name").text)
-        text = " ".join(words)
+        keywords = [token.text]
+        while keywords[-1] in _PRIMITIVE_KEYWORDS and self._now.text in _PRIMITIVE_KEYWORDS:
+            keywords.append(self._expect_kind("name").text)
+        text = " ".join(keywords)
         if text in _PRIMITIVES:
             return FieldType(_PRIMITIVES[text])
         if text in {"string", "wstring"}:
-            return FieldType(text, self._bound() if self._now.text == "<" else None)
+            return FieldType(text, self._read_bound() if self._now.text == "<" else None)
         if text == "sequence":
             return self._sequence(token)
         if text in self._typedefs:
             return self._typedefs[text]
-        if text in _NOT_IN_MESSAGES:
+        if text in _UNSUPPORTED_TYPES:
             self._fail("MSG120", phrase("'{text}' is not supported in messages", text=text), token.start, len(text))
         parts = text.split("::")
         if len(parts) != 3:
@@ -248,38 +248,38 @@ class _Reader:
 
     def _sequence(self, token: _Token) -> FieldType:
         self._expect("<")
-        one = self._type()
+        item_type = self._type()
         size = None
         if self._now.text == ",":
             self._expect(",")
-            size = self._size()
+            size = self._read_size()
         self._expect(">")
-        if one.container is not Container.ONE:
+        if item_type.container is not Container.ONE:
             self._fail(
                 "MSG120", phrase("sequences of sequences and arrays are not supported in messages"), token.start, 8
             )
-        return FieldType(one.base, one.string_bound, Container.SEQUENCE, size)
+        return FieldType(item_type.base, item_type.string_bound, Container.SEQUENCE, size)
 
     def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
-        """Parse a declarator; return the name and its type, including an array size after the name."""
+        """Parse a declarator, and return its name and its type, including an array size after the name."""
         token = self._expect_kind("name")
         if self._now.text != "[":
             return token.text, kind
         self._expect("[")
-        size = self._size()
+        size = self._read_size()
         self._expect("]")
         if kind.container is not Container.ONE or self._now.text == "[":
             self._fail("MSG120", phrase("arrays of arrays and sequences are not supported in messages"), token.start,
                        len(token.text))  # fmt: skip
         return token.text, FieldType(kind.base, kind.string_bound, Container.ARRAY, size)
 
-    def _bound(self) -> int:
+    def _read_bound(self) -> int:
         self._expect("<")
-        bound = self._size()
+        bound = self._read_size()
         self._expect(">")
         return bound
 
-    def _size(self) -> int:
+    def _read_size(self) -> int:
         token = self._next()
         if not token.text.isdigit() or int(token.text) == 0:
             self._fail(
@@ -319,11 +319,11 @@ class _Reader:
         if token.text != mark:
             self._unexpected(token, quoted(mark))
 
-    def _unexpected(self, token: _Token, wanted: Phrase) -> NoReturn:
-        found = quoted(token.text) if token.text else phrase("the end of the file")
+    def _unexpected(self, token: _Token, expected: Phrase) -> NoReturn:
+        actual = quoted(token.text) if token.text else phrase("the end of the file")
         self._fail(
             "MSG120",
-            phrase("{wanted} is expected, but there is {found}", found=found, wanted=wanted),
+            phrase("{wanted} was expected instead of {found}", found=actual, wanted=expected),
             token.start,
             len(token.text),
         )
@@ -333,8 +333,8 @@ class _Reader:
         raise DefinitionError(Diagnostic(code, message, span, hint=hint, source=self._source))
 
 
-def _plain(token: _Token) -> str:
-    """Return a literal token in the form of ``.msg`` files."""
+def _literal_text(token: _Token) -> str:
+    """Return the text of a literal as a ``.msg`` file would contain it."""
     if token.kind == "text":
         return token.text.removeprefix("L")
     if token.kind == "number" and not token.text.lower().startswith(("0x", "-0x")):

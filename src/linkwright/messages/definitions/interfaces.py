@@ -1,6 +1,6 @@
-"""Interfaces as data: names, primitive types, fields, constants, and derived definitions.
+"""The data model of interfaces: names, primitive types, fields, constants, and derived definitions.
 
-rosidl derives further definitions from services and actions, such as the event of a service.
+From services and actions, rosidl derives further definitions, such as the event message of a service.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ KINDS = ("msg", "srv", "action")
 
 
 class InterfaceName(NamedTuple):
-    """The parts of an interface's name.
+    """The package, kind and name of an interface.
 
-    `kind` is None if the text omits it (``sensor_msgs/JointState``).
+    `kind` is None for a name without a kind, such as ``sensor_msgs/JointState``.
     """
 
     package: str
@@ -45,7 +45,7 @@ def is_package_name(text: str) -> bool:
 
 
 def is_interface_name(text: str) -> bool:
-    """Return whether an interface name is valid (CamelCase), or derived: ``SetBool_Request``."""
+    """Return whether an interface name is valid: CamelCase, also with a suffix as in ``SetBool_Request``."""
     return text.isascii() and all(part.isalnum() and part[0].isupper() for part in text.split("_"))
 
 
@@ -69,14 +69,14 @@ def snake_case(name: str) -> str:
 
     ``JointState`` gives ``joint_state``, and ``TFMessage`` gives ``tf_message``.
     """
-    words: list[str] = []
-    for at, letter in enumerate(name):
-        if letter.isupper() and at:
-            before, after = name[at - 1], name[at + 1 : at + 2]
-            if before.islower() or before.isdigit() or after.islower():
-                words.append("_")
-        words.append(letter.lower())
-    return "".join(words)
+    characters: list[str] = []
+    for index, letter in enumerate(name):
+        if letter.isupper() and index:
+            previous_letter, next_letter = name[index - 1], name[index + 1 : index + 2]
+            if previous_letter.islower() or previous_letter.isdigit() or next_letter.islower():
+                characters.append("_")
+        characters.append(letter.lower())
+    return "".join(characters)
 
 
 def python_module(type_name: str) -> str:
@@ -95,8 +95,8 @@ class Primitive(NamedTuple):
         idl_name: the name in rosidl, as shown by `get_fields_and_field_types`.
         python: the Python type of a value.
         code: the `struct` code for one value; None for strings.
-        size: the number of bytes on the wire, which is also the alignment; for strings, the size of the length.
-        type_id: the id in the type descriptions of REP 2016, whose hash is sent with endpoints.
+        size: the serialized size in bytes, which is also the alignment; for strings, the size of the length.
+        type_id: the id in the type descriptions of REP 2016, from which type hashes are computed.
         array_code: the `array.array` code; None if rclpy stores several values in a list.
         low: the minimum of an integer type.
         high: the maximum of an integer type; the largest finite value of a floating-point type.
@@ -113,7 +113,7 @@ class Primitive(NamedTuple):
 
     @property
     def is_integer(self) -> bool:
-        """Whether values are integers; bytes and bools do not count as integers."""
+        """Whether values are integers; ``byte`` and ``bool`` are not integer types."""
         return self.python is int
 
     @property
@@ -145,10 +145,10 @@ PRIMITIVES: dict[str, Primitive] = {
     "string": Primitive("string", str, None, 4, 17),
     "wstring": Primitive("wstring", str, None, 4, 18),
 }
-"""The primitives by their names in ``.msg`` files."""
+"""The primitive types by their names in ``.msg`` files."""
 
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
-"""rosidl's filler of a structure without fields: one byte on the wire, part of the hash, invisible to users."""
+"""The field that rosidl adds to an empty structure: it is serialized and hashed, but users do not see it."""
 
 
 class Container(Enum):
@@ -188,12 +188,12 @@ class FieldType(NamedTuple):
     def to_msg_text(self, package: str | None = None) -> str:
         """Return the type as written in a ``.msg`` file of `package`.
 
-        An example is ``geometry_msgs/Point[<=3]``. Types of `package` itself are written without it.
+        An example is ``geometry_msgs/Point[<=3]``. For types of `package`, the package is omitted.
         """
         text = self.base
         if "/" in text:
-            owner, _, name = text.split("/")
-            text = name if owner == package else f"{owner}/{name}"
+            owner_package, _, name = text.split("/")
+            text = name if owner_package == package else f"{owner_package}/{name}"
         if self.string_bound is not None:
             text += f"<={self.string_bound}"
         if self.container is Container.ARRAY:
@@ -211,8 +211,8 @@ class FieldType(NamedTuple):
         if primitive is not None:
             text = primitive.idl_name
         else:
-            owner, _, name = self.base.split("/")
-            text = f"{owner}/{name}"
+            owner_package, _, name = self.base.split("/")
+            text = f"{owner_package}/{name}"
         if self.string_bound is not None:
             text += f"<{self.string_bound}>"
         if self.container is Container.ARRAY:
@@ -226,9 +226,9 @@ class Field(NamedTuple):
     """A field of a structure.
 
     Attributes:
-        name: the field's name in Python.
-        type: the field's type.
-        default: the default as in the file (a tuple for arrays and sequences); None if the file gives none.
+        name: the name of the field.
+        type: the type of the field, including its length.
+        default: the default value in the file (a tuple for arrays and sequences); None if there is none.
     """
 
     name: str
@@ -259,12 +259,12 @@ class Structure(NamedTuple):
 
     @property
     def wire_fields(self) -> tuple[Field, ...]:
-        """The fields on the wire; rosidl's filler field if the structure has no fields."""
+        """The serialized fields: those of the structure, or rosidl's filler field if it has none."""
         return self.fields or (Field(EMPTY_MEMBER, FieldType("uint8")),)
 
     @property
     def references(self) -> Iterator[str]:
-        """The type names of the structures that the fields use, repeated for each use."""
+        """The type name of the structure in each field that has one; names may repeat."""
         return (field.type.base for field in self.fields if "/" in field.type.base)
 
 
@@ -289,7 +289,7 @@ Definition = Structure | Service | Action
 
 
 def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
-    """Return the message, service or action that consists of the given structures.
+    """Return the message, service or action that consists of some structures.
 
     The structures must be in the order of the file.
     """

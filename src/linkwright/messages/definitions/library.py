@@ -1,6 +1,6 @@
 """Finds the definition of an interface by its name.
 
-Interfaces that come with Linkwright take precedence, then those of the workspace, then those contained in data.
+The search order is: interfaces that come with Linkwright, interfaces of the workspace, and definitions in data.
 """
 
 from __future__ import annotations
@@ -44,26 +44,26 @@ from linkwright.packages import PackageFinder
 from linkwright.packages.active import active_finder
 from linkwright.packages.interface_files import interface_file, interface_files
 
-_FINDER_KEPT_S = 1.0
-"""Seconds for which the workspace is taken to be unchanged after a look."""
+_FINDER_LIFETIME_S = 1.0
+"""The time in seconds for which a finder that has read the workspace is used again."""
 
 KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 
 
 class Library:
-    """All known interfaces, read on demand. Any thread may use the library.
+    """All available interfaces, read on demand; the methods are thread-safe.
 
     Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Interfaces
     of the workspace are read, without a build, from the interface files of the packages that the current finder
-    finds. For names in neither of these, definitions that were contained in data are used.
+    finds. For any other name, a definition that was contained in data is used.
     """
 
     def __init__(self) -> None:
         self._definitions: dict[str, Definition] = {}
         self._sources: dict[str, SourceText] = {}
-        self._carried: dict[str, SourceText] = {}
+        self._embedded_sources: dict[str, SourceText] = {}
         self._checked: set[str] = set()
-        self._own: PackageFinder | None = None
+        self._own_finder: PackageFinder | None = None
         self._own_folder = ""
         self._own_until = 0.0
         self._lock = threading.RLock()
@@ -81,22 +81,22 @@ class Library:
             InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
             DefinitionError: the file has mistakes.
         """
-        found = self._definitions.get(name)
-        if found is not None and (not kinds or name.split("/")[1] in kinds):
-            return found
+        definition = self._definitions.get(name)
+        if definition is not None and (not kinds or name.split("/")[1] in kinds):
+            return definition
         with self._lock:
             return self._look_up(name, kinds or KINDS)
 
     def structure(self, type_name: str) -> Structure:
         """Return the definition of the structure with a full type name."""
-        found = self.definition(type_name)
-        assert isinstance(found, Structure)
-        return found
+        definition = self.definition(type_name)
+        assert isinstance(definition, Structure)
+        return definition
 
     def source(self, name: str) -> SourceText:
         """Return the interface file of a definition, with its name.
 
-        The comments in files that come with Linkwright are our own.
+        The comments in files that come with Linkwright are not those of ROS.
 
         Raises:
             InterfaceNotFoundError: as in `definition`.
@@ -106,23 +106,23 @@ class Library:
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def add_text(self, type_name: str, source: SourceText) -> None:
-        """Register a message definition contained in data. The first text for a name is kept.
+        """Register a message definition that was contained in data; later texts for the same type are ignored.
 
         Args:
             type_name: the type of the message.
-            source: the text; the suffix ``.idl`` in its name marks it as IDL.
+            source: the definition, which is IDL if its name ends with ``.idl``.
         """
         with self._lock:
-            self._carried.setdefault(type_name, source)
+            self._embedded_sources.setdefault(type_name, source)
 
     def names(self, kind: str, package: str | None = None) -> list[str]:
-        """Return the sorted type names of all interfaces of one kind, including the workspace's.
+        """Return the sorted type names of all interfaces of one kind, including those of the workspace.
 
         Args:
             kind: ``msg``, ``srv`` or ``action``.
             package: the package; None for all packages.
         """
-        found = {
+        type_names = {
             f"{owner}/{name}"
             for owner in catalogue.packages()
             if package is None or owner == package
@@ -130,10 +130,12 @@ class Library:
             if name.startswith(kind + "/")
         }
         for owner, share in self._workspace_packages(package):
-            found.update(f"{owner}/{kind}/{name}" for name in interface_files(share, kind))
+            type_names.update(f"{owner}/{kind}/{name}" for name in interface_files(share, kind))
         if kind == "msg":
-            found.update(name for name in tuple(self._carried) if package in (None, name.partition("/")[0]))
-        return sorted(found)
+            type_names.update(
+                name for name in tuple(self._embedded_sources) if package in (None, name.partition("/")[0])
+            )
+        return sorted(type_names)
 
     # --- looking up -----------------------------------------------------------------------------------------
 
@@ -143,30 +145,30 @@ class Library:
             raise InterfaceNotFoundError(_invalid_name_diagnostic(text))
         for kind in (name.kind,) if name.kind else kinds:
             if kind in kinds:
-                full = f"{name.package}/{kind}/{name.name}"
-                found = self._definitions.get(full) or self._load(full)
-                if found is not None:
-                    return found
-        raise InterfaceNotFoundError(self._unknown(name, kinds))
+                type_name = f"{name.package}/{kind}/{name.name}"
+                definition = self._definitions.get(type_name) or self._load(type_name)
+                if definition is not None:
+                    return definition
+        raise InterfaceNotFoundError(self._not_found_diagnostic(name, kinds))
 
-    def _load(self, full: str) -> Definition | None:
+    def _load(self, type_name: str) -> Definition | None:
         """Read the file of an interface, and register all definitions that rosidl derives from it.
 
-        Returns the definition; None if there is no file.
+        Returns the definition, or None if the interface has no file.
         """
-        package, kind, name = full.split("/")
+        package, kind, name = type_name.split("/")
         base = f"{package}/{kind}/{name.partition('_')[0]}"
         if base in self._sources:
-            return self._definitions.get(full)
-        source = self._shipped_source(base) or self._workspace_source(base) or self._carried.get(base)
+            return self._definitions.get(type_name)
+        source = self._shipped_source(base) or self._workspace_source(base) or self._embedded_sources.get(base)
         if source is None:
             return None
-        shipped = source.name[:1] == "<"
-        definition = _parse_source(source, base, _Trusted() if shipped else self)
+        is_shipped = source.name[:1] == "<"
+        definition = _parse_source(source, base, _TrustedMessages() if is_shipped else self)
         self._sources[base] = source
         parts = parts_of(definition)
         self._definitions.update(parts)
-        if not shipped:
+        if not is_shipped:
             try:
                 self._check(definition, source, ())
             except DefinitionError:
@@ -174,7 +176,7 @@ class Library:
                     del self._definitions[part]
                 del self._sources[base]
                 raise
-        return self._definitions.get(full)
+        return self._definitions.get(type_name)
 
     def _shipped_source(self, base: str) -> SourceText | None:
         package, _, rest = base.partition("/")
@@ -190,7 +192,7 @@ class Library:
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists, even if its file has mistakes."""
         package, _, rest = type_name.partition("/")
-        if rest in catalogue.texts(package) or type_name in self._carried:
+        if rest in catalogue.texts(package) or type_name in self._embedded_sources:
             return True
         share = self._finder().find(package)
         return share is not None and interface_file(share, *rest.split("/")) is not None
@@ -198,37 +200,39 @@ class Library:
     def hint_for(self, type_name: str) -> Phrase | None:
         """Return a hint with names similar to that of a missing message; None if there are none."""
         name = split_name(type_name)
-        return None if name is None else self._unknown(name, ("msg",)).hint
+        return None if name is None else self._not_found_diagnostic(name, ("msg",)).hint
 
-    def _check(self, definition: Definition, source: SourceText, above: tuple[str, ...]) -> None:
+    def _check(self, definition: Definition, source: SourceText, enclosing_types: tuple[str, ...]) -> None:
         """Check that no structure contains itself and that the files of nested structures are valid."""
         if definition.type_name in self._checked:
             return
         for structure in structures_of(definition):
-            way = (*above, structure.type_name)
+            type_chain = (*enclosing_types, structure.type_name)
             for reference in dict.fromkeys(structure.references):
-                if reference in way:
-                    raise DefinitionError(_recursion_diagnostic(source, (*way[way.index(reference) :], reference)))
-                inner = self.definition(reference)
+                if reference in type_chain:
+                    raise DefinitionError(
+                        _recursion_diagnostic(source, (*type_chain[type_chain.index(reference) :], reference))
+                    )
+                nested_definition = self.definition(reference)
                 inner_source = self._sources[reference]
                 if inner_source.name[:1] != "<":
-                    self._check(inner, inner_source, way)
+                    self._check(nested_definition, inner_source, type_chain)
         self._checked.add(definition.type_name)
 
     # --- the workspace --------------------------------------------------------------------------------------
 
     def _finder(self) -> PackageFinder:
-        """Return the current package finder.
+        """Return the active package finder.
 
-        If there is none, a finder of our own is used, and cached for a while because it has read the workspace.
+        If there is none, return a new finder, which is cached for a second because it has read the workspace.
         """
         finder = active_finder()
         if finder is None:
             now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109 - a Path takes longer
-            if self._own is None or folder != self._own_folder or now > self._own_until:
-                self._own, self._own_folder = PackageFinder(), folder
-                self._own_until = now + _FINDER_KEPT_S
-            finder = self._own
+            if self._own_finder is None or folder != self._own_folder or now > self._own_until:
+                self._own_finder, self._own_folder = PackageFinder(), folder
+                self._own_until = now + _FINDER_LIFETIME_S
+            finder = self._own_finder
         return finder
 
     def _workspace_packages(self, package: str | None) -> Iterator[tuple[str, Path]]:
@@ -240,35 +244,43 @@ class Library:
             if share is not None:
                 yield package, share
 
-    def _unknown(self, name: InterfaceName, kinds: tuple[str, ...]) -> Diagnostic:
-        wanted = (name.kind,) if name.kind in kinds else kinds
-        what = joined([term(KIND_NAMES[kind]) for kind in wanted if kind], " or ")
-        same_package = [other for kind in wanted if kind for other in self.names(kind, name.package)]
+    def _not_found_diagnostic(self, name: InterfaceName, kinds: tuple[str, ...]) -> Diagnostic:
+        requested_kinds = (name.kind,) if name.kind in kinds else kinds
+        kind_text = joined([term(KIND_NAMES[kind]) for kind in requested_kinds if kind], " or ")
+        same_package = [other for kind in requested_kinds if kind for other in self.names(kind, name.package)]
         notes: list[Note] = []
         if same_package:
-            listed = [other.rpartition("/")[2] for other in same_package]
-            hint = did_you_mean(name.name, listed) or self._same_name_elsewhere(name, wanted)
+            interface_names = [other.rpartition("/")[2] for other in same_package]
+            hint = did_you_mean(name.name, interface_names) or self._same_name_elsewhere(name, requested_kinds)
             if hint is None:
-                hint = phrase("'{package}' defines {names}", package=name.package, names=joined(listed[:8]))
-                if len(listed) > 8:
+                hint = phrase("'{package}' defines {names}", package=name.package, names=joined(interface_names[:8]))
+                if len(interface_names) > 8:
                     hint = phrase("{list}, ...", list=hint)
         else:
             packages = {*catalogue.packages(), *self._finder().packages()}
             if name.package in packages:
-                notes.append(Note(phrase("the package '{package}' has no {what}", package=name.package, what=what)))
+                notes.append(
+                    Note(phrase("the package '{package}' has no {what}", package=name.package, what=kind_text))
+                )
                 hint = None
             else:
                 notes.append(Note(phrase("there is no package '{package}'", package=name.package)))
                 hint = did_you_mean(name.package, packages)
-            hint = hint or self._same_name_elsewhere(name, wanted)
+            hint = hint or self._same_name_elsewhere(name, requested_kinds)
         if hint is None:
-            others = [other for kind in KINDS if kind not in wanted for other in self.names(kind, name.package)]
+            other_type_names = [
+                other for kind in KINDS if kind not in requested_kinds for other in self.names(kind, name.package)
+            ]
             hint = next(
-                (phrase("did you mean '{other}'?", other=other) for other in others if other.endswith("/" + name.name)),
+                (
+                    phrase("did you mean '{other}'?", other=other)
+                    for other in other_type_names
+                    if other.endswith("/" + name.name)
+                ),
                 None,
             )
         return Diagnostic(
-            "MSG101", phrase("there is no {what} '{name}'", what=what, name=name), notes=tuple(notes), hint=hint
+            "MSG101", phrase("there is no {what} '{name}'", what=kind_text, name=name), notes=tuple(notes), hint=hint
         )
 
     def _same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> Phrase | None:
@@ -279,10 +291,10 @@ class Library:
         return None
 
 
-class _Trusted:
-    """Replaces the queries of `KnownMessages` for files that come with Linkwright.
+class _TrustedMessages:
+    """Accepts every message name in files that come with Linkwright, because a test has checked these files.
 
-    A test has checked these files.
+    It has the interface of `KnownMessages`.
     """
 
     def has_message(self, type_name: str) -> bool:
@@ -295,7 +307,7 @@ class _Trusted:
 
 
 def _parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
-    """Parse an interface file in the language that its suffix indicates."""
+    """Parse an interface file, as IDL if its suffix is ``.idl``."""
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
 
@@ -304,13 +316,15 @@ def _parse_source(source: SourceText, base: str, known: KnownMessages) -> Defini
 
 
 def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
-    """Return a finding for an interface of another kind than the requested one."""
+    """Return a finding for an interface that exists but is not of the requested kind."""
     name = definition.type_name
-    is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
+    actual_kind = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[
+        type(definition)
+    ]
     return Diagnostic(
         "MSG101",
         phrase("there is no {kind_names} '{name}'", kind_names=KIND_NAMES[kind], name=name),
-        hint=phrase("'{name}' is {is_a}", name=name, is_a=is_a),
+        hint=phrase("'{name}' is {is_a}", name=name, is_a=actual_kind),
     )
 
 

@@ -26,13 +26,13 @@ from linkwright.messages.errors import DefinitionError
 
 Value = bool | int | float | str | bytes
 
-_ITEM = re.compile(r"""\s*("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,]*?)\s*(?:,|$)""")
-_ESCAPE = re.compile(r"\\(.)")
-_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'": "'"}
+_ITEM_PATTERN = re.compile(r"""\s*("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,]*?)\s*(?:,|$)""")
+_ESCAPE_PATTERN = re.compile(r"\\(.)")
+_ESCAPED_CHARACTERS = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'": "'"}
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """Raised when a text is not a value of a type. The argument is the reason."""
+    """Raised when a text is not a valid value of a type; the argument is the reason."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
@@ -86,14 +86,14 @@ def read_constant(text: str, type_name: str) -> Value:
 def split_list(text: str) -> list[str]:
     """Split a list at its commas, except those inside quotes."""
     items: list[str] = []
-    at = 0
-    while at < len(text):
-        match = _ITEM.match(text, at)
+    position = 0
+    while position < len(text):
+        match = _ITEM_PATTERN.match(text, position)
         if match is None:  # An unclosed quote: the rest is one item.
-            items.append(text[at:].strip())
+            items.append(text[position:].strip())
             break
         items.append(match.group(1))
-        at = match.end()
+        position = match.end()
     if items and not items[-1] and len(items) > 1:  # a trailing comma
         items.pop()
     return items
@@ -131,10 +131,10 @@ def _read(text: str, type_name: str, primitive: Primitive) -> Value:
 
 
 def _read_bool(text: str) -> bool:
-    word = text.lower()
-    if word in {"true", "1"}:
+    lower_text = text.lower()
+    if lower_text in {"true", "1"}:
         return True
-    if word in {"false", "0"}:
+    if lower_text in {"false", "0"}:
         return False
     raise LiteralFault(phrase("'{text}' is neither true nor false", text=text))
 
@@ -163,19 +163,19 @@ def _read_text(text: str) -> str:
         return text
     if len(text) < 2 or not text.endswith(quote) or _closes_early(text, quote):
         raise LiteralFault(phrase("the string that begins with {quote} does not end with it", quote=quote))
-    return _ESCAPE.sub(lambda match: _ESCAPES.get(match.group(1), match.group(0)), text[1:-1])
+    return _ESCAPE_PATTERN.sub(lambda match: _ESCAPED_CHARACTERS.get(match.group(1), match.group(0)), text[1:-1])
 
 
 def _closes_early(text: str, quote: str) -> bool:
-    inside = re.sub(r"\\.", "  ", text[1:-1])
-    return quote in inside or inside.endswith("\\")
+    content = re.sub(r"\\.", "  ", text[1:-1])
+    return quote in content or content.endswith("\\")
 
 
 SEPARATOR = "---"
 SECTIONS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
-"""The suffixes of the structures in a file of each kind."""
+"""The suffixes of the names of the structures in a file of each kind."""
 
-_LINE = re.compile(
+_LINE_PATTERN = re.compile(
     r"""(?P<base>[A-Za-z_][\w/]*) (?P<bound>[ ]*<=[ ]*(?P<string_bound>[^\s\[\]]*))?
         (?P<container>\[[^\]]*\])? (?P<gap>\s+) (?P<name>[^\s=]+) \s* (?P<rest>.*)""",
     re.VERBOSE | re.DOTALL,
@@ -186,14 +186,14 @@ _ROS1_TYPES = {
     "Header": "'std_msgs/Header'",
 }
 
-_WITH_MORE_PARTS = {
+_EXTRA_PART_HINTS = {
     1: phrase("write requests and responses in a .srv file"),
     2: phrase("write goals in a .action file"),
 }
 
 
 class _Section:
-    """A structure whose lines are being parsed."""
+    """The fields and constants of a structure during parsing."""
 
     def __init__(self) -> None:
         self.fields: list[Field] = []
@@ -202,7 +202,7 @@ class _Section:
 
 
 class KnownMessages(Protocol):
-    """An object that knows which messages exist."""
+    """The interface of objects that can tell which messages exist."""
 
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists."""
@@ -217,10 +217,10 @@ def parse_interface(source: SourceText, type_name: str, known: KnownMessages) ->
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
-        known: knows which messages exist.
+        known: tells which messages exist, to check references.
 
     Raises:
-        DefinitionError: with every mistake in the file, MSG110 to MSG119.
+        DefinitionError: the file has mistakes; the error contains all of them (MSG110 to MSG119).
     """
     return _Reader(source, type_name, known).read()
 
@@ -268,23 +268,23 @@ class _Reader:
         return interface_of(self._type_name, structures)
 
     def _check_sections(self, count: int, start: int) -> None:
-        most = len(SECTIONS[self._kind])
-        if count == most + 1:
+        section_count = len(SECTIONS[self._kind])
+        if count == section_count + 1:
             self._report(
                 "MSG118",
                 counted(
                     "a .{kind} file has {count} part, but this '---' begins another",
                     "a .{kind} file has {count} parts, but this '---' begins another",
-                    most,
+                    section_count,
                     kind=self._kind,
                 ),
                 start,
                 3,
-                _WITH_MORE_PARTS.get(most),
+                _EXTRA_PART_HINTS.get(section_count),
             )
 
     def _read_line(self, code: str, start: int, section: _Section) -> None:
-        match = _LINE.fullmatch(code)
+        match = _LINE_PATTERN.fullmatch(code)
         if match is None:
             self._report(
                 "MSG110",
@@ -295,11 +295,11 @@ class _Reader:
             return
         kind = self._read_type(match, start)
         name, rest = match["name"], match["rest"]
-        at = start + match.start("name")
+        name_offset = start + match.start("name")
         if rest.startswith("="):
-            self._add_constant(section, kind, name, at, rest[1:].strip(), start + match.start("rest"))
+            self._add_constant(section, kind, name, name_offset, rest[1:].strip(), start + match.start("rest"))
         else:
-            self._add_field(section, kind, name, at, rest, start + match.start("rest"))
+            self._add_field(section, kind, name, name_offset, rest, start + match.start("rest"))
 
     # --- types ----------------------------------------------------------------------------------------------
 
@@ -307,10 +307,10 @@ class _Reader:
         base = self._base(match["base"], start)
         container, size = Container.ONE, None
         string_bound = None
-        sound = base is not None
+        is_valid = base is not None
         if match["bound"] is not None:
             string_bound = self._number(match["string_bound"], start + match.start("string_bound"), phrase("a string"))
-            sound = sound and string_bound is not None
+            is_valid = is_valid and string_bound is not None
             if base is not None and base not in {"string", "wstring"}:
                 hint = phrase(
                     "write a bounded sequence as '{base}[<={string_bound}]'",
@@ -319,22 +319,26 @@ class _Reader:
                 )
                 self._report(
                     "MSG119",
-                    phrase("'{base}' is not a string and has no length to bound", base=match["base"]),
+                    phrase("only strings can have a length bound, and '{base}' is not a string", base=match["base"]),
                     start,
                     len(match["base"]),
                     hint,
                 )
-                sound = False
+                is_valid = False
         brackets = match["container"]
         if brackets is not None:
-            inside, at = brackets[1:-1].strip(), start + match.start("container") + 1
-            container = Container.SEQUENCE if not inside or inside.startswith("<=") else Container.ARRAY
-            if inside:
-                what = phrase("an array") if container is Container.ARRAY else phrase("a sequence")
-                number = inside.removeprefix("<=").lstrip()
-                size = self._number(number, at + brackets[1:].index(inside) + len(inside) - len(number), what)
-                sound = sound and size is not None
-        return FieldType(base, string_bound, container, size) if sound and base is not None else None
+            length_text, length_offset = brackets[1:-1].strip(), start + match.start("container") + 1
+            container = Container.SEQUENCE if not length_text or length_text.startswith("<=") else Container.ARRAY
+            if length_text:
+                container_name = phrase("an array") if container is Container.ARRAY else phrase("a sequence")
+                number = length_text.removeprefix("<=").lstrip()
+                size = self._number(
+                    number,
+                    length_offset + brackets[1:].index(length_text) + len(length_text) - len(number),
+                    container_name,
+                )
+                is_valid = is_valid and size is not None
+        return FieldType(base, string_bound, container, size) if is_valid and base is not None else None
 
     def _base(self, text: str, start: int) -> str | None:
         if text in PRIMITIVES:
@@ -344,7 +348,7 @@ class _Reader:
             if len(parts) == 3 and parts[1] == "msg":
                 parts.pop(1)
             if len(parts) == 2 and is_package_name(parts[0]) and is_interface_name(parts[1]):
-                return self._message(f"{parts[0]}/msg/{parts[1]}", text, start)
+                return self._existing_message(f"{parts[0]}/msg/{parts[1]}", text, start)
             self._report(
                 "MSG111",
                 phrase("'{text}' is not a type: write 'package/Name' for a type of another package", text=text),
@@ -352,32 +356,32 @@ class _Reader:
                 len(text),
             )
             return None
-        own = f"{self._package}/msg/{text}"
-        if text in _ROS1_TYPES and not self._known.has_message(own):
+        type_name = f"{self._package}/msg/{text}"
+        if text in _ROS1_TYPES and not self._known.has_message(type_name):
             self._report("MSG117", phrase("the type '{text}' is a ROS 1 type", text=text), start, len(text),
                          phrase("use {name} in ROS 2", name=_ROS1_TYPES[text]))  # fmt: skip
             return None
         if is_interface_name(text):
-            return self._message(own, text, start)
+            return self._existing_message(type_name, text, start)
         self._report(
             "MSG111", phrase("there is no type '{text}'", text=text), start, len(text), did_you_mean(text, PRIMITIVES)
         )
         return None
 
-    def _message(self, type_name: str, text: str, start: int) -> str | None:
+    def _existing_message(self, type_name: str, text: str, start: int) -> str | None:
         if self._known.has_message(type_name):
             return type_name
         hint = self._known.hint_for(type_name)
         self._report("MSG111", phrase("there is no message '{type_name}'", type_name=type_name), start, len(text), hint)
         return None
 
-    def _number(self, text: str, at: int, what: Phrase) -> int | None:
+    def _number(self, text: str, offset: int, subject: Phrase) -> int | None:
         if text.isascii() and text.isdigit() and int(text) > 0:
             return int(text)
         self._report(
             "MSG119",
-            phrase("'{text}' is not a length of {what}: write an integer above 0", text=text, what=what),
-            at,
+            phrase("'{text}' is not a valid length of {what}: write an integer above 0", text=text, what=subject),
+            offset,
             max(len(text), 1),
         )
         return None
@@ -385,16 +389,20 @@ class _Reader:
     # --- fields and constants -------------------------------------------------------------------------------
 
     def _add_field(
-        self, section: _Section, kind: FieldType | None, name: str, at: int, default: str, default_at: int
+        self, section: _Section, kind: FieldType | None, name: str, name_offset: int, default: str, default_offset: int
     ) -> None:
         if not is_field_name(name):
             hint = phrase("field names are lower case with single underscores")
-            near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
-            if is_field_name(near):
-                hint = phrase("field names are lower case with single underscores, such as '{near}'", near=near)
-            self._report("MSG112", phrase("'{name}' is not a valid name for a field", name=name), at, len(name), hint)
+            suggested_name = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
+            if is_field_name(suggested_name):
+                hint = phrase(
+                    "field names are lower case with single underscores, such as '{near}'", near=suggested_name
+                )
+            self._report(
+                "MSG112", phrase("'{name}' is not a valid name for a field", name=name), name_offset, len(name), hint
+            )
             return
-        if not self._is_new(section, name, at) or kind is None:
+        if not self._is_new(section, name, name_offset) or kind is None:
             return
         value = None
         if default:
@@ -403,15 +411,15 @@ class _Reader:
             except LiteralFault as fault:
                 self._report(
                     "MSG114",
-                    phrase("the default value of '{name}' is wrong: {fault}", name=name, fault=fault),
-                    default_at,
+                    phrase("the default value of '{name}' is invalid: {fault}", name=name, fault=fault),
+                    default_offset,
                     len(default),
                 )
                 return
         section.fields.append(Field(name, kind, value))
 
     def _add_constant(
-        self, section: _Section, kind: FieldType | None, name: str, at: int, value: str, value_at: int
+        self, section: _Section, kind: FieldType | None, name: str, name_offset: int, value: str, value_offset: int
     ) -> None:
         if not is_constant_name(name):
             hint = phrase("constants are upper case with single underscores")
@@ -421,10 +429,10 @@ class _Reader:
                     " the default value of a field is written without '='"
                 )
             self._report(
-                "MSG113", phrase("'{name}' is not a valid name for a constant", name=name), at, len(name), hint
+                "MSG113", phrase("'{name}' is not a valid name for a constant", name=name), name_offset, len(name), hint
             )
             return
-        if not self._is_new(section, name, at) or kind is None:
+        if not self._is_new(section, name, name_offset) or kind is None:
             return
         if kind.primitive is None or kind.container is not Container.ONE:
             self._report(
@@ -434,7 +442,7 @@ class _Reader:
                     name=name,
                     spelled=kind.to_msg_text(self._package),
                 ),
-                at,
+                name_offset,
                 len(name),
                 phrase("constants must be numbers, bools or strings"),
             )
@@ -444,14 +452,14 @@ class _Reader:
         except LiteralFault as fault:
             self._report(
                 "MSG114",
-                phrase("the value of '{name}' is wrong: {fault}", name=name, fault=fault),
-                value_at,
+                phrase("the value of '{name}' is invalid: {fault}", name=name, fault=fault),
+                value_offset,
                 max(len(value), 1),
             )
 
-    def _is_new(self, section: _Section, name: str, at: int) -> bool:
+    def _is_new(self, section: _Section, name: str, name_offset: int) -> bool:
         if name in section.names:
-            self._report("MSG115", phrase("the name '{name}' is used twice", name=name), at, len(name))
+            self._report("MSG115", phrase("the name '{name}' is used twice", name=name), name_offset, len(name))
             return False
         section.names.add(name)
         return True
@@ -466,15 +474,14 @@ def _without_comment(line: str) -> str:
     if "#" not in line:
         return line
     quote = None
-    for at, character in enumerate(line):
+    for index, character in enumerate(line):
         if quote:
-            if character == quote and line[at - 1] != "\\":
+            if character == quote and line[index - 1] != "\\":
                 quote = None
-        elif character in "\"'" and at and (line[at - 1] in " \t=[,"):
+        elif character in "\"'" and index and (line[index - 1] in " \t=[,"):
             quote = character
         elif character == "#":
-            return line[:at]
-    # An apostrophe that is never closed ("string name  # the robot's") was in the comment, so the first ``#`` begins
-    # the
-    # comment.
+            return line[:index]
+    # An apostrophe without a partner, as in "string name  # the robot's", is part of the comment, so the first ``#``
+    # begins the comment.
     return line.partition("#")[0] if quote else line

@@ -1,4 +1,4 @@
-"""Field types as in rosidl_parser, for the attribute ``SLOT_TYPES``, which programs read."""
+"""The classes of rosidl_parser for field types, which programs read from the attribute ``SLOT_TYPES``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.messages.definitions.interfaces import Container, FieldType, Str
 
 
 class AbstractType:
-    """The base class of all types. Types with the same content are equal."""
+    """The base class of all field types; types with the same content are equal."""
 
     __slots__ = ()
 
@@ -27,13 +27,13 @@ class AbstractType:
 
 
 class AbstractNestableType(AbstractType):
-    """A type that the values of an array or a sequence may have."""
+    """The base class of types that are allowed as the values of an array or a sequence."""
 
     __slots__ = ()
 
 
 class BasicType(AbstractNestableType):
-    """A number, a bool, a byte or a character, with its name in IDL."""
+    """A number, bool, byte or character type; `typename` is its name in IDL."""
 
     __slots__ = ("typename",)
 
@@ -42,7 +42,7 @@ class BasicType(AbstractNestableType):
 
 
 class NamedType(AbstractNestableType):
-    """A type given by its name without namespaces."""
+    """A type with a name that has no namespaces."""
 
     __slots__ = ("name",)
 
@@ -51,7 +51,7 @@ class NamedType(AbstractNestableType):
 
 
 class NamespacedType(AbstractNestableType):
-    """A structure, such as ``NamespacedType(['std_msgs', 'msg'], 'Header')``."""
+    """The type of a nested message, such as ``NamespacedType(['std_msgs', 'msg'], 'Header')``."""
 
     __slots__ = ("name", "namespaces")
 
@@ -63,7 +63,7 @@ class NamespacedType(AbstractNestableType):
         return self.namespaces, self.name
 
     def namespaced_name(self) -> tuple[str, ...]:
-        """Return the namespaces and the name."""
+        """Return the namespaces followed by the name."""
         return (*self.namespaces, self.name)
 
 
@@ -155,7 +155,7 @@ class Array(AbstractNestedType):
 
 
 class AbstractSequence(AbstractNestedType):
-    """A sequence, bounded or not."""
+    """The base class of sequences with or without a maximum length."""
 
     __slots__ = ()
 
@@ -181,12 +181,12 @@ class UnboundedSequence(AbstractSequence):
 
 
 def slot_types(structure: Structure) -> tuple[AbstractType, ...]:
-    """Return the types of a structure's fields, in the order of the fields."""
+    """Return a type object for each field of a structure, in the order of the fields."""
     return tuple(slot_type(field.type) for field in structure.fields)
 
 
 def slot_type(kind: FieldType) -> AbstractType:
-    """Return the type of a field."""
+    """Return the type object for a field type of a definition."""
     value_type = _value_type(kind)
     if kind.container is Container.ONE:
         return value_type

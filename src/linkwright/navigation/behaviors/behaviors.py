@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from linkwright.navigation.following.follower import STILL, Pose, Velocity, predict_poses, wrapped
 
 IsFree = Callable[[NDArray[np.float64]], bool]
-"""Whether the robot touches nothing at all of some poses, of shape (poses, 3)."""
+"""Returns whether the robot touches no obstacle at any of the poses, of shape (poses, 3)."""
 
 
 class Outcome(Enum):
@@ -86,34 +86,38 @@ class SpinParameters:
 
 
 class Spin(Behavior):
-    """A behaviour that turns the robot in place, by an angle that may exceed a full turn.
+    """A behaviour that turns the robot in place.
 
-    The angle is in radians.
+    Args:
+        angle: the angle to turn, in radians; it may exceed a full turn.
+        allowance: see `Behavior`.
+        parameters: the limits of the motion.
+        start: the pose of the robot at the start.
     """
 
     def __init__(self, angle: float, allowance: float, parameters: SpinParameters, start: Pose) -> None:
         super().__init__(allowance)
         self._angle = angle
         self._parameters = parameters
-        self._before = start[2]
-        self._turned = 0.0
+        self._previous_yaw = start[2]
+        self._turned_angle = 0.0
 
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        self._turned += wrapped(pose[2] - self._before)
-        self._before = pose[2]
-        left = abs(self._angle) - copysign(self._turned, self._turned * self._angle)
-        if left <= _ENOUGH:
-            return Step(Outcome.DONE, traveled=self._turned)
+        self._turned_angle += wrapped(pose[2] - self._previous_yaw)
+        self._previous_yaw = pose[2]
+        remaining_angle = abs(self._angle) - copysign(self._turned_angle, self._turned_angle * self._angle)
+        if remaining_angle <= _ANGLE_TOLERANCE:
+            return Step(Outcome.DONE, traveled=self._turned_angle)
         parameters = self._parameters
         speed = min(
-            max(sqrt(2.0 * parameters.rotational_acc_lim * left), parameters.min_rotational_vel),
+            max(sqrt(2.0 * parameters.rotational_acc_lim * remaining_angle), parameters.min_rotational_vel),
             parameters.max_rotational_vel,
         )
         velocity = Velocity(yaw=copysign(speed, self._angle))
-        ahead = _predicted_poses(pose, velocity, min(parameters.simulate_ahead_time, left / speed))
-        if not is_free(ahead):
-            return Step(Outcome.COLLISION, traveled=self._turned)
-        return Step(Outcome.RUNNING, velocity, self._turned)
+        predicted_poses = _predicted_poses(pose, velocity, min(parameters.simulate_ahead_time, remaining_angle / speed))
+        if not is_free(predicted_poses):
+            return Step(Outcome.COLLISION, traveled=self._turned_angle)
+        return Step(Outcome.RUNNING, velocity, self._turned_angle)
 
 
 class DriveStraight(Behavior):
@@ -136,11 +140,11 @@ class DriveStraight(Behavior):
 
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
         traveled = hypot(pose[0] - self._start[0], pose[1] - self._start[1])
-        left = abs(self._distance) - traveled
-        if left <= 0.0:
+        remaining_distance = abs(self._distance) - traveled
+        if remaining_distance <= 0.0:
             return Step(Outcome.DONE, traveled=traveled)
         velocity = Velocity(self._speed)
-        if not is_free(_predicted_poses(pose, velocity, min(self._look_ahead, left / abs(self._speed)))):
+        if not is_free(_predicted_poses(pose, velocity, min(self._look_ahead, remaining_distance / abs(self._speed)))):
             return Step(Outcome.COLLISION, traveled=traveled)
         return Step(Outcome.RUNNING, velocity, traveled)
 
@@ -167,22 +171,22 @@ def slow_near_obstacles(pose: Pose, velocity: Velocity, seconds: float, is_free:
         seconds: how far ahead the motion is checked for collisions, in seconds.
         is_free: checks poses for collisions; see `IsFree`.
     """
-    ahead = _predicted_poses(pose, velocity, seconds)
-    for index in range(len(ahead)):
-        if not is_free(ahead[index : index + 1]):
-            share = index / len(ahead)
-            return Velocity(velocity.x * share, velocity.y * share, velocity.yaw * share)
+    predicted_poses = _predicted_poses(pose, velocity, seconds)
+    for index in range(len(predicted_poses)):
+        if not is_free(predicted_poses[index : index + 1]):
+            fraction = index / len(predicted_poses)
+            return Velocity(velocity.x * fraction, velocity.y * fraction, velocity.yaw * fraction)
     return velocity
 
 
 def _predicted_poses(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
     """Return the poses predicted at a constant velocity, of shape (poses, 3)."""
-    count = max(2, round(seconds / _LOOKS) + 1)
-    ahead: NDArray[np.float64] = predict_poses(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
-    return ahead
+    count = max(2, round(seconds / _CHECK_INTERVAL) + 1)
+    poses: NDArray[np.float64] = predict_poses(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
+    return poses
 
 
-_ENOUGH = 1e-3
-"""Radians that need not be turned."""
-_LOOKS = 0.1
-"""Seconds between two poses at which obstacles are looked for."""
+_ANGLE_TOLERANCE = 1e-3
+"""The remaining angle at which a spin is complete, in radians."""
+_CHECK_INTERVAL = 0.1
+"""The time between two poses that are checked for collisions, in seconds."""

@@ -100,13 +100,13 @@ class Rule:
             return Velocity(0.0, 0.0, 0.0)
         if self.action is Action.SLOWDOWN:
             return _scaled(velocity, self.slowdown_ratio)
-        return _scaled(velocity, self._ratio(velocity))
+        return _scaled(velocity, self._limit_ratio(velocity))
 
-    def _ratio(self, velocity: Velocity) -> float:
+    def _limit_ratio(self, velocity: Velocity) -> float:
         speed = hypot(velocity.x, velocity.y)
-        along = self.linear_limit / speed if speed else 1.0
-        about = self.angular_limit / abs(velocity.yaw) if velocity.yaw else 1.0
-        return min(max(min(along, about), 0.0), 1.0)
+        linear_ratio = self.linear_limit / speed if speed else 1.0
+        angular_ratio = self.angular_limit / abs(velocity.yaw) if velocity.yaw else 1.0
+        return min(max(min(linear_ratio, angular_ratio), 0.0), 1.0)
 
     def _time_to_collision(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
         """Return the seconds until enough points are inside the shape at this velocity.
@@ -118,8 +118,8 @@ class Rule:
         step, x, y, yaw = self.simulation_time_step, 0.0, 0.0, 0.0
         for count in range(int(self.time_before_collision / step + 1e-9) + 1):
             cosine, sine = np.cos(yaw), np.sin(yaw)
-            seen = (points - (x, y)) @ np.array([[cosine, -sine], [sine, cosine]])
-            if np.count_nonzero(shape.holds(seen)) >= self.min_points:
+            relative_points = (points - (x, y)) @ np.array([[cosine, -sine], [sine, cosine]])
+            if np.count_nonzero(shape.holds(relative_points)) >= self.min_points:
                 return count * step
             x += float(velocity.x * cosine - velocity.y * sine) * step
             y += float(velocity.x * sine + velocity.y * cosine) * step
@@ -163,7 +163,7 @@ class Verdict:
     Attributes:
         velocity: the permitted velocity.
         action: the applied action.
-        zone: the name of the zone whose action was applied; empty if no zone acted.
+        zone: the name of the zone that determined the action; empty if no zone acted.
     """
 
     velocity: Velocity
@@ -182,9 +182,11 @@ def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, P
     """
     verdict = Verdict(velocity)
     for name, rule, shape, points in zones:
-        allowed = rule.allowed(shape, points, velocity)
-        if allowed is not None and (rule.action is Action.STOP or _size(allowed) < _size(verdict.velocity)):
-            verdict = Verdict(allowed, rule.action, name)
+        permitted = rule.allowed(shape, points, velocity)
+        if permitted is not None and (
+            rule.action is Action.STOP or _squared_size(permitted) < _squared_size(verdict.velocity)
+        ):
+            verdict = Verdict(permitted, rule.action, name)
         if verdict.action is Action.STOP:
             break
     return verdict
@@ -194,5 +196,5 @@ def _scaled(velocity: Velocity, ratio: float) -> Velocity:
     return Velocity(velocity.x * ratio, velocity.y * ratio, velocity.yaw * ratio)
 
 
-def _size(velocity: Velocity) -> float:
+def _squared_size(velocity: Velocity) -> float:
     return velocity.x**2 + velocity.y**2 + velocity.yaw**2

@@ -15,16 +15,16 @@ from linkwright.navigation.grids.grid import Grid
 
 FREE: Final = 0
 MAX_PASSABLE: Final = 252
-"""The most that a cell costs in which the centre of a robot can be."""
+"""The maximum cost of a cell in which the centre of the robot may be."""
 INSCRIBED: Final = 253
-"""Closer to an obstacle than the radius of the circle in the footprint: a robot with its centre here touches it."""
+"""The obstacle is nearer than the inscribed radius of the footprint, so a robot centred here touches it."""
 LETHAL: Final = 254
-"""There is an obstacle."""
+"""The cell contains an obstacle."""
 UNKNOWN: Final = 255
 """The cell has not been observed."""
 
 _STEPS_PER_CELL = 2.0
-"""Along the rim of a footprint."""
+"""The number of points per cell at which the outline of a footprint is checked."""
 
 
 class Costmap:
@@ -79,8 +79,8 @@ class Costmap:
             Costs of shape (...); `LETHAL` if part of the outline is outside the grid and no part is in an unknown cell.
         """
         poses = np.asarray(poses, np.float64)
-        rim = outline(footprint, self.grid.resolution / _STEPS_PER_CELL)
+        outline_points = outline(footprint, self.grid.resolution / _STEPS_PER_CELL)
         cosine, sine = np.cos(poses[..., 2, None]), np.sin(poses[..., 2, None])
-        x = poses[..., 0, None] + cosine * rim[:, 0] - sine * rim[:, 1]
-        y = poses[..., 1, None] + sine * rim[:, 0] + cosine * rim[:, 1]
+        x = poses[..., 0, None] + cosine * outline_points[:, 0] - sine * outline_points[:, 1]
+        y = poses[..., 1, None] + sine * outline_points[:, 0] + cosine * outline_points[:, 1]
         return self.cost_at(np.stack((x, y), axis=-1), outside=LETHAL).max(axis=-1)

@@ -16,35 +16,36 @@ _ALL_NEIGHBOURS = 8
 
 
 class DenoiseLayer(Layer):
-    """A layer that frees groups of lethal cells that are too small.
+    """A layer that frees small groups of lethal cells.
 
     Args:
         minimal_group_size: the minimum number of cells of a group that is kept.
-        group_connectivity_type: 8 if cells that touch only at a corner are connected, else 4.
+        group_connectivity_type: 8 if cells that touch only at a corner are connected, and 4 otherwise.
     """
 
     def __init__(self, minimal_group_size: int = 2, group_connectivity_type: int = _ALL_NEIGHBOURS) -> None:
-        self._least = minimal_group_size
-        self._together = np.ones((3, 3), np.bool_)
+        self._min_group_size = minimal_group_size
+        self._connectivity = np.ones((3, 3), np.bool_)
         if group_connectivity_type != _ALL_NEIGHBOURS:
-            self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
+            self._connectivity[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the window changed by the layers below, padded by the minimum group size."""
-        return window.padded(self._least, grid)
+        return window.padded(self._min_group_size, grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Free small groups of lethal cells.
 
-        Cells around the window are counted too, so that a group that crosses the edge is not taken for a small one.
+        Cells around the window are counted too, so that a group that crosses the edge has its full size.
         """
-        if self._least <= 1:
+        if self._min_group_size <= 1:
             return
-        around = window.padded(self._least, grid)
-        groups, _ = load_scipy("ndimage").label(grid.cells[around.cells] == LETHAL, self._together)
+        padded_window = window.padded(self._min_group_size, grid)
+        groups, _ = load_scipy("ndimage").label(grid.cells[padded_window.cells] == LETHAL, self._connectivity)
         sizes = np.bincount(groups.ravel())
-        small = (sizes < self._least)[groups] & (groups > 0)
-        inner = small[
-            window.top - around.top : window.bottom - around.top, window.left - around.left : window.right - around.left
+        in_small_group = (sizes < self._min_group_size)[groups] & (groups > 0)
+        in_window = in_small_group[
+            window.top - padded_window.top : window.bottom - padded_window.top,
+            window.left - padded_window.left : window.right - padded_window.left,
         ]
-        grid.cells[window.cells][inner] = FREE
+        grid.cells[window.cells][in_window] = FREE

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 Footprint = NDArray[np.float64]
 """Corners in the frame of the robot, in metres, of shape (corners, 2)."""
 
-_CORNERS_OF_A_CIRCLE = 16
-_LEAST_CORNERS = 3
+_CIRCLE_CORNERS = 16
+_MIN_CORNERS = 3
 
 
 class BadFootprintError(ValueError):
@@ -28,7 +28,7 @@ def circle(radius: float) -> Footprint:
 
     `radius` is in metres.
     """
-    angles = np.arange(_CORNERS_OF_A_CIRCLE) * (2.0 * pi / _CORNERS_OF_A_CIRCLE)
+    angles = np.arange(_CIRCLE_CORNERS) * (2.0 * pi / _CIRCLE_CORNERS)
     corners: Footprint = radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     return corners
 
@@ -46,15 +46,15 @@ def parse_footprint(text: str) -> Footprint:
         raise BadFootprintError(f"'{text}' is not a list of points such as [[x1, y1], [x2, y2], [x3, y3]]") from None
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise BadFootprintError(f"'{text}' is not a list of points such as [[x1, y1], [x2, y2], [x3, y3]]")
-    if len(corners) < _LEAST_CORNERS:
+    if len(corners) < _MIN_CORNERS:
         raise BadFootprintError(f"a footprint needs at least three corners, but '{text}' has {len(corners)}")
     return corners
 
 
 def pad_footprint(footprint: Footprint, padding: float) -> Footprint:
-    """Return a footprint whose corners are moved away from both axes by `padding` metres."""
-    larger: Footprint = footprint + padding * np.sign(footprint)
-    return larger
+    """Return a footprint with its corners moved away from both axes by `padding` metres."""
+    padded_corners: Footprint = footprint + padding * np.sign(footprint)
+    return padded_corners
 
 
 def radii(footprint: Footprint) -> tuple[float, float]:
@@ -62,26 +62,26 @@ def radii(footprint: Footprint) -> tuple[float, float]:
 
     Both circles are centred at the origin of the robot.
     """
-    following = np.roll(footprint, -1, axis=0)
-    along = following - footprint
-    length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-    share = np.clip(-(footprint * along).sum(axis=1) / length, 0.0, 1.0)
-    nearest = footprint + share[:, None] * along
-    inner = float(np.hypot(nearest[:, 0], nearest[:, 1]).min())
-    return inner, float(np.hypot(footprint[:, 0], footprint[:, 1]).max())
+    next_corners = np.roll(footprint, -1, axis=0)
+    edges = next_corners - footprint
+    squared_lengths = np.maximum((edges**2).sum(axis=1), np.finfo(float).tiny)
+    fractions = np.clip(-(footprint * edges).sum(axis=1) / squared_lengths, 0.0, 1.0)
+    nearest_points = footprint + fractions[:, None] * edges
+    inscribed_radius = float(np.hypot(nearest_points[:, 0], nearest_points[:, 1]).min())
+    return inscribed_radius, float(np.hypot(footprint[:, 0], footprint[:, 1]).max())
 
 
 def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
     """Return points along the outline of a footprint, of shape (points, 2), at most `spacing` metres apart."""
-    parts = []
-    for corner, following in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
-        steps = max(1, ceil(hypot(*(following - corner)) / spacing))
-        parts.append(corner + (np.arange(steps) / steps)[:, None] * (following - corner))
-    return np.concatenate(parts)
+    edge_points = []
+    for corner, next_corner in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
+        point_count = max(1, ceil(hypot(*(next_corner - corner)) / spacing))
+        edge_points.append(corner + (np.arange(point_count) / point_count)[:, None] * (next_corner - corner))
+    return np.concatenate(edge_points)
 
 
 def place_footprint(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
-    """Return the corners of a footprint at a pose, in the frame in which the pose is given."""
+    """Return the corners of a footprint at a pose, in the frame of the pose."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
-    turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
-    return turned
+    corners: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
+    return corners

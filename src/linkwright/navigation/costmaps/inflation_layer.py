@@ -25,8 +25,8 @@ class Inflation:
     Attributes:
         inflation_radius: the distance up to which cells have a cost, in metres.
         cost_scaling_factor: the rate of the decay, per metre.
-        inflate_unknown: whether any cost is written into unknown cells; otherwise only costs at which the robot would
-            touch an obstacle are.
+        inflate_unknown: whether unknown cells get every cost above 0; otherwise they get only the costs at which the
+            robot would touch an obstacle.
         inflate_around_unknown: whether unknown cells are inflated like obstacles.
     """
 
@@ -37,10 +37,10 @@ class Inflation:
 
     def costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
         """Return the costs at distances (in metres) from the nearest obstacle, in an array of the same shape."""
-        beyond = np.maximum(distances - inscribed_radius, 0.0)
-        fading = (MAX_PASSABLE * np.exp(-self.cost_scaling_factor * beyond)).astype(np.uint8)
-        fading = np.where(distances <= inscribed_radius, INSCRIBED, fading).astype(np.uint8)
-        costs: Costs = np.where(distances > 0.0, fading, LETHAL).astype(np.uint8)
+        excess_distances = np.maximum(distances - inscribed_radius, 0.0)
+        decayed_costs = (MAX_PASSABLE * np.exp(-self.cost_scaling_factor * excess_distances)).astype(np.uint8)
+        decayed_costs = np.where(distances <= inscribed_radius, INSCRIBED, decayed_costs).astype(np.uint8)
+        costs: Costs = np.where(distances > 0.0, decayed_costs, LETHAL).astype(np.uint8)
         return costs
 
 
@@ -68,31 +68,31 @@ class InflationLayer(Layer):
         if self._inscribed_radius != moment.inscribed_radius:
             self._inscribed_radius = moment.inscribed_radius
             return Window.of(grid)
-        return window.padded(self._reach(grid), grid)
+        return window.padded(self._radius_in_cells(grid), grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write the costs caused by obstacles inside and around the window into the window."""
-        reach = self._reach(grid)
-        if not reach:
+        radius_in_cells = self._radius_in_cells(grid)
+        if not radius_in_cells:
             return
-        around = window.padded(reach, grid)
-        below = grid.cells[around.cells]
-        sources = below == LETHAL
+        padded_window = window.padded(radius_in_cells, grid)
+        lower_costs = grid.cells[padded_window.cells]
+        is_source = lower_costs == LETHAL
         if self._inflation.inflate_around_unknown:
-            sources |= below == UNKNOWN
-        if not sources.any():
+            is_source |= lower_costs == UNKNOWN
+        if not is_source.any():
             return
-        all_distances = distance_field(sources, grid.resolution)
-        top, left = window.top - around.top, window.left - around.left
+        all_distances = distance_field(is_source, grid.resolution)
+        top, left = window.top - padded_window.top, window.left - padded_window.left
         distances = all_distances[top : top + window.bottom - window.top, left : left + window.right - window.left]
         costs = self._inflation.costs(distances, moment.inscribed_radius)
-        costs[distances > reach * grid.resolution] = FREE
+        costs[distances > radius_in_cells * grid.resolution] = FREE
         cells = grid.cells[window.cells]
-        unknown = cells == UNKNOWN
-        least = FREE + 1 if self._inflation.inflate_unknown else INSCRIBED
+        is_unknown = cells == UNKNOWN
+        min_cost = FREE + 1 if self._inflation.inflate_unknown else INSCRIBED
         np.maximum(cells, costs, out=cells)
-        inflated = unknown & (costs >= least)
-        cells[inflated] = costs[inflated]
+        is_inflated = is_unknown & (costs >= min_cost)
+        cells[is_inflated] = costs[is_inflated]
 
-    def _reach(self, grid: Grid) -> int:
+    def _radius_in_cells(self, grid: Grid) -> int:
         return max(0, ceil(self._inflation.inflation_radius / grid.resolution))

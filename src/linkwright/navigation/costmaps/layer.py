@@ -54,8 +54,10 @@ class Window:
 
     def within(self, grid: Grid) -> Window:
         """Return the part of the window that is within a grid; empty if there is none."""
-        inside = Window(max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right))
-        return Window() if inside.is_empty else inside
+        clipped = Window(
+            max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right)
+        )
+        return Window() if clipped.is_empty else clipped
 
     def padded(self, cells: int, grid: Grid) -> Window:
         """Return the window padded by a number of cells on each side, clipped to the grid.
@@ -64,8 +66,8 @@ class Window:
         """
         if self.is_empty:
             return self
-        larger = Window(self.top - cells, self.left - cells, self.bottom + cells, self.right + cells)
-        return larger.within(grid)
+        padded_window = Window(self.top - cells, self.left - cells, self.bottom + cells, self.right + cells)
+        return padded_window.within(grid)
 
     def joined(self, other: Window) -> Window:
         """Return the smallest window that contains this window and another."""
@@ -124,7 +126,7 @@ class Layer(ABC):
             grid: the costmap.
 
         Returns:
-            The window that must be rewritten, including the given one.
+            The window that must be rewritten, which includes `window`.
         """
 
     @abstractmethod
@@ -146,42 +148,42 @@ class PersistentLayer(Layer):
     """A layer with its own cells, which keep their values until they are cleared.
 
     Attributes:
-        seen: the layer's cells, on the same grid as the costmap.
+        layer_grid: the layer's cells, on the same grid as the costmap.
     """
 
     is_clearable = True
 
     def __init__(self) -> None:
-        self.seen = Grid(cells=np.zeros((0, 0), np.uint8), resolution=1.0)
+        self.layer_grid = Grid(cells=np.zeros((0, 0), np.uint8), resolution=1.0)
         self._default = FREE
         self._extra = Window()
 
     def match(self, grid: Grid, default: int) -> None:
-        """Move the layer's cells to a new grid, with the default where the old grid had no cells."""
-        cells = shift_cells(self.seen.cells, self.seen, grid, default)
-        self.seen = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
+        """Move the layer's cells to a new grid; cells outside the old grid get the default cost."""
+        cells = shift_cells(self.layer_grid.cells, self.layer_grid, grid, default)
+        self.layer_grid = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
         self._extra = Window.of(grid)
 
     def reset(self) -> None:
         """Set all cells to the default cost."""
-        self.seen.cells[:] = self._default
-        self._extra = Window.of(self.seen)
+        self.layer_grid.cells[:] = self._default
+        self._extra = Window.of(self.layer_grid)
 
     def clear(self, window: Window, *, outside: bool) -> None:
         """Set the cells in a window, or all cells outside it, to unknown."""
-        kept = self.seen.cells[window.cells].copy()
+        kept_cells = self.layer_grid.cells[window.cells].copy()
         if outside:
-            self.seen.cells[:] = UNKNOWN
-            self.seen.cells[window.cells] = kept
+            self.layer_grid.cells[:] = UNKNOWN
+            self.layer_grid.cells[window.cells] = kept_cells
         else:
-            self.seen.cells[window.cells] = UNKNOWN
-        self._extra = Window.of(self.seen)
+            self.layer_grid.cells[window.cells] = UNKNOWN
+        self._extra = Window.of(self.layer_grid)
 
     def pop_extra_window(self) -> Window:
         """Return the window changed by resizing or clearing since the last call."""
-        extra, self._extra = self._extra, Window()
-        return extra
+        window, self._extra = self._extra, Window()
+        return window
 
 
 def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
@@ -189,15 +191,15 @@ def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray
 
     If the resolutions differ, all cells are `fill`.
     """
-    moved = np.full((new.rows, new.columns), fill, cells.dtype)
+    shifted_cells = np.full((new.rows, new.columns), fill, cells.dtype)
     if old.resolution != new.resolution:
-        return moved
+        return shifted_cells
     rows, columns = round((new.y - old.y) / new.resolution), round((new.x - old.x) / new.resolution)
-    both = Window(-rows, -columns, old.rows - rows, old.columns - columns).within(new)
-    if not both.is_empty:
-        source = Window(both.top + rows, both.left + columns, both.bottom + rows, both.right + columns)
-        moved[both.cells] = cells[source.cells]
-    return moved
+    overlap = Window(-rows, -columns, old.rows - rows, old.columns - columns).within(new)
+    if not overlap.is_empty:
+        source = Window(overlap.top + rows, overlap.left + columns, overlap.bottom + rows, overlap.right + columns)
+        shifted_cells[overlap.cells] = cells[source.cells]
+    return shifted_cells
 
 
 def footprint_window(moment: UpdateContext, grid: Grid) -> Window:
@@ -207,15 +209,15 @@ def footprint_window(moment: UpdateContext, grid: Grid) -> Window:
 
 def free_footprint(cells: Costs, moment: UpdateContext, grid: Grid, window: Window) -> None:
     """Free the cells of a window whose centres are within the robot's footprint."""
-    inside = footprint_window(moment, grid)
-    inside = Window(
-        max(inside.top, window.top),
-        max(inside.left, window.left),
-        min(inside.bottom, window.bottom),
-        min(inside.right, window.right),
+    footprint_cells = footprint_window(moment, grid)
+    footprint_cells = Window(
+        max(footprint_cells.top, window.top),
+        max(footprint_cells.left, window.left),
+        min(footprint_cells.bottom, window.bottom),
+        min(footprint_cells.right, window.right),
     )
-    if inside.is_empty:
+    if footprint_cells.is_empty:
         return
-    rows, columns = np.mgrid[inside.top : inside.bottom, inside.left : inside.right]
+    rows, columns = np.mgrid[footprint_cells.top : footprint_cells.bottom, footprint_cells.left : footprint_cells.right]
     centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-    cells[inside.cells][within_polygon(centres, moment.footprint)] = FREE
+    cells[footprint_cells.cells][within_polygon(centres, moment.footprint)] = FREE

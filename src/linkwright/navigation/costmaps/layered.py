@@ -51,7 +51,7 @@ class LayeredCostmap:
         self._default = UNKNOWN if track_unknown else FREE
         self.padding = footprint_padding
         self.changed = Window()
-        self._updated = False
+        self._is_updated = False
         self.footprint = footprint
         self.resize(grid)
 
@@ -66,12 +66,12 @@ class LayeredCostmap:
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
-        """Set another size, origin or resolution; layers keep the cells that are in both grids."""
+        """Change the size, origin or resolution; layers keep the cells that both grids contain."""
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
         for layer in self.layers:
             layer.match(self.costmap.grid, self._default)
-        self._updated = False
+        self._is_updated = False
 
     def update(self, pose: Pose, time_ns: int) -> bool:
         """Update the costs from the enabled layers.
@@ -89,48 +89,48 @@ class LayeredCostmap:
         grid = self.costmap.grid
         footprint = place_footprint(self._footprint, x, y, yaw)
         moment = UpdateContext(x, y, footprint, self.inscribed_radius, time_ns)
-        active = [layer for layer in self.layers if layer.enabled]
-        window = Window() if self._updated and not self.rolling else Window.of(grid)
-        for layer in active:
+        enabled_layers = [layer for layer in self.layers if layer.enabled]
+        window = Window() if self._is_updated and not self.rolling else Window.of(grid)
+        for layer in enabled_layers:
             window = layer.changed(window, moment, grid)
         self.changed = window
-        self._updated = True
+        self._is_updated = True
         if window.is_empty:
             return False
         grid.cells[window.cells] = self._default
-        for layer in active:
+        for layer in enabled_layers:
             layer.write(grid, window, moment)
         return True
 
     def touch(self) -> None:
         """Make the next update write all cells."""
-        self._updated = False
+        self._is_updated = False
 
     def is_current(self, time_ns: int) -> bool:
         """Return whether the costmap was updated, with recent data in all enabled layers."""
-        return self._updated and all(layer.is_current(time_ns) for layer in self.layers if layer.enabled)
+        return self._is_updated and all(layer.is_current(time_ns) for layer in self.layers if layer.enabled)
 
     def clear_entirely(self) -> None:
         """Reset all layers and all cells."""
         self.costmap.grid.cells[:] = self._default
         for layer in self.layers:
             layer.reset()
-        self._updated = False
+        self._is_updated = False
 
-    def clear_around(self, pose: Pose, distance: float, *, except_it: bool = False) -> None:
+    def clear_around(self, pose: Pose, distance: float, *, outside: bool = False) -> None:
         """Clear the clearable layers in a square, or everywhere outside the square.
 
         Args:
             pose: the centre of the square.
             distance: the side of the square, in metres.
-            except_it: whether to keep the square and clear the rest.
+            outside: whether to keep the square and clear the rest.
         """
         corners = np.array([[pose[0], pose[1]]]) + distance / 2.0 * np.array([[-1.0, -1.0], [1.0, 1.0]])
         window = Window.around(self.costmap.grid.cells_of(corners), self.costmap.grid)
         for layer in self.layers:
             if layer.is_clearable:
-                layer.clear(window, outside=except_it)
-        self._updated = False
+                layer.clear(window, outside=outside)
+        self._is_updated = False
 
     def _centre(self, x: float, y: float) -> None:
         """Move the grid by an integer number of cells so that a position is in its middle."""

@@ -27,7 +27,7 @@ class Source:
         raytrace_min_range: cells closer than this are not cleared.
         min_obstacle_height: points below this height are dropped.
         max_obstacle_height: points above this height are dropped.
-        observation_persistence: how long observations stay valid; 0 to keep only the latest one.
+        observation_persistence: how long observations stay valid; 0 to keep only the latest observation.
         expected_update_rate: the longest time between observations for the costmap to be current; 0 for no limit.
     """
 
@@ -61,10 +61,12 @@ class Observation:
 
     def obstacles(self) -> NDArray[np.float64]:
         """Return the points within the range for marking, of shape (n, 3)."""
-        squares = ((self.points - self.origin) ** 2).sum(axis=1)
-        counts = (squares < self.source.obstacle_max_range**2) & (squares >= self.source.obstacle_min_range**2)
-        near: NDArray[np.float64] = self.points[counts]
-        return near
+        squared_distances = ((self.points - self.origin) ** 2).sum(axis=1)
+        is_in_range = (squared_distances < self.source.obstacle_max_range**2) & (
+            squared_distances >= self.source.obstacle_min_range**2
+        )
+        points_in_range: NDArray[np.float64] = self.points[is_in_range]
+        return points_in_range
 
 
 class ObservationBuffer:
@@ -77,19 +79,19 @@ class ObservationBuffer:
 
     def add(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
         """Add an observation; points that are not finite or outside the height limits are dropped."""
-        height = points[:, 2]
-        counts = np.isfinite(points).all(axis=1)
-        counts &= (height >= self.source.min_obstacle_height) & (height <= self.source.max_obstacle_height)
+        heights = points[:, 2]
+        is_valid = np.isfinite(points).all(axis=1)
+        is_valid &= (heights >= self.source.min_obstacle_height) & (heights <= self.source.max_obstacle_height)
         if not self.source.observation_persistence:
             self._observations.clear()
-        self._observations.append(Observation(origin, points[counts], self.source, time_ns))
+        self._observations.append(Observation(origin, points[is_valid], self.source, time_ns))
         self._updated_ns = time_ns
 
     def observations(self, time_ns: int) -> list[Observation]:
         """Return the observations that are valid at a time, and drop those that have expired."""
         if self.source.observation_persistence:
-            oldest = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)
-            while self._observations and self._observations[0].time_ns < oldest:
+            oldest_ns = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)
+            while self._observations and self._observations[0].time_ns < oldest_ns:
                 self._observations.popleft()
         return list(self._observations)
 

@@ -24,7 +24,7 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
 OVERWRITE, MAXIMUM, MAXIMUM_OF_KNOWN = 0, 1, 2
-"""How costs are combined with those below: replaced, the maximum, or the maximum where any is known."""
+"""How a layer combines its costs with the costs below: replace, take the maximum, or change only known cells."""
 
 Cells = NDArray[np.int64]
 
@@ -60,30 +60,30 @@ class ObstacleLayer(PersistentLayer):
         self.heights = heights
         self.combination_method = combination_method
         self._footprint_clearing = footprint_clearing
-        self._forgotten = False
+        self._was_reset = False
 
     def reset(self) -> None:
         """Clear all cells; the layer is not current until its next update."""
         super().reset()
-        self._forgotten = True
+        self._was_reset = True
 
     def is_current(self, time_ns: int) -> bool:
         """Return whether the layer was updated since its reset and no sensor is overdue."""
-        return not self._forgotten and all(buffer.is_current(time_ns) for buffer in self.buffers)
+        return not self._was_reset and all(buffer.is_current(time_ns) for buffer in self.buffers)
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Apply the valid observations, and return the window that must be rewritten."""
-        self._forgotten = False
+        self._was_reset = False
         window = window.joined(self.pop_extra_window())
-        seen = [
+        observed = [
             (observation, buffer.source)
             for buffer in self.buffers
             for observation in buffer.observations(moment.time_ns)
         ]
-        for observation, source in seen:
+        for observation, source in observed:
             if source.clearing:
                 window = window.joined(self.clear_rays(observation, grid))
-        for observation, source in seen:
+        for observation, source in observed:
             if source.marking:
                 window = window.joined(self.mark_points(observation, grid))
         if self._footprint_clearing:
@@ -93,38 +93,38 @@ class ObstacleLayer(PersistentLayer):
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Combine the layer's cells with the costs of the layers below."""
         if self._footprint_clearing:
-            free_footprint(self.seen.cells, moment, self.seen, window)
-        ours, below = self.seen.cells[window.cells], grid.cells[window.cells]
-        known = ours != UNKNOWN
+            free_footprint(self.layer_grid.cells, moment, self.layer_grid, window)
+        own_costs, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]
+        is_written = own_costs != UNKNOWN
         if self.combination_method == MAXIMUM:
-            known &= (below == UNKNOWN) | (below < ours)
+            is_written &= (lower_costs == UNKNOWN) | (lower_costs < own_costs)
         elif self.combination_method == MAXIMUM_OF_KNOWN:
-            known &= (below != UNKNOWN) & (below < ours)
-        below[known] = ours[known]
+            is_written &= (lower_costs != UNKNOWN) & (lower_costs < own_costs)
+        lower_costs[is_written] = own_costs[is_written]
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
         """Free the cells on the rays to the points, and return the window around these cells."""
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
         cells = cells[grid.has(cells) & _beyond_min_range(cells, start, observation, grid)]
-        self.seen.cells[cells[:, 0], cells[:, 1]] = FREE
+        self.layer_grid.cells[cells[:, 0], cells[:, 1]] = FREE
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
         """Mark the cells that contain obstacle points, and return the window around these cells."""
         cells = grid.cells_of(self.obstacles(observation)[:, :2])
         cells = cells[grid.has(cells)]
-        self.seen.cells[cells[:, 0], cells[:, 1]] = LETHAL
+        self.layer_grid.cells[cells[:, 0], cells[:, 1]] = LETHAL
         return Window.around(cells, grid)
 
     def obstacles(self, observation: Observation) -> NDArray[np.float64]:
-        """Return the points within the range and height of obstacles, of shape (n, 3)."""
+        """Return the points within the range and the height limits for obstacles, of shape (n, 3)."""
         points = observation.obstacles()
-        height = points[:, 2]
-        high: NDArray[np.float64] = points[
-            (height >= self.heights.min_obstacle_height) & (height <= self.heights.max_obstacle_height)
+        heights = points[:, 2]
+        obstacle_points: NDArray[np.float64] = points[
+            (heights >= self.heights.min_obstacle_height) & (heights <= self.heights.max_obstacle_height)
         ]
-        return high
+        return obstacle_points
 
 
 def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
@@ -137,22 +137,22 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
     origin, points = observation.origin, observation.points
     offsets = points - origin
     lengths = np.hypot(offsets[:, 0], offsets[:, 1])
-    share = np.minimum(1.0, observation.source.raytrace_max_range / np.maximum(lengths, np.finfo(float).tiny))
-    ends = origin + share[:, None] * offsets
+    fractions = np.minimum(1.0, observation.source.raytrace_max_range / np.maximum(lengths, np.finfo(float).tiny))
+    ends = origin + fractions[:, None] * offsets
     start = grid.cells_of(origin[None, :2])[0]
     cells = grid.cells_of(ends[:, :2])
     # A point cloud has many points per cell. A table of the cells around the sensor removes duplicates without sorting.
-    reach = ceil(observation.source.raytrace_max_range / grid.resolution) + 1
-    places = (cells - start + reach) @ np.array([2 * reach + 1, 1])
-    last = np.full((2 * reach + 1) ** 2, -1)
-    last[places] = np.arange(len(places))
-    chosen = last[last >= 0]
-    return start, cells[chosen], ends[chosen, 2]
+    reach_in_cells = ceil(observation.source.raytrace_max_range / grid.resolution) + 1
+    table_indices = (cells - start + reach_in_cells) @ np.array([2 * reach_in_cells + 1, 1])
+    last_ray_in_cell = np.full((2 * reach_in_cells + 1) ** 2, -1)
+    last_ray_in_cell[table_indices] = np.arange(len(table_indices))
+    ray_indices = last_ray_in_cell[last_ray_in_cell >= 0]
+    return start, cells[ray_indices], ends[ray_indices, 2]
 
 
 def _beyond_min_range(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
     """Return a mask of the cells beyond the minimum range for clearing."""
-    least = observation.source.raytrace_min_range / grid.resolution
+    min_range = observation.source.raytrace_min_range / grid.resolution
     offsets = cells - start
-    far: NDArray[np.bool_] = (offsets**2).sum(axis=1) >= least**2
-    return far
+    is_beyond: NDArray[np.bool_] = (offsets**2).sum(axis=1) >= min_range**2
+    return is_beyond

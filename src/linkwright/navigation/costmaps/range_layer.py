@@ -19,14 +19,14 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _MAX_PROBABILITY: Final = 254.0
-_EVEN: Final = 127
+_UNKNOWN_PROBABILITY: Final = 127
 """The probability of an unknown cell, from 0 to 254."""
 _HIT_PROBABILITY: Final = 233
-"""The probability of a cell at the middle of a reading, from 0 to 254."""
-_LEAST: Final = 0.02
-"""Likelihoods count as no less, and no nearer to 1, so that nothing is certain for ever."""
-_BEYOND: Final = 1.2
-"""The distance up to which cells are updated, as a factor of the reading."""
+"""The probability of the cell in which a reading ends, from 0 to 254."""
+_MIN_PRIOR: Final = 0.02
+"""Prior probabilities are clipped to this distance from 0 and 1, so that later readings can still change them."""
+_UPDATE_FACTOR: Final = 1.2
+"""The distance up to which cells are updated, as a multiple of the measured distance."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,93 +74,100 @@ class Reading:
 class RangeLayer(PersistentLayer):
     """A layer of occupancy probabilities that readings update.
 
-    The cells of `seen` range from 0 (certainly free) to 254 (certainly occupied).
+    The cells of `layer_grid` range from 0 (certainly free) to 254 (certainly occupied).
     """
 
     def __init__(self, settings: RangeSettings) -> None:
         super().__init__()
         self.settings = settings
         self._readings: deque[Reading] = deque()
-        self._heard_ns: int | None = None
+        self._latest_reading_ns: int | None = None
 
     def add(self, reading: Reading) -> None:
         """Queue a reading for the next update."""
         self._readings.append(reading)
-        self._heard_ns = reading.time_ns
+        self._latest_reading_ns = reading.time_ns
 
     def match(self, grid: Grid, default: int) -> None:
         """Move the probabilities to the new grid; cells that were outside the old grid get 127."""
-        super().match(grid, _EVEN)
+        super().match(grid, _UNKNOWN_PROBABILITY)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Set the cells in a window, or all cells outside it, to even odds."""
+        """Set the cells in a window, or all cells outside it, to the probability of an unknown cell."""
         super().clear(window, outside=outside)
-        self.seen.cells[self.seen.cells == UNKNOWN] = _EVEN
+        self.layer_grid.cells[self.layer_grid.cells == UNKNOWN] = _UNKNOWN_PROBABILITY
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether a sensor published within the timeout, or no timeout is set."""
-        most = self.settings.no_readings_timeout
-        return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / NANOSECONDS_PER_SECOND <= most)
+        """Return whether the latest reading is within the timeout, or no timeout is set."""
+        timeout = self.settings.no_readings_timeout
+        return not timeout or (
+            self._latest_reading_ns is not None
+            and (time_ns - self._latest_reading_ns) / NANOSECONDS_PER_SECOND <= timeout
+        )
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Apply the queued readings, and return the window that must be rewritten."""
         window = window.joined(self.pop_extra_window())
         while self._readings:
-            window = window.joined(self._learn(self._readings.popleft(), grid))
+            window = window.joined(self._apply_reading(self._readings.popleft(), grid))
         return window
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Mark cells above the upper threshold, and free unknown cells below the lower threshold."""
-        likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
-        below[(likely < self.settings.clear_threshold * _MAX_PROBABILITY) & (below == UNKNOWN)] = FREE
-        below[likely > self.settings.mark_threshold * _MAX_PROBABILITY] = LETHAL
+        probabilities, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]
+        lower_costs[(probabilities < self.settings.clear_threshold * _MAX_PROBABILITY) & (lower_costs == UNKNOWN)] = (
+            FREE
+        )
+        lower_costs[probabilities > self.settings.mark_threshold * _MAX_PROBABILITY] = LETHAL
 
-    def _learn(self, reading: Reading, grid: Grid) -> Window:
+    def _apply_reading(self, reading: Reading, grid: Grid) -> Window:
         """Update the probabilities by Bayes' rule, and return the window that changed."""
-        reach = ceil(_BEYOND * reading.distance / grid.resolution) + 1
+        reach_in_cells = ceil(_UPDATE_FACTOR * reading.distance / grid.resolution) + 1
         row, column = grid.cells_of(np.array((reading.x, reading.y))).tolist()
-        window = Window(row - reach, column - reach, row + reach + 1, column + reach + 1).within(grid)
+        window = Window(
+            row - reach_in_cells, column - reach_in_cells, row + reach_in_cells + 1, column + reach_in_cells + 1
+        ).within(grid)
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
         centres = grid.centres_of(np.stack((rows, columns), axis=-1))
         x, y = centres[..., 0] - reading.x, centres[..., 1] - reading.y
-        angle = np.abs((np.arctan2(y, x) - reading.yaw + np.pi) % (2.0 * np.pi) - np.pi)
-        half = max(reading.field_of_view / 2.0, np.finfo(float).tiny)
-        distance = np.hypot(x, y)
+        angles = np.abs((np.arctan2(y, x) - reading.yaw + np.pi) % (2.0 * np.pi) - np.pi)
+        half_angle = max(reading.field_of_view / 2.0, np.finfo(float).tiny)
+        distances = np.hypot(x, y)
         if not reading.free:
-            hit = (
+            hit_position = (
                 reading.x + reading.distance * np.cos(reading.yaw),
                 reading.y + reading.distance * np.sin(reading.yaw),
             )
-            target = grid.cells_of(np.array(hit))
-            if grid.has(target):
-                self.seen.cells[target[0], target[1]] = _HIT_PROBABILITY
-        measured = self._likelihood(distance, angle / half, reading, grid.resolution)
-        known = self.seen.cells[window.cells]
-        prior = np.clip(known / _MAX_PROBABILITY, _LEAST, 1.0 - _LEAST)
-        occupied, free = measured * prior, (1.0 - measured) * (1.0 - prior)
+            hit_cell = grid.cells_of(np.array(hit_position))
+            if grid.has(hit_cell):
+                self.layer_grid.cells[hit_cell[0], hit_cell[1]] = _HIT_PROBABILITY
+        likelihood = self._likelihood(distances, angles / half_angle, reading, grid.resolution)
+        previous = self.layer_grid.cells[window.cells]
+        prior = np.clip(previous / _MAX_PROBABILITY, _MIN_PRIOR, 1.0 - _MIN_PRIOR)
+        occupied, free = likelihood * prior, (1.0 - likelihood) * (1.0 - prior)
         posterior = np.round(_MAX_PROBABILITY * occupied / (occupied + free))
-        self.seen.cells[window.cells] = np.where(angle <= half, posterior, known)
+        self.layer_grid.cells[window.cells] = np.where(angles <= half_angle, posterior, previous)
         return window
 
     def _likelihood(
-        self, distance: NDArray[np.float64], aside: NDArray[np.float64], reading: Reading, resolution: float
+        self, distance: NDArray[np.float64], angular_offset: NDArray[np.float64], reading: Reading, resolution: float
     ) -> NDArray[np.float64]:
-        """Return the probability that a cell is occupied, given this reading alone.
+        """Return the probability that a cell is occupied according to this reading alone.
 
         Args:
             distance: the distance of cells from the sensor, in metres.
-            aside: the angular offset of cells from the sensor's axis, scaled to 1 at the edge of the cone.
+            angular_offset: the angular offset of cells from the sensor's axis, scaled to 1 at the edge of the cone.
             reading: the measurement.
             resolution: the side of a cell, in metres.
         """
         if reading.free:
             return np.where(distance <= reading.distance, 0.0, 0.5)
-        weight = (1.0 - np.tanh(2.0 * (distance - self.settings.phi))) / 2.0 * np.maximum(1.0 - aside**2, 0.0)
+        weight = (1.0 - np.tanh(2.0 * (distance - self.settings.phi))) / 2.0 * np.maximum(1.0 - angular_offset**2, 0.0)
         blur = max(resolution * reading.distance, np.finfo(float).tiny)
-        before = reading.distance - distance
-        rising = weight * 0.5 * ((2.0 * blur - before) / blur) ** 2 + (1.0 - weight) * 0.5
-        there = weight * (0.5 - 0.5 * (before / blur) ** 2) + 0.5
-        found = np.where(before > 2.0 * blur, (1.0 - weight) * 0.5, rising)
-        found = np.where(before > blur, found, there)
-        likelihood: NDArray[np.float64] = np.where(before > -blur, found, 0.5)
+        distance_before_hit = reading.distance - distance
+        rising_part = weight * 0.5 * ((2.0 * blur - distance_before_hit) / blur) ** 2 + (1.0 - weight) * 0.5
+        peak = weight * (0.5 - 0.5 * (distance_before_hit / blur) ** 2) + 0.5
+        probability = np.where(distance_before_hit > 2.0 * blur, (1.0 - weight) * 0.5, rising_part)
+        probability = np.where(distance_before_hit > blur, probability, peak)
+        likelihood: NDArray[np.float64] = np.where(distance_before_hit > -blur, probability, 0.5)
         return likelihood

@@ -16,10 +16,10 @@ from linkwright.navigation.costmaps.layer import Costs, Layer, UpdateContext, Wi
 from linkwright.navigation.grids.grid import Grid
 
 MapPose = tuple[float, float, float]
-"""x, y (metres) and yaw (radians) of the costmap's frame in that of the map."""
+"""x, y (metres) and yaw (radians) of the costmap's frame in the map's frame."""
 
-_SAME_PLACE: MapPose = (0.0, 0.0, 0.0)
-_ROUNDING = 1e-3
+_IDENTITY: MapPose = (0.0, 0.0, 0.0)
+_ALIGNMENT_TOLERANCE = 1e-3
 """The tolerance, in cells, within which two grids are aligned."""
 
 
@@ -75,61 +75,63 @@ class StaticLayer(Layer):
         self._use_maximum = use_maximum
         self._footprint_clearing = footprint_clearing
         self._pose = pose
-        self._placed: MapPose | None = None
-        self._news = True
+        self._map_pose: MapPose | None = None
+        self._needs_rewrite = True
 
     def set_map(self, occupancy: Grid) -> None:
         """Set a new map, with cells of type int8 in per cent, or -1 for unknown."""
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
-        self._news = True
+        self._needs_rewrite = True
 
     def update_map(self, top: int, left: int, occupancy: Costs) -> bool:
         """Update a part of the map.
 
-        Returns False and changes nothing if the part is not within the map.
+        Returns False and leaves the map unchanged if the part is not within the map.
         """
         rows, columns = occupancy.shape
-        known = self.map
-        if known is None or min(top, left) < 0 or top + rows > known.rows or left + columns > known.columns:
+        map_grid = self.map
+        if map_grid is None or min(top, left) < 0 or top + rows > map_grid.rows or left + columns > map_grid.columns:
             return False
-        known.cells[top : top + rows, left : left + columns] = self.interpretation.table()[occupancy.astype(np.uint8)]
-        self._news = True
+        map_grid.cells[top : top + rows, left : left + columns] = self.interpretation.table()[
+            occupancy.astype(np.uint8)
+        ]
+        self._needs_rewrite = True
         return True
 
     def match(self, grid: Grid, default: int) -> None:
         """Make the next update write all cells."""
-        self._news = True
+        self._needs_rewrite = True
 
     def reset(self) -> None:
         """Make the next update write all cells; the map is kept."""
-        self._news = True
+        self._needs_rewrite = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether a map exists, and its pose is known or will be queried by the next update."""
-        return self.map is not None and (self._placed is not None or self._news)
+        """Return whether there is a map whose pose is known or will be requested by the next update."""
+        return self.map is not None and (self._map_pose is not None or self._needs_rewrite)
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the window that must be rewritten: the whole grid after a new map or transform."""
         if self.map is None:
             return window
         pose = self._pose()
-        if pose != self._placed:
-            self._placed, self._news = pose, True
+        if pose != self._map_pose:
+            self._map_pose, self._needs_rewrite = pose, True
         if self._footprint_clearing:
             window = window.joined(footprint_window(moment, grid))
-        if not self._news:
+        if not self._needs_rewrite:
             return window
-        self._news = False
+        self._needs_rewrite = False
         return Window.of(grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write the map's costs into the window."""
-        if self.map is None or self._placed is None:
+        if self.map is None or self._map_pose is None:
             return
-        part = grid.cells[window.cells]
-        inside, costs = self._aligned_cells(grid, window) or self._sampled_cells(grid, window)
-        part[inside] = np.maximum(part[inside], costs) if self._use_maximum else costs
+        window_cells = grid.cells[window.cells]
+        covered, costs = self._aligned_cells(grid, window) or self._sampled_cells(grid, window)
+        window_cells[covered] = np.maximum(window_cells[covered], costs) if self._use_maximum else costs
         if self._footprint_clearing:
             free_footprint(grid.cells, moment, grid, window)
 
@@ -138,22 +140,25 @@ class StaticLayer(Layer):
 
         Returns None if the grids are not aligned.
         """
-        known = self.map
-        assert known is not None
-        if self._placed != _SAME_PLACE or known.yaw or known.resolution != grid.resolution:
+        map_grid = self.map
+        assert map_grid is not None
+        if self._map_pose != _IDENTITY or map_grid.yaw or map_grid.resolution != grid.resolution:
             return None
-        down, right = (grid.y - known.y) / grid.resolution, (grid.x - known.x) / grid.resolution
-        rows, columns = round(down), round(right)
-        if abs(down - rows) + abs(right - columns) > _ROUNDING:
+        row_offset, column_offset = (grid.y - map_grid.y) / grid.resolution, (grid.x - map_grid.x) / grid.resolution
+        rows, columns = round(row_offset), round(column_offset)
+        if abs(row_offset - rows) + abs(column_offset - columns) > _ALIGNMENT_TOLERANCE:
             return None
-        seen = Window(window.top + rows, window.left + columns, window.bottom + rows, window.right + columns).within(
-            known
+        map_window = Window(
+            window.top + rows, window.left + columns, window.bottom + rows, window.right + columns
+        ).within(map_grid)
+        top, left = map_window.top - rows - window.top, map_window.left - columns - window.left
+        if map_window.is_empty:
+            return (slice(0, 0), slice(0, 0)), map_grid.cells[map_window.cells]
+        covered = (
+            slice(top, top + map_window.bottom - map_window.top),
+            slice(left, left + map_window.right - map_window.left),
         )
-        top, left = seen.top - rows - window.top, seen.left - columns - window.left
-        if seen.is_empty:
-            return (slice(0, 0), slice(0, 0)), known.cells[seen.cells]
-        there = slice(top, top + seen.bottom - seen.top), slice(left, left + seen.right - seen.left)
-        return there, known.cells[seen.cells]
+        return covered, map_grid.cells[map_window.cells]
 
     def _sampled_cells(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
         """Return a mask of the window's cells that the map covers, and the costs of these cells.
@@ -161,10 +166,10 @@ class StaticLayer(Layer):
         The map is sampled at the cell centres, for grids that are not aligned.
         """
         assert self.map is not None
-        assert self._placed is not None
+        assert self._map_pose is not None
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
         centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-        x, y, yaw = self._placed
+        x, y, yaw = self._map_pose
         cosine, sine = np.cos(yaw), np.sin(yaw)
         indices = self.map.cells_of(centres @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y))
         inside = self.map.has(indices)

@@ -20,9 +20,9 @@ from linkwright.navigation.costmaps.obstacle_layer import Cells, Heights, Obstac
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
-MOST_LEVELS: Final = 16
-_ALL: Final = (1 << MOST_LEVELS) - 1
-_BITS: Final = np.array([number.bit_count() for number in range(1 << MOST_LEVELS)], np.uint8)
+MAX_LEVELS: Final = 16
+_ALL_LEVELS: Final = (1 << MAX_LEVELS) - 1
+_BIT_COUNTS: Final = np.array([number.bit_count() for number in range(1 << MAX_LEVELS)], np.uint8)
 """The number of set bits of each 16-bit number."""
 
 Levels = NDArray[np.uint16]
@@ -62,68 +62,68 @@ class VoxelLayer(ObstacleLayer):
     ) -> None:
         super().__init__(buffers, heights, combination_method=combination_method, footprint_clearing=footprint_clearing)
         self._voxels = voxels
-        self._unknown_threshold = voxels.unknown_threshold + MOST_LEVELS - voxels.z_voxels
+        self._unknown_threshold = voxels.unknown_threshold + MAX_LEVELS - voxels.z_voxels
         self._occupied: Levels = np.zeros((0, 0), np.uint16)
         self._unknown: Levels = np.zeros((0, 0), np.uint16)
 
     def match(self, grid: Grid, default: int) -> None:
-        """Move the voxels to a new grid, with unknown ones where the old grid had no cells."""
-        self._occupied = shift_cells(self._occupied, self.seen, grid, 0)
-        self._unknown = shift_cells(self._unknown, self.seen, grid, _ALL)
+        """Move the voxels to a new grid; voxels outside the old grid are unknown."""
+        self._occupied = shift_cells(self._occupied, self.layer_grid, grid, 0)
+        self._unknown = shift_cells(self._unknown, self.layer_grid, grid, _ALL_LEVELS)
         super().match(grid, default)
 
     def reset(self) -> None:
         """Set all voxels to unknown; the layer is not current until its next update."""
         super().reset()
         self._occupied[:] = 0
-        self._unknown[:] = _ALL
+        self._unknown[:] = _ALL_LEVELS
 
     def clear(self, window: Window, *, outside: bool) -> None:
         """Set the voxels in a window, or all voxels outside it, to unknown."""
-        gone = np.zeros(self._unknown.shape, np.bool_)
-        gone[window.cells] = True
-        gone ^= outside
-        self._occupied[gone], self._unknown[gone] = 0, _ALL
+        is_cleared = np.zeros(self._unknown.shape, np.bool_)
+        is_cleared[window.cells] = True
+        is_cleared ^= outside
+        self._occupied[is_cleared], self._unknown[is_cleared] = 0, _ALL_LEVELS
         super().clear(window, outside=outside)
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
         """Free the voxels on the rays to the points, and return the window around their cells."""
         start, ends, heights = ray_ends(observation, grid)
-        cells, ray = cells_on_lines(start, ends)
-        steps = np.bincount(ray, minlength=len(ends))
-        first = np.concatenate(([0], np.cumsum(steps)[:-1])) if len(ends) else steps
-        share = (np.arange(len(ray)) - first[ray]) / np.maximum(steps[ray] - 1, 1)
-        height = observation.origin[2] + share * (heights[ray] - observation.origin[2])
-        least = observation.source.raytrace_min_range / grid.resolution
-        levels, counts = self._levels(height)
-        counts &= grid.has(cells) & (((cells - start) ** 2).sum(axis=1) >= least**2)
-        cells, bits = cells[counts], np.left_shift(1, levels[counts]).astype(np.uint16)
+        cells, ray_indices = cells_on_lines(start, ends)
+        steps = np.bincount(ray_indices, minlength=len(ends))
+        first_steps = np.concatenate(([0], np.cumsum(steps)[:-1])) if len(ends) else steps
+        fractions = (np.arange(len(ray_indices)) - first_steps[ray_indices]) / np.maximum(steps[ray_indices] - 1, 1)
+        cell_heights = observation.origin[2] + fractions * (heights[ray_indices] - observation.origin[2])
+        min_range = observation.source.raytrace_min_range / grid.resolution
+        levels, is_cleared = self._levels(cell_heights)
+        is_cleared &= grid.has(cells) & (((cells - start) ** 2).sum(axis=1) >= min_range**2)
+        cells, bits = cells[is_cleared], np.left_shift(1, levels[is_cleared]).astype(np.uint16)
         np.bitwise_and.at(self._occupied, (cells[:, 0], cells[:, 1]), ~bits)
         np.bitwise_and.at(self._unknown, (cells[:, 0], cells[:, 1]), ~bits)
-        self._judge(cells)
+        self._update_costs(cells)
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
         """Mark the voxels that contain points, and return the window around their cells."""
         points = self.obstacles(observation)
         cells = grid.cells_of(points[:, :2])
-        levels, counts = self._levels(points[:, 2])
-        counts &= grid.has(cells)
-        cells, bits = cells[counts], np.left_shift(1, levels[counts]).astype(np.uint16)
+        levels, is_marked = self._levels(points[:, 2])
+        is_marked &= grid.has(cells)
+        cells, bits = cells[is_marked], np.left_shift(1, levels[is_marked]).astype(np.uint16)
         np.bitwise_or.at(self._occupied, (cells[:, 0], cells[:, 1]), bits)
         np.bitwise_and.at(self._unknown, (cells[:, 0], cells[:, 1]), ~bits)
-        self._judge(cells)
+        self._update_costs(cells)
         return Window.around(cells, grid)
 
     def _levels(self, heights: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Return the level of each height, and a mask of the heights that are within the levels."""
         levels = np.floor((heights - self._voxels.origin_z) / self._voxels.z_resolution).astype(np.int64)
-        there = (levels >= 0) & (levels < self._voxels.z_voxels)
-        return np.where(there, levels, 0), there
+        is_within = (levels >= 0) & (levels < self._voxels.z_voxels)
+        return np.where(is_within, levels, 0), is_within
 
-    def _judge(self, cells: Cells) -> None:
+    def _update_costs(self, cells: Cells) -> None:
         """Compute the costs of cells from the numbers of their occupied and unknown voxels."""
         rows, columns = cells[:, 0], cells[:, 1]
-        occupied, unknown = _BITS[self._occupied[rows, columns]], _BITS[self._unknown[rows, columns]]
-        known = np.where(unknown > self._unknown_threshold, UNKNOWN, FREE)
-        self.seen.cells[rows, columns] = np.where(occupied > self._voxels.mark_threshold, LETHAL, known)
+        occupied, unknown = _BIT_COUNTS[self._occupied[rows, columns]], _BIT_COUNTS[self._unknown[rows, columns]]
+        base_costs = np.where(unknown > self._unknown_threshold, UNKNOWN, FREE)
+        self.layer_grid.cells[rows, columns] = np.where(occupied > self._voxels.mark_threshold, LETHAL, base_costs)

@@ -30,7 +30,7 @@ class Estimator:
 
     Args:
         kalman: the filter.
-        timing: when to predict and rewind; see `Timing`.
+        timing: the settings of prediction and of late measurements.
     """
 
     def __init__(self, kalman: KalmanFilter, timing: Timing) -> None:
@@ -38,7 +38,7 @@ class Estimator:
         self._timing = timing
         self._queue: list[tuple[int, int, Measurement]] = []
         self._count = 0
-        self._past: deque[Measurement] = deque()
+        self._processed: deque[Measurement] = deque()
         self._states: deque[Snapshot] = deque()
 
     def add(self, measurement: Measurement) -> None:
@@ -49,38 +49,38 @@ class Estimator:
     def clear(self) -> None:
         """Drop all queued and processed measurements and all saved states."""
         self._queue.clear()
-        self._past.clear()
+        self._processed.clear()
         self._states.clear()
 
     def advance(self, now_ns: int) -> None:
         """Process the measurements up to now.
 
-        The state is then predicted up to now if `Timing` demands it, or if measurements have timed out.
+        The state is then predicted up to now if `Timing.predict_to_now` is set, or if measurements have timed out.
         """
         kalman, history_ns = self.filter, self._timing.history_ns
-        predict = self._timing.predict_to_now
+        must_predict = self._timing.predict_to_now
         if self._queue:
-            restored = 0
+            requeued_count = 0
             if history_ns is not None and kalman.initialized and self._queue[0][0] < kalman.time_ns:
-                restored = self._rewind(self._queue[0][0])
-            self._use(now_ns, restored)
+                requeued_count = self._rewind(self._queue[0][0])
+            self._process_queue(now_ns, requeued_count)
         elif kalman.initialized and now_ns - kalman.time_ns >= self._timing.sensor_timeout_ns:
-            predict = True
-        if kalman.initialized and predict and now_ns > kalman.time_ns:
+            must_predict = True
+        if kalman.initialized and must_predict and now_ns > kalman.time_ns:
             kalman.predict(now_ns)
         if history_ns is not None:
-            self._forget(kalman.time_ns - history_ns)
+            self._drop_history(kalman.time_ns - history_ns)
 
-    def _use(self, now_ns: int, restored: int) -> None:
+    def _process_queue(self, now_ns: int, requeued_count: int) -> None:
         kalman = self.filter
         while self._queue and self._queue[0][0] <= now_ns:
             _, _, measurement = heapq.heappop(self._queue)
-            if restored > 0 and measurement.control is not None:
+            if requeued_count > 0 and measurement.control is not None:
                 kalman.command = measurement.control
-            restored -= 1
+            requeued_count -= 1
             kalman.process(measurement)
             if self._timing.history_ns is not None:
-                self._past.append(measurement)
+                self._processed.append(measurement)
                 if not self._queue or self._queue[0][0] != kalman.time_ns:
                     self._states.append(kalman.snapshot())
 
@@ -97,15 +97,15 @@ class Estimator:
             return 0
         self.filter.restore(snapshot)
         count = 0
-        while self._past and self._past[-1].time_ns >= time_ns:
-            measurement = self._past.pop()
+        while self._processed and self._processed[-1].time_ns >= time_ns:
+            measurement = self._processed.pop()
             if measurement.time_ns > snapshot.time_ns:
                 self.add(measurement)
                 count += 1
         return count
 
-    def _forget(self, before_ns: int) -> None:
-        while self._past and self._past[0].time_ns < before_ns:
-            self._past.popleft()
+    def _drop_history(self, before_ns: int) -> None:
+        while self._processed and self._processed[0].time_ns < before_ns:
+            self._processed.popleft()
         while self._states and self._states[0].time_ns < before_ns:
             self._states.popleft()

@@ -32,8 +32,8 @@ _BACKWARD = (
     17.0 * _N**3 / 480.0 - 37.0 * _N**4 / 840.0,
     4397.0 * _N**4 / 161280.0,
 )
-_ROUNDS = 6
-"""The number of iterations for the latitude; each shrinks the error by hundreds."""
+_ITERATIONS = 6
+"""The number of iterations for the latitude; each reduces the error by a factor of hundreds."""
 
 
 class Zone(NamedTuple):
@@ -86,13 +86,13 @@ def degrees_from_utm(easting: float, northing: float, zone: Zone) -> tuple[float
     for order, factor in enumerate(_BACKWARD, 1):
         xi -= factor * sin(2 * order * north) * cosh(2 * order * east)
         eta -= factor * cos(2 * order * north) * sinh(2 * order * east)
-    wanted = sin(xi) / hypot(sinh(eta), cos(xi))
-    tau = wanted / (1.0 - _ECCENTRICITY_SQUARED)
-    for _ in range(_ROUNDS):
+    target = sin(xi) / hypot(sinh(eta), cos(xi))
+    tau = target / (1.0 - _ECCENTRICITY_SQUARED)
+    for _ in range(_ITERATIONS):
         sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
         conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
         slope = (1.0 + (1.0 - _ECCENTRICITY_SQUARED) * tau * tau) / (1.0 - _ECCENTRICITY_SQUARED)
-        tau += (wanted - conformal) / hypot(1.0, conformal) * slope / hypot(1.0, tau)
+        tau += (target - conformal) / hypot(1.0, conformal) * slope / hypot(1.0, tau)
     longitude = degrees(zone.meridian + atan2(sinh(eta), cos(xi)))
     return degrees(atan(tau)), (longitude + 180.0) % 360.0 - 180.0
 
@@ -124,14 +124,16 @@ class TangentPlane:
         x, y, z = _geocentric(latitude, longitude, altitude)
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()
-        apart = (x - ox, y - oy, z - oz)
-        return dot(east, apart), dot(north, apart), dot(up, apart)
+        offset = (x - ox, y - oy, z - oz)
+        return dot(east, offset), dot(north, offset), dot(up, offset)
 
-    def place_of(self, point: Vector3) -> Vector3:
+    def geodetic_from_point(self, point: Vector3) -> Vector3:
         """Convert a point in metres to latitude and longitude in degrees and altitude in metres."""
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         axes = self._axes()
-        x, y, z = (sum(axis[index] * along for axis, along in zip(axes, point, strict=True)) for index in range(3))
+        x, y, z = (
+            sum(axis[index] * coordinate for axis, coordinate in zip(axes, point, strict=True)) for index in range(3)
+        )
         return _geodetic(ox + x, oy + y, oz + z)
 
     def _axes(self) -> tuple[Vector3, Vector3, Vector3]:
@@ -146,15 +148,19 @@ class TangentPlane:
 def _geocentric(latitude: float, longitude: float, altitude: float) -> Vector3:
     phi, lam = radians(latitude), radians(longitude)
     radius = _RADIUS / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
-    level = (radius + altitude) * cos(phi)
-    return level * cos(lam), level * sin(lam), (radius * (1.0 - _ECCENTRICITY_SQUARED) + altitude) * sin(phi)
+    axis_distance = (radius + altitude) * cos(phi)
+    return (
+        axis_distance * cos(lam),
+        axis_distance * sin(lam),
+        (radius * (1.0 - _ECCENTRICITY_SQUARED) + altitude) * sin(phi),
+    )
 
 
 def _geodetic(x: float, y: float, z: float) -> Vector3:
-    level = hypot(x, y)
-    phi, altitude = atan2(z, level * (1.0 - _ECCENTRICITY_SQUARED)), 0.0
-    for _ in range(_ROUNDS):
+    axis_distance = hypot(x, y)
+    phi, altitude = atan2(z, axis_distance * (1.0 - _ECCENTRICITY_SQUARED)), 0.0
+    for _ in range(_ITERATIONS):
         radius = _RADIUS / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
-        altitude = level * cos(phi) + z * sin(phi) - _RADIUS * sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
-        phi = atan2(z, level * (1.0 - _ECCENTRICITY_SQUARED * radius / (radius + altitude)))
+        altitude = axis_distance * cos(phi) + z * sin(phi) - _RADIUS * sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+        phi = atan2(z, axis_distance * (1.0 - _ECCENTRICITY_SQUARED * radius / (radius + altitude)))
     return degrees(phi), degrees(atan2(y, x)), altitude

@@ -30,11 +30,11 @@ from linkwright.navigation.estimation.motion_model import (
     wrapped,
 )
 
-LEAST_VARIANCE = 1e-9
-"""The variance of measurements that claim to be exact, as the arithmetic needs some."""
+MIN_VARIANCE = 1e-9
+"""The minimum variance of a measured value, so that the matrices can be inverted."""
 
 DEFAULT_NOISE = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
-"""Variances that a second adds to the state, where none are given."""
+"""The default variances added to the state per second."""
 
 _ANGLES = (State.ROLL, State.PITCH, State.YAW)
 
@@ -48,7 +48,7 @@ class Measurement:
         time_ns: the time of the measurement.
         values: the measured values, shape (15,).
         covariance: the covariance of the values, shape (15, 15).
-        used: which of the 15 values are used.
+        used: whether each of the 15 values is used.
         threshold: the maximum Mahalanobis distance from the expected values; measurements beyond it are rejected.
         control: the velocities commanded at that time, shape (6,), and the time of the command.
     """
@@ -69,8 +69,8 @@ class Control:
     The velocities are vx, vy, vz and the rates of roll, pitch and yaw.
 
     Attributes:
-        used: which of the six velocities are controlled.
-        timeout_ns: the age from which a command counts as zero velocity.
+        used: whether each of the six velocities is controlled.
+        timeout_ns: the age at which a command counts as zero velocity.
         acceleration_limits: the maximum accelerations, in m/s2 and rad/s2.
         acceleration_gains: the acceleration per unit of velocity error.
         deceleration_limits: the limits for slowing down.
@@ -87,8 +87,8 @@ class Control:
     def acceleration(self, index: int, velocity: float, commanded: float) -> float:
         """Return the acceleration of one of the six velocities towards its commanded value."""
         error = commanded - velocity
-        goal = commanded if abs(error) <= abs(commanded) + 0.01 else 0.0
-        if abs(goal) < abs(velocity):
+        target = commanded if abs(error) <= abs(commanded) + 0.01 else 0.0
+        if abs(target) < abs(velocity):
             limit, gain = self.deceleration_limits[index], self.deceleration_gains[index]
         else:
             limit, gain = self.acceleration_limits[index], self.acceleration_gains[index]
@@ -135,7 +135,7 @@ class KalmanFilter(ABC):
         state: the estimated state, shape (15,).
         covariance: the covariance of the state, shape (15, 15).
         time_ns: the time of the state.
-        initialized: whether a measurement was received.
+        initialized: whether a measurement has initialized the state.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
@@ -177,7 +177,7 @@ class KalmanFilter(ABC):
     def predict(self, time_ns: int) -> None:
         """Predict the state and its covariance at a later time."""
         seconds = (time_ns - self.time_ns) / 1e9
-        self._follow_commands(time_ns, seconds)
+        self._apply_commands(time_ns, seconds)
         self._predict(seconds)
         self.time_ns = time_ns
 
@@ -186,25 +186,25 @@ class KalmanFilter(ABC):
 
         Returns whether the measurement was used: it must contain finite values, and pass the Mahalanobis test.
         """
-        used = _used(measurement)
-        if not used:
+        used_indices = _used_indices(measurement)
+        if not used_indices:
             return False
-        innovation = measurement.values[used] - self.state[used]
-        for row, index in enumerate(used):
+        innovation = measurement.values[used_indices] - self.state[used_indices]
+        for row, index in enumerate(used_indices):
             if index in _ANGLES:
                 innovation[row] = wrapped(float(innovation[row]))
-        noise = _noise(measurement, used)
+        noise = _measurement_noise(measurement, used_indices)
         try:
-            inverse = np.linalg.inv(self.covariance[np.ix_(used, used)] + noise)
+            inverse = np.linalg.inv(self.covariance[np.ix_(used_indices, used_indices)] + noise)
         except np.linalg.LinAlgError:
             return False
         if float(innovation @ inverse @ innovation) >= measurement.threshold**2:
             return False
-        gain = self.covariance[:, used] @ inverse
+        gain = self.covariance[:, used_indices] @ inverse
         self.state = self.state + gain @ innovation
-        rest = np.eye(SIZE)
-        rest[:, used] -= gain
-        self.covariance = rest @ self.covariance @ rest.T + gain @ noise @ gain.T
+        correction = np.eye(SIZE)
+        correction[:, used_indices] -= gain
+        self.covariance = correction @ self.covariance @ correction.T + gain @ noise @ gain.T
         wrap_angles(self.state)
         return True
 
@@ -212,30 +212,30 @@ class KalmanFilter(ABC):
     def _predict(self, seconds: float) -> None: ...
 
     def _begin(self, measurement: Measurement) -> None:
-        used = _used(measurement)
-        self.state[used] = measurement.values[used]
-        self.covariance[np.ix_(used, used)] = measurement.covariance[np.ix_(used, used)]
+        used_indices = _used_indices(measurement)
+        self.state[used_indices] = measurement.values[used_indices]
+        self.covariance[np.ix_(used_indices, used_indices)] = measurement.covariance[np.ix_(used_indices, used_indices)]
         self.time_ns = measurement.time_ns
         self.initialized = True
 
-    def _noise_of(self, seconds: float) -> Matrix:
+    def _process_noise(self, seconds: float) -> Matrix:
         noise = self.settings.noise
         if self.settings.dynamic_noise:
             noise = noise.copy()
             noise[POSE, POSE] *= float(self.state[TWIST] @ self.state[TWIST])
         return noise * seconds
 
-    def _follow_commands(self, time_ns: int, seconds: float) -> None:
+    def _apply_commands(self, time_ns: int, seconds: float) -> None:
         control = self.settings.control
         if control is None:
             return
         command, commanded_ns = self.command
-        late = time_ns - commanded_ns >= control.timeout_ns
-        for index, used in enumerate(control.used):
-            if not used:
+        has_timed_out = time_ns - commanded_ns >= control.timeout_ns
+        for index, is_controlled in enumerate(control.used):
+            if not is_controlled:
                 continue
             velocity = float(self.state[TWIST][index])
-            acceleration = control.acceleration(index, velocity, 0.0 if late else float(command[index]))
+            acceleration = control.acceleration(index, velocity, 0.0 if has_timed_out else float(command[index]))
             if index < 3:
                 self.state[ACCELERATION][index] = acceleration
             else:
@@ -246,7 +246,7 @@ class ExtendedKalmanFilter(KalmanFilter):
     """A Kalman filter that linearises the motion at the state."""
 
     def _predict(self, seconds: float) -> None:
-        jacobian, noise = state_jacobian(self.state, seconds), self._noise_of(seconds)
+        jacobian, noise = state_jacobian(self.state, seconds), self._process_noise(seconds)
         self.state = predict_state(self.state, seconds)
         self.covariance = jacobian @ self.covariance @ jacobian.T + noise
 
@@ -273,26 +273,26 @@ class UnscentedKalmanFilter(KalmanFilter):
         super().__init__(settings)
 
     def _predict(self, seconds: float) -> None:
-        noise = self._noise_of(seconds)
+        noise = self._process_noise(seconds)
         root = _square_root(self.covariance) * self._scale
         points = [self.state, *(self.state + column for column in root.T), *(self.state - column for column in root.T)]
-        moved = np.array([predict_state(point, seconds) for point in points])
+        predicted_points = np.array([predict_state(point, seconds) for point in points])
         # Angles near +-pi are averaged relative to the first point.
-        centre = moved[0]
-        away = moved - centre
+        centre = predicted_points[0]
+        deviations = predicted_points - centre
         for index in _ANGLES:
-            away[:, index] = [wrapped(float(angle)) for angle in away[:, index]]
-        mean = self._weights @ away
-        away -= mean
+            deviations[:, index] = [wrapped(float(angle)) for angle in deviations[:, index]]
+        mean = self._weights @ deviations
+        deviations -= mean
         self.state = centre + mean
         wrap_angles(self.state)
-        self.covariance = (away.T * self._covariance_weights) @ away + noise
+        self.covariance = (deviations.T * self._covariance_weights) @ deviations + noise
 
 
 def _square_root(covariance: Matrix) -> Matrix:
     """Return a matrix square root of a covariance.
 
-    If rounding made the covariance invalid, the root is of the nearest positive semidefinite matrix.
+    If rounding made the covariance invalid, the root of the nearest positive semidefinite matrix is returned.
     """
     try:
         root: Matrix = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
@@ -302,7 +302,7 @@ def _square_root(covariance: Matrix) -> Matrix:
     return root
 
 
-def _used(measurement: Measurement) -> list[int]:
+def _used_indices(measurement: Measurement) -> list[int]:
     """Return the indices of a measurement's used values, if they and their variances are finite."""
     values, covariance = measurement.values, measurement.covariance
     return [
@@ -312,8 +312,8 @@ def _used(measurement: Measurement) -> list[int]:
     ]
 
 
-def _noise(measurement: Measurement, used: list[int]) -> Matrix:
-    noise = measurement.covariance[np.ix_(used, used)].copy()
-    for row in range(len(used)):
-        noise[row, row] = max(abs(noise[row, row]), LEAST_VARIANCE)
+def _measurement_noise(measurement: Measurement, used_indices: list[int]) -> Matrix:
+    noise = measurement.covariance[np.ix_(used_indices, used_indices)].copy()
+    for row in range(len(used_indices)):
+        noise[row, row] = max(abs(noise[row, row]), MIN_VARIANCE)
     return noise

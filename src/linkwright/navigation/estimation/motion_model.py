@@ -70,41 +70,41 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
 
 def predict_state(state: Vector, seconds: float) -> Vector:
     """Return the state after some seconds as a new array of shape (15,), with angles between -pi and pi."""
-    turn, angle_rates = rotation(*state[ANGLES].tolist()), _angle_rates(state)
-    later = state.copy()
-    later[POSITION] += turn @ _shift(state, seconds)
-    later[ANGLES] += angle_rates @ state[RATES] * seconds
-    later[VELOCITY] += state[ACCELERATION] * seconds
-    wrap_angles(later)
-    return later
+    rotation_matrix, angle_rates = rotation(*state[ANGLES].tolist()), _angle_rates(state)
+    predicted = state.copy()
+    predicted[POSITION] += rotation_matrix @ _shift(state, seconds)
+    predicted[ANGLES] += angle_rates @ state[RATES] * seconds
+    predicted[VELOCITY] += state[ACCELERATION] * seconds
+    wrap_angles(predicted)
+    return predicted
 
 
 def state_jacobian(state: Vector, seconds: float) -> Matrix:
     """Return the Jacobian of `predict_state` with respect to the state, shape (15, 15)."""
     roll, pitch, yaw = state[ANGLES].tolist()
-    turn, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
+    rotation_matrix, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
     jacobian = np.eye(SIZE)
-    jacobian[POSITION, VELOCITY] = turn * seconds
-    jacobian[POSITION, ACCELERATION] = turn * (0.5 * seconds * seconds)
+    jacobian[POSITION, VELOCITY] = rotation_matrix * seconds
+    jacobian[POSITION, ACCELERATION] = rotation_matrix * (0.5 * seconds * seconds)
     jacobian[ANGLES, RATES] = angle_rates * seconds
     jacobian[VELOCITY, ACCELERATION] = np.eye(3) * seconds
 
     # A small rotation about an axis moves a point by the cross product of the axis with the point.
     shift = _shift(state, seconds)
-    moved = turn @ shift
-    mx, my, mz = moved.tolist()
-    jacobian[POSITION, State.ROLL] = turn[:, 2] * shift[1] - turn[:, 1] * shift[2]
+    world_shift = rotation_matrix @ shift
+    mx, my, mz = world_shift.tolist()
+    jacobian[POSITION, State.ROLL] = rotation_matrix[:, 2] * shift[1] - rotation_matrix[:, 1] * shift[2]
     jacobian[POSITION, State.PITCH] = (cos(yaw) * mz, sin(yaw) * mz, -sin(yaw) * my - cos(yaw) * mx)
     jacobian[POSITION, State.YAW] = (-my, mx, 0.0)
 
     sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
     _, pitch_rate, yaw_rate = (state[RATES] * seconds).tolist()
-    across, along = cr * pitch_rate - sr * yaw_rate, sr * pitch_rate + cr * yaw_rate
-    jacobian[State.ROLL, State.ROLL] += across * sp / cp
-    jacobian[State.PITCH, State.ROLL] = -along
-    jacobian[State.YAW, State.ROLL] = across / cp
-    jacobian[State.ROLL, State.PITCH] = along / (cp * cp)
-    jacobian[State.YAW, State.PITCH] = along * sp / (cp * cp)
+    pitch_change, unscaled_yaw_change = cr * pitch_rate - sr * yaw_rate, sr * pitch_rate + cr * yaw_rate
+    jacobian[State.ROLL, State.ROLL] += pitch_change * sp / cp
+    jacobian[State.PITCH, State.ROLL] = -unscaled_yaw_change
+    jacobian[State.YAW, State.ROLL] = pitch_change / cp
+    jacobian[State.ROLL, State.PITCH] = unscaled_yaw_change / (cp * cp)
+    jacobian[State.YAW, State.PITCH] = unscaled_yaw_change * sp / (cp * cp)
     return jacobian
 
 

@@ -1,7 +1,7 @@
-"""Conversion of poses, twists and accelerations of sensors to measurements of the body that carries the sensors.
+"""Conversion of sensor poses, twists and accelerations to measurements of the body that carries the sensors.
 
 Source of the rules: robot_localization. Two computations that are approximate there are exact here: the orientation of
-an IMU that is mounted rotated, and the attitude with which gravity is removed if the IMU provides no orientation.
+a rotated IMU, and the attitude that is used to remove gravity if the IMU provides no orientation.
 """
 
 from __future__ import annotations
@@ -40,18 +40,21 @@ from linkwright.navigation.estimation.motion_model import (
 )
 
 GRAVITY = 9.80665
-_FLAT = (State.Z, State.ROLL, State.PITCH, State.VZ, State.VROLL, State.VPITCH, State.AZ)
+_PLANAR_ZEROS = (State.Z, State.ROLL, State.PITCH, State.VZ, State.VROLL, State.VPITCH, State.AZ)
 """The quantities that are zero for a body on a plane."""
 _FLAT_VARIANCE = 1e-6
-_LEAST = 1e-6
+_MIN_INFLUENCE = 1e-6
 
 Used = tuple[bool, ...]
 
 
 class Reading(NamedTuple):
-    """Values of the state, their covariance, and flags of the measured values.
+    """A measurement in the form of the state.
 
-    The values have shape (15,) and the covariance has shape (15, 15); there are 15 flags.
+    Attributes:
+        values: the values, of shape (15,).
+        covariance: the covariance of the values, of shape (15, 15).
+        used: whether each of the 15 values was measured.
     """
 
     values: Vector
@@ -64,9 +67,9 @@ class PoseReader:
     """A converter from the poses of one sensor to readings of the body.
 
     Args:
-        used: which of the 15 values of the state the sensor provides; only the first six count.
-        differential: whether the difference of two successive poses is used, as a velocity.
-        relative: whether poses are relative to the first one.
+        used: whether the sensor provides each of the 15 values of the state; only the first six flags count.
+        differential: whether the velocity between successive poses is used instead of the poses.
+        relative: whether poses are relative to the first pose.
         two_d: whether the body moves on a plane.
     """
 
@@ -75,11 +78,11 @@ class PoseReader:
     relative: bool = False
     two_d: bool = False
     _first: Transform | None = None
-    _last: tuple[Transform, Matrix, int] | None = None
+    _previous: tuple[Transform, Matrix, int] | None = None
 
     def forget(self) -> None:
-        """Treat the next pose as the first one."""
-        self._first = self._last = None
+        """Treat the next pose as the first pose."""
+        self._first = self._previous = None
 
     def read(self, pose: Transform, covariance: Matrix, sensor: Transform, time_ns: int) -> Reading | None:
         """Convert a pose.
@@ -91,11 +94,11 @@ class PoseReader:
             time_ns: the time of the measurement.
 
         Returns:
-            The reading without values that are not finite; None for the first pose of a differential sensor, and for a
-            pose without any finite value.
+            The reading of the finite values; None for the first pose of a differential sensor, and for a pose that has
+            no finite value.
         """
-        turn = rotation_matrix(sensor[3:])
-        return self._read(pose, covariance, sensor, turn, time_ns)
+        rotation_to_world = rotation_matrix(sensor[3:])
+        return self._read(pose, covariance, sensor, rotation_to_world, time_ns)
 
     def read_orientation(
         self, orientation: Quaternion, covariance: Matrix, mounting: Transform, time_ns: int
@@ -113,22 +116,22 @@ class PoseReader:
         return self._read((0.0, 0.0, 0.0, *body), covariance, IDENTITY, rotation(0.0, 0.0, yaw), time_ns)
 
     def _read(
-        self, pose: Transform, covariance: Matrix, sensor: Transform, turn: Matrix, time_ns: int
+        self, pose: Transform, covariance: Matrix, sensor: Transform, rotation_to_world: Matrix, time_ns: int
     ) -> Reading | None:
-        pose, known = _known_pose(pose, self.used)
-        if not any(known):
+        pose, finite_flags = _finite_pose(pose, self.used)
+        if not any(finite_flags):
             return None
         used = (
-            *_rotated_components(self.used, known, turn, POSITION),
-            *_rotated_components(self.used, known, turn, ANGLES),
+            *_rotated_components(self.used, finite_flags, rotation_to_world, POSITION),
+            *_rotated_components(self.used, finite_flags, rotation_to_world, ANGLES),
         )
-        both = _block_diagonal(turn)
-        turned = both @ covariance @ both.T
+        block_rotation = _block_diagonal(rotation_to_world)
+        rotated_covariance = block_rotation @ covariance @ block_rotation.T
         if self.differential:
-            before, self._last = self._last, (pose, turned, time_ns)
-            if before is None or time_ns <= before[2]:
+            previous, self._previous = self._previous, (pose, rotated_covariance, time_ns)
+            if previous is None or time_ns <= previous[2]:
                 return None
-            return self._difference(before, sensor, used)
+            return self._velocity_reading(previous, sensor, used)
         if self.relative:
             if self._first is None:
                 self._first = pose
@@ -137,19 +140,19 @@ class PoseReader:
         reading = _empty_reading()
         reading.values[POSITION] = pose[:3]
         reading.values[ANGLES] = rpy_from_quaternion(pose[3:])
-        reading.covariance[POSE, POSE] = turned
-        return _finished(reading, (*used, *([False] * 9)), two_d=self.two_d)
+        reading.covariance[POSE, POSE] = rotated_covariance
+        return _with_flags(reading, (*used, *([False] * 9)), two_d=self.two_d)
 
-    def _difference(self, before: tuple[Transform, Matrix, int], sensor: Transform, used: Used) -> Reading:
-        assert self._last is not None
-        pose, covariance, time_ns = self._last
-        seconds = (time_ns - before[2]) / 1e9
-        moved = compose((0.0, 0.0, 0.0, *sensor[3:]), compose(invert(before[0]), pose))
+    def _velocity_reading(self, previous: tuple[Transform, Matrix, int], sensor: Transform, used: Used) -> Reading:
+        assert self._previous is not None
+        pose, covariance, time_ns = self._previous
+        seconds = (time_ns - previous[2]) / 1e9
+        motion = compose((0.0, 0.0, 0.0, *sensor[3:]), compose(invert(previous[0]), pose))
         reading = _empty_reading()
-        reading.values[VELOCITY] = np.array(moved[:3]) / seconds
-        reading.values[RATES] = np.array(rpy_from_quaternion(moved[3:])) / seconds
-        reading.covariance[TWIST, TWIST] = (covariance + before[1]) * seconds
-        return _finished(reading, (*([False] * 6), *used, *([False] * 3)), two_d=self.two_d)
+        reading.values[VELOCITY] = np.array(motion[:3]) / seconds
+        reading.values[RATES] = np.array(rpy_from_quaternion(motion[3:])) / seconds
+        reading.covariance[TWIST, TWIST] = (covariance + previous[1]) * seconds
+        return _with_flags(reading, (*([False] * 6), *used, *([False] * 3)), two_d=self.two_d)
 
 
 def read_twist(
@@ -163,26 +166,30 @@ def read_twist(
         covariance: the covariance of the twist, shape (6, 6).
         mounting: the pose of the sensor in the body.
         rates: the estimated angular velocity of the body, which moves a sensor mounted away from the body's origin.
-        used: which of the 15 values the sensor provides; only the velocities count.
+        used: whether the sensor provides each of the 15 values; only the velocities count.
         two_d: whether the body moves on a plane.
     """
-    turn = rotation_matrix(mounting[3:])
-    both = _block_diagonal(turn)
-    known = _finite(_finite(used, VELOCITY, linear), RATES, angular)
-    linear, angular = _numbers(linear), _numbers(angular)
+    rotation_to_body = rotation_matrix(mounting[3:])
+    block_rotation = _block_diagonal(rotation_to_body)
+    finite_flags = _finite_flags(_finite_flags(used, VELOCITY, linear), RATES, angular)
+    linear, angular = _finite_or_zero(linear), _finite_or_zero(angular)
     reading = _empty_reading()
     x, y, z = mounting[:3]
     roll, pitch, yaw = rates.tolist()
-    reading.values[VELOCITY] = turn @ linear + (y * yaw - z * pitch, z * roll - x * yaw, x * pitch - y * roll)
-    reading.values[RATES] = turn @ angular
-    reading.covariance[TWIST, TWIST] = both @ covariance @ both.T
+    reading.values[VELOCITY] = rotation_to_body @ linear + (
+        y * yaw - z * pitch,
+        z * roll - x * yaw,
+        x * pitch - y * roll,
+    )
+    reading.values[RATES] = rotation_to_body @ angular
+    reading.covariance[TWIST, TWIST] = block_rotation @ covariance @ block_rotation.T
     mask = (
         *([False] * 6),
-        *_rotated_components(used, known, turn, VELOCITY),
-        *_rotated_components(used, known, turn, RATES),
+        *_rotated_components(used, finite_flags, rotation_to_body, VELOCITY),
+        *_rotated_components(used, finite_flags, rotation_to_body, RATES),
         *([False] * 3),
     )
-    return _finished(reading, mask, two_d=two_d)
+    return _with_flags(reading, mask, two_d=two_d)
 
 
 def read_acceleration(
@@ -191,18 +198,22 @@ def read_acceleration(
     """Convert an acceleration in a sensor's frame to a reading of the body's acceleration.
 
     Args:
-        acceleration: the acceleration in the sensor's frame without gravity, in m/s2.
+        acceleration: the acceleration in the sensor's frame, with gravity already subtracted, in m/s2.
         covariance: the covariance of the acceleration, shape (3, 3).
         mounting: the pose of the sensor in the body; only its rotation is used.
-        used: which of the 15 values the sensor provides; only the accelerations count.
+        used: whether the sensor provides each of the 15 values; only the accelerations count.
         two_d: whether the body moves on a plane.
     """
-    turn = rotation_matrix(mounting[3:])
-    known = _finite(used, ACCELERATION, acceleration)
+    rotation_to_body = rotation_matrix(mounting[3:])
+    finite_flags = _finite_flags(used, ACCELERATION, acceleration)
     reading = _empty_reading()
-    reading.values[ACCELERATION] = turn @ _numbers(acceleration)
-    reading.covariance[ACCELERATION, ACCELERATION] = turn @ covariance @ turn.T
-    return _finished(reading, (*([False] * 12), *_rotated_components(used, known, turn, ACCELERATION)), two_d=two_d)
+    reading.values[ACCELERATION] = rotation_to_body @ _finite_or_zero(acceleration)
+    reading.covariance[ACCELERATION, ACCELERATION] = rotation_to_body @ covariance @ rotation_to_body.T
+    return _with_flags(
+        reading,
+        (*([False] * 12), *_rotated_components(used, finite_flags, rotation_to_body, ACCELERATION)),
+        two_d=two_d,
+    )
 
 
 def subtract_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
@@ -213,66 +224,68 @@ def subtract_gravity(acceleration: Vector, orientation: Quaternion, gravity: flo
         orientation: the orientation of the sensor in the world.
         gravity: the gravitational acceleration, in m/s2.
     """
-    rest: Vector = acceleration - rotation_matrix(orientation)[2] * gravity
-    return rest
+    remaining: Vector = acceleration - rotation_matrix(orientation)[2] * gravity
+    return remaining
 
 
 def _empty_reading() -> Reading:
     return Reading(np.zeros(SIZE), np.zeros((SIZE, SIZE)), ())
 
 
-def _finished(reading: Reading, used: Used, *, two_d: bool) -> Reading:
+def _with_flags(reading: Reading, used: Used, *, two_d: bool) -> Reading:
     if two_d:
-        used = tuple(each or index in _FLAT for index, each in enumerate(used))
-        for index in _FLAT:
+        used = tuple(flag or index in _PLANAR_ZEROS for index, flag in enumerate(used))
+        for index in _PLANAR_ZEROS:
             reading.values[index] = 0.0
             reading.covariance[index, index] = _FLAT_VARIANCE
     return reading._replace(used=used)
 
 
-def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
-    """Return a pose with finite values, and the flags of the used values that were finite.
+def _finite_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
+    """Return a pose without non-finite values, and flags of the used values that are finite.
 
-    Parts that are not finite are replaced by the identity.
+    A non-finite coordinate becomes 0, and a non-finite orientation becomes the identity.
     """
     x, y, z = (value if isfinite(value) else 0.0 for value in pose[:3])
-    known = _finite(used, POSITION, np.array(pose[:3]))
+    finite_flags = _finite_flags(used, POSITION, np.array(pose[:3]))
     if all(isfinite(value) for value in pose[3:]):
-        return (x, y, z, *pose[3:]), known
-    return (x, y, z, *IDENTITY[3:]), tuple(each and not 3 <= index < 6 for index, each in enumerate(known))
+        return (x, y, z, *pose[3:]), finite_flags
+    return (x, y, z, *IDENTITY[3:]), tuple(flag and not 3 <= index < 6 for index, flag in enumerate(finite_flags))
 
 
-def _finite(used: Used, part: slice, values: Vector) -> Used:
-    """Return the flags of the used values, with those of non-finite values of a part cleared."""
+def _finite_flags(used: Used, section: slice, values: Vector) -> Used:
+    """Return the flags, with the flags of non-finite values in a section of the state cleared."""
     flags = list(used)
-    flags[part] = [bool(value) for value in np.array(used[part]) & np.isfinite(values)]
+    flags[section] = [bool(value) for value in np.array(used[section]) & np.isfinite(values)]
     return tuple(flags)
 
 
-def _numbers(values: Vector) -> Vector:
+def _finite_or_zero(values: Vector) -> Vector:
     numbers: Vector = np.where(np.isfinite(values), values, 0.0)
     return numbers
 
 
-def _rotated_components(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
-    """Return flags of the body's components that depend only on known sensor components."""
-    lost = tuple(each and not here for each, here in zip(used, known, strict=True))
+def _rotated_components(used: Used, finite_flags: Used, rotation_to_body: Matrix, section: slice) -> Used:
+    """Return flags of the body's components that depend only on finite sensor components."""
+    lost_flags = tuple(used_flag and not finite_flag for used_flag, finite_flag in zip(used, finite_flags, strict=True))
     return tuple(
-        bool(here and not gone)
-        for here, gone in zip(
-            _affected_components(known, turn, part), _affected_components(lost, turn, part), strict=True
+        bool(here and not depends_on_lost)
+        for here, depends_on_lost in zip(
+            _affected_components(finite_flags, rotation_to_body, section),
+            _affected_components(lost_flags, rotation_to_body, section),
+            strict=True,
         )
     )
 
 
-def _affected_components(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
+def _affected_components(flags: Used, rotation_to_body: Matrix, section: slice) -> NDArray[np.bool_]:
     """Return a mask of the body's components that depend on a flagged sensor component."""
-    columns = turn[:, np.array(flags[part], dtype=bool)]
-    touched: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _LEAST * _LEAST
-    return touched
+    columns = rotation_to_body[:, np.array(flags[section], dtype=bool)]
+    is_affected: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _MIN_INFLUENCE * _MIN_INFLUENCE
+    return is_affected
 
 
-def _block_diagonal(turn: Matrix) -> Matrix:
-    both = np.zeros((6, 6))
-    both[:3, :3] = both[3:, 3:] = turn
-    return both
+def _block_diagonal(rotation_matrix_3d: Matrix) -> Matrix:
+    matrix = np.zeros((6, 6))
+    matrix[:3, :3] = matrix[3:, 3:] = rotation_matrix_3d
+    return matrix

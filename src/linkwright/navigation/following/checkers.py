@@ -16,7 +16,7 @@ class GoalChecker(ABC):
     """The base class of checkers that decide whether a goal is reached."""
 
     xy_tolerance: float = 0.25
-    """In metres."""
+    """The distance from the goal at which its position counts as reached, in metres."""
 
     @abstractmethod
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
@@ -44,18 +44,18 @@ class SimpleGoalChecker(GoalChecker):
     def __init__(self, parameters: SimpleGoalParameters | None = None) -> None:
         self._parameters = parameters or SimpleGoalParameters()
         self.xy_tolerance = self._parameters.xy_goal_tolerance
-        self._is_there = False
+        self._position_reached = False
 
     def begin(self) -> None:
         """Reset for a new goal."""
-        self._is_there = False
+        self._position_reached = False
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
         """Return whether the position and heading are within the tolerances."""
-        if not self._is_there:
+        if not self._position_reached:
             if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._parameters.xy_goal_tolerance:
                 return False
-            self._is_there = self._parameters.stateful
+            self._position_reached = self._parameters.stateful
         return abs(wrapped(pose[2] - goal[2])) <= self._parameters.yaw_goal_tolerance
 
 
@@ -71,15 +71,15 @@ class StoppedGoalChecker(SimpleGoalChecker):
     """A `SimpleGoalChecker` that also requires the robot to have stopped."""
 
     def __init__(self, parameters: StoppedGoalParameters | None = None) -> None:
-        self._still = parameters or StoppedGoalParameters()
-        super().__init__(self._still)
+        self._stopped_parameters = parameters or StoppedGoalParameters()
+        super().__init__(self._stopped_parameters)
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
         """Return whether the pose and the velocity are within the tolerances."""
         return (
             super().is_reached(pose, goal, velocity)
-            and hypot(velocity.x, velocity.y) <= self._still.trans_stopped_velocity
-            and abs(velocity.yaw) <= self._still.rot_stopped_velocity
+            and hypot(velocity.x, velocity.y) <= self._stopped_parameters.trans_stopped_velocity
+            and abs(velocity.yaw) <= self._stopped_parameters.rot_stopped_velocity
         )
 
 
@@ -106,25 +106,25 @@ class ProgressChecker:
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._parameters = parameters or ProgressParameters()
-        self._from: Pose | None = None
-        self._since_ns = 0
+        self._reference_pose: Pose | None = None
+        self._reference_time_ns = 0
 
     def begin(self) -> None:
         """Reset for a new goal."""
-        self._from = None
+        self._reference_pose = None
 
     def makes_progress(self, pose: Pose, time_ns: int) -> bool:
         """Return whether the robot made enough progress, or the time limit has not passed yet."""
-        if self._from is None or self._has_moved(self._from, pose):
-            self._from, self._since_ns = pose, time_ns
+        if self._reference_pose is None or self._has_moved(self._reference_pose, pose):
+            self._reference_pose, self._reference_time_ns = pose, time_ns
             return True
-        return time_ns - self._since_ns <= self._parameters.movement_time_allowance * 1e9
+        return time_ns - self._reference_time_ns <= self._parameters.movement_time_allowance * 1e9
 
-    def _has_moved(self, before: Pose, now: Pose) -> bool:
+    def _has_moved(self, reference: Pose, pose: Pose) -> bool:
         parameters = self._parameters
-        if hypot(now[0] - before[0], now[1] - before[1]) > parameters.required_movement_radius:
+        if hypot(pose[0] - reference[0], pose[1] - reference[1]) > parameters.required_movement_radius:
             return True
         return (
             isinstance(parameters, PoseProgressParameters)
-            and abs(wrapped(now[2] - before[2])) > parameters.required_movement_angle
+            and abs(wrapped(pose[2] - reference[2])) > parameters.required_movement_angle
         )

@@ -85,11 +85,11 @@ class Follower(ABC):
         """
 
 
-def limited(highest: float, speed: float, *, is_percentage: bool) -> float:
+def limited(max_speed: float, speed: float, *, is_percentage: bool) -> float:
     """Return a maximum speed reduced to a limit, in m/s; see `Follower.limit_speed`."""
     if not speed > 0.0:
-        return highest
-    return highest * min(speed, 100.0) / 100.0 if is_percentage else min(highest, speed)
+        return max_speed
+    return max_speed * min(speed, 100.0) / 100.0 if is_percentage else min(max_speed, speed)
 
 
 def wrapped(angle: float) -> float:
@@ -102,8 +102,8 @@ def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float6
     x, y, yaw = pose
     cosine, sine = np.cos(yaw), np.sin(yaw)
     dx, dy = points[..., 0] - x, points[..., 1] - y
-    seen: NDArray[np.float64] = np.stack((cosine * dx + sine * dy, cosine * dy - sine * dx), axis=-1)
-    return seen
+    robot_points: NDArray[np.float64] = np.stack((cosine * dx + sine * dy, cosine * dy - sine * dx), axis=-1)
+    return robot_points
 
 
 def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -126,14 +126,14 @@ def predict_poses(pose: Pose, velocities: NDArray[np.float64], times: NDArray[An
         Poses, of shape (velocities, times, 3).
     """
     x, y, yaw = pose
-    vx, vy, turning = (velocities[:, axis, None] for axis in range(3))
-    turned = turning * times
-    along = np.sinc(turned / np.pi) * times  # sin(wt) / w, also for w = 0.
-    half = 0.5 * turned
-    across = np.sinc(half / np.pi) * np.sin(half) * times  # (1 - cos(wt)) / w, also for w = 0.
-    dx, dy = vx * along - vy * across, vx * across + vy * along
+    vx, vy, yaw_rate = (velocities[:, axis, None] for axis in range(3))
+    yaw_changes = yaw_rate * times
+    forward_factors = np.sinc(yaw_changes / np.pi) * times  # sin(wt) / w, also for w = 0.
+    half_angles = 0.5 * yaw_changes
+    sideways_factors = np.sinc(half_angles / np.pi) * np.sin(half_angles) * times  # (1 - cos(wt)) / w, also for w = 0.
+    dx, dy = vx * forward_factors - vy * sideways_factors, vx * sideways_factors + vy * forward_factors
     cosine, sine = np.cos(yaw), np.sin(yaw)
     poses: NDArray[np.float64] = np.stack(
-        (x + cosine * dx - sine * dy, y + sine * dx + cosine * dy, yaw + turned), axis=-1
+        (x + cosine * dx - sine * dy, y + sine * dx + cosine * dy, yaw + yaw_changes), axis=-1
     )
     return poses

@@ -18,31 +18,28 @@ class FollowedPath:
 
     Args:
         poses: the poses of the path, of shape (poses, 3): x, y (metres) and yaw (radians); at least two.
-        search: how far ahead along the path the robot is searched for, in metres.
+        search_distance: how far ahead along the path the robot is searched for, in metres.
     """
 
-    def __init__(self, poses: NDArray[np.float64], search: float) -> None:
+    def __init__(self, poses: NDArray[np.float64], search_distance: float) -> None:
         self.poses = poses
         self._lengths = lengths_along(poses)
-        self._search = search
+        self._search_distance = search_distance
         self._index = 0
 
     def progress(self, x: float, y: float) -> None:
         """Update the progress from the robot's position, in metres."""
-        limit = int(np.searchsorted(self._lengths, self._lengths[self._index] + self._search, side="right"))
-        near = self.poses[self._index : max(limit, self._index + 1), :2]
-        self._index += int(np.argmin((near[:, 0] - x) ** 2 + (near[:, 1] - y) ** 2))
+        end = int(np.searchsorted(self._lengths, self._lengths[self._index] + self._search_distance, side="right"))
+        nearby_points = self.poses[self._index : max(end, self._index + 1), :2]
+        self._index += int(np.argmin((nearby_points[:, 0] - x) ** 2 + (nearby_points[:, 1] - y) ** 2))
 
     def poses_ahead(self, distance: float) -> NDArray[np.float64]:
-        """Return the poses ahead of the robot up to a distance along the path, in metres.
-
-        At least two poses are returned.
-        """
+        """Return the poses from the robot up to a distance ahead along the path, in metres; at least two poses."""
         end = int(np.searchsorted(self._lengths, self._lengths[self._index] + distance, side="right"))
         first = min(self._index, len(self.poses) - 2)
         return self.poses[first : max(end, first + 2)]
 
-    def remaining(self, x: float, y: float) -> float:
+    def remaining_distance(self, x: float, y: float) -> float:
         """Return the remaining distance from a position along the path to its end, in metres."""
         px, py = self.poses[self._index, :2]
         return hypot(px - x, py - y) + float(self._lengths[-1] - self._lengths[self._index])

@@ -65,40 +65,40 @@ class RegulatedPurePursuit(Follower):
 
     def __init__(self, parameters: PurePursuitParameters | None = None) -> None:
         self.parameters = parameters or PurePursuitParameters()
-        self._top = self.parameters.desired_linear_vel
+        self._max_speed = self.parameters.desired_linear_vel
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
         """Limit the speed; see `Follower.limit_speed`."""
-        self._top = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
+        self._max_speed = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self.parameters
-        seen = to_robot_frame(situation.pose, situation.path[:, :2])
-        cusp = _cusp_index(seen) if parameters.allow_reversing else len(seen)
-        seen = seen[: cusp + 1]
-        lookahead = self._lookahead(situation.velocity.x)
-        carrot = carrot_on(seen, lookahead)
+        points = to_robot_frame(situation.pose, situation.path[:, :2])
+        cusp = _cusp_index(points) if parameters.allow_reversing else len(points)
+        points = points[: cusp + 1]
+        lookahead = self._lookahead_distance(situation.velocity.x)
+        carrot = carrot_on(points, lookahead)
         sign = -1.0 if parameters.allow_reversing and carrot[0] < 0.0 else 1.0
-        to_goal = hypot(*to_robot_frame(situation.pose, situation.path[-1, :2]))
-        if parameters.use_rotate_to_heading and to_goal < situation.xy_tolerance:
-            command = self._turn(wrapped(situation.path[-1, 2] - situation.pose[2]), situation)
+        goal_distance = hypot(*to_robot_frame(situation.pose, situation.path[-1, :2]))
+        if parameters.use_rotate_to_heading and goal_distance < situation.xy_tolerance:
+            command = self._turn_in_place(wrapped(situation.path[-1, 2] - situation.pose[2]), situation)
         elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
-            command = self._turn(angle, situation)
+            command = self._turn_in_place(angle, situation)
         else:
-            bent = (
-                carrot_on(seen, parameters.curvature_lookahead_dist)
+            curvature_point = (
+                carrot_on(points, parameters.curvature_lookahead_dist)
                 if parameters.use_fixed_curvature_lookahead
                 else carrot
             )
-            curvature = curvature_to(bent)
-            speed = self._speed(curvature, seen, situation)
+            curvature = curvature_to(curvature_point)
+            speed = self._speed(curvature, points, situation)
             command = Velocity(sign * speed, 0.0, sign * speed * curvature)
         if parameters.use_collision_detection:
             self._check(command, hypot(*carrot), situation)
         return command
 
-    def _lookahead(self, speed: float) -> float:
+    def _lookahead_distance(self, speed: float) -> float:
         parameters = self.parameters
         if not parameters.use_velocity_scaled_lookahead_dist:
             return parameters.lookahead_dist
@@ -110,7 +110,7 @@ class RegulatedPurePursuit(Follower):
         parameters = self.parameters
         return parameters.use_rotate_to_heading and abs(angle) > parameters.rotate_to_heading_min_angle
 
-    def _turn(self, angle: float, situation: Situation) -> Velocity:
+    def _turn_in_place(self, angle: float, situation: Situation) -> Velocity:
         parameters = self.parameters
         return Velocity(
             yaw=rotation_speed(
@@ -122,19 +122,24 @@ class RegulatedPurePursuit(Follower):
             )
         )
 
-    def _speed(self, curvature: float, seen: NDArray[np.float64], situation: Situation) -> float:
+    def _speed(self, curvature: float, points: NDArray[np.float64], situation: Situation) -> float:
         """Return the speed in m/s, reduced in curves, near obstacles and near the path's end."""
         parameters = self.parameters
-        speed = self._top
+        speed = self._max_speed
         if parameters.use_regulated_linear_velocity_scaling:
-            speed = min(speed, speed_in_curve(self._top, curvature, parameters.regulated_linear_scaling_min_radius))
+            speed = min(
+                speed, speed_in_curve(self._max_speed, curvature, parameters.regulated_linear_scaling_min_radius)
+            )
         if parameters.use_cost_regulated_linear_velocity_scaling:
             speed = min(speed, self._speed_near_obstacles(situation.pose, situation.costmap, situation.footprint))
-        speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._top)
-        left = float(lengths_along(seen)[-1])
-        if parameters.approach_velocity_scaling_dist > 0.0 and left < parameters.approach_velocity_scaling_dist:
-            slow = speed * left / parameters.approach_velocity_scaling_dist
-            speed = min(speed, max(slow, parameters.min_approach_linear_velocity))
+        speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._max_speed)
+        remaining_distance = float(lengths_along(points)[-1])
+        if (
+            parameters.approach_velocity_scaling_dist > 0.0
+            and remaining_distance < parameters.approach_velocity_scaling_dist
+        ):
+            approach_speed = speed * remaining_distance / parameters.approach_velocity_scaling_dist
+            speed = min(speed, max(approach_speed, parameters.min_approach_linear_velocity))
         return speed
 
     def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
@@ -146,14 +151,14 @@ class RegulatedPurePursuit(Follower):
         parameters = self.parameters
         cost = int(costmap.cost_at(np.array(pose[:2])))
         if cost in (FREE, UNKNOWN):
-            return self._top
+            return self._max_speed
         inscribed, _ = radii(footprint)
         distance = (
             inscribed - log(min(cost, INSCRIBED - 1) / (INSCRIBED - 1)) / parameters.inflation_cost_scaling_factor
         )
         if distance >= parameters.cost_scaling_dist:
-            return self._top
-        return self._top * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
+            return self._max_speed
+        return self._max_speed * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
 
     def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
         """Check that a velocity does not lead to a collision.
@@ -170,26 +175,26 @@ class RegulatedPurePursuit(Follower):
             raise FollowingError("there is an obstacle ahead")
 
 
-def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
-    """Return the interpolated point of a path at a distance from the robot.
+def carrot_on(points: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
+    """Return the interpolated point at which a path first reaches a distance from the robot.
 
-    If the whole path is nearer, its last point is returned.
+    If all points are nearer, the last point is returned.
 
     Args:
-        seen: the points of the path in the robot's frame, of shape (points, 2), in metres.
+        points: the points of the path in the robot's frame, of shape (points, 2), in metres.
         lookahead: the distance, in metres.
     """
-    distances = np.hypot(seen[:, 0], seen[:, 1])
-    beyond = np.flatnonzero(distances >= lookahead)
-    index = int(beyond[0]) if len(beyond) else len(seen) - 1
-    if index == 0 or not len(beyond):
-        end: NDArray[np.float64] = seen[index]
-        return end
-    inner, outer = seen[index - 1], seen[index]
-    step = outer - inner
-    a, b, c = float(step @ step), float(inner @ step), float(inner @ inner) - lookahead**2
-    share = (-b + sqrt(max(b * b - a * c, 0.0))) / a if a > 0.0 else 1.0
-    point: NDArray[np.float64] = inner + min(share, 1.0) * step
+    distances = np.hypot(points[:, 0], points[:, 1])
+    far_indices = np.flatnonzero(distances >= lookahead)
+    index = int(far_indices[0]) if len(far_indices) else len(points) - 1
+    if index == 0 or not len(far_indices):
+        nearest_end: NDArray[np.float64] = points[index]
+        return nearest_end
+    inner_point, outer_point = points[index - 1], points[index]
+    step = outer_point - inner_point
+    a, b, c = float(step @ step), float(inner_point @ step), float(inner_point @ inner_point) - lookahead**2
+    fraction = (-b + sqrt(max(b * b - a * c, 0.0))) / a if a > 0.0 else 1.0
+    point: NDArray[np.float64] = inner_point + min(fraction, 1.0) * step
     return point
 
 
@@ -199,35 +204,33 @@ def curvature_to(point: NDArray[np.float64]) -> float:
     The robot faces along x, so the curvature is 2 y / (x^2 + y^2).
     """
     squared = float(point @ point)
-    return 2.0 * float(point[1]) / squared if squared > _NOWHERE else 0.0
+    return 2.0 * float(point[1]) / squared if squared > _MIN_SQUARED_DISTANCE else 0.0
 
 
-def speed_in_curve(speed: float, curvature: float, least_radius: float) -> float:
+def speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:
     """Return the speed in a curve, in m/s.
 
-    If the radius of the curve is below `least_radius`, in metres, the speed is reduced in proportion to the radius.
+    If the radius of the curve is below `min_radius`, in metres, the speed is reduced in proportion to the radius.
     """
     radius = 1.0 / abs(curvature) if curvature else np.inf
-    return speed * min(1.0, float(radius) / least_radius) if least_radius > 0.0 else speed
+    return speed * min(1.0, float(radius) / min_radius) if min_radius > 0.0 else speed
 
 
-def rotation_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
-    """Return an angular velocity from which a rotation by an angle can be stopped in time.
-
-    The velocity is in rad/s.
+def rotation_speed(angle: float, current: float, period: float, max_speed: float, acceleration: float) -> float:
+    """Return an angular velocity, in rad/s, at which a rotation can still stop at its target angle.
 
     Args:
         angle: the remaining angle, in radians.
-        now: the current angular velocity, in rad/s.
+        current: the current angular velocity, in rad/s.
         period: the period of the cycles, in seconds.
-        highest: the maximum angular velocity, in rad/s.
+        max_speed: the maximum angular velocity, in rad/s.
         acceleration: the maximum acceleration and deceleration, in rad/s^2.
     """
-    wanted = copysign(min(highest, sqrt(2.0 * acceleration * abs(angle))), angle)
-    if abs(wanted) * period > abs(angle):
-        wanted = angle / period
-    change = acceleration * period
-    return min(max(wanted, now - change), now + change)
+    target = copysign(min(max_speed, sqrt(2.0 * acceleration * abs(angle))), angle)
+    if abs(target) * period > abs(angle):
+        target = angle / period
+    max_change = acceleration * period
+    return min(max(target, current - max_change), current + max_change)
 
 
 def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
@@ -235,22 +238,22 @@ def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
 
     `seconds` is the duration of the motion.
     """
-    _, circumscribed = radii(situation.footprint)
-    fastest = hypot(command.x, command.y) + abs(command.yaw) * circumscribed
-    if fastest <= 0.0:
+    _, circumscribed_radius = radii(situation.footprint)
+    max_point_speed = hypot(command.x, command.y) + abs(command.yaw) * circumscribed_radius
+    if max_point_speed <= 0.0:
         return True
-    step = situation.costmap.grid.resolution / fastest
+    step = situation.costmap.grid.resolution / max_point_speed
     times = np.arange(step, max(seconds, step) + step, step)
-    ways = predict_poses(situation.pose, np.array([command]), times)
-    costs = situation.costmap.footprint_cost(ways, situation.footprint)
+    poses = predict_poses(situation.pose, np.array([command]), times)
+    costs = situation.costmap.footprint_cost(poses, situation.footprint)
     return not bool(np.any(costs == LETHAL))
 
 
-def _cusp_index(seen: NDArray[np.float64]) -> int:
+def _cusp_index(points: NDArray[np.float64]) -> int:
     """Return the index of the first point at which the path reverses, or of the last point."""
-    steps = np.diff(seen, axis=0)
-    back = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)
-    return int(back[0]) + 1 if len(back) else len(seen) - 1
+    steps = np.diff(points, axis=0)
+    reversal_indices = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)
+    return int(reversal_indices[0]) + 1 if len(reversal_indices) else len(points) - 1
 
 
-_NOWHERE = 1e-9
+_MIN_SQUARED_DISTANCE = 1e-9

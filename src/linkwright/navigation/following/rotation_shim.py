@@ -44,12 +44,12 @@ class RotationShim(Follower):
     def __init__(self, primary: Follower, parameters: RotationShimParameters | None = None) -> None:
         self._primary = primary
         self._parameters = parameters or RotationShimParameters()
-        self._is_new = True
-        self._turns = False
+        self._is_new_path = True
+        self._is_turning = False
 
     def begin(self) -> None:
         """Reset for a new path."""
-        self._is_new = True
+        self._is_new_path = True
         self._primary.begin()
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
@@ -59,16 +59,16 @@ class RotationShim(Follower):
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self._parameters
-        seen = to_robot_frame(situation.pose, situation.path[:, :2])
+        points = to_robot_frame(situation.pose, situation.path[:, :2])
         lengths = lengths_along(situation.path)
-        index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(seen) - 1)
-        angle = atan2(float(seen[index, 1]), float(seen[index, 0]))
-        if self._is_new:
-            self._turns = abs(angle) > parameters.angular_dist_threshold
-            self._is_new = False
+        index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(points) - 1)
+        angle = atan2(float(points[index, 1]), float(points[index, 0]))
+        if self._is_new_path:
+            self._is_turning = abs(angle) > parameters.angular_dist_threshold
+            self._is_new_path = False
         elif abs(angle) <= parameters.angular_disengage_threshold:
-            self._turns = False
-        if not self._turns:
+            self._is_turning = False
+        if not self._is_turning:
             return self._primary.velocity(situation)
         command = Velocity(
             yaw=rotation_speed(

@@ -1,4 +1,4 @@
-"""Path following by sampling velocities: each is simulated for some time, and the best one is commanded.
+"""A path follower that samples velocities, simulates each for some time, and commands the best one.
 
 This follower replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times use the parameter names of
 either; the scoring of the sampled motions is Linkwright's own.
@@ -28,7 +28,7 @@ from linkwright.navigation.following.follower import (
 )
 from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
 
-_LEAST, _MOST, _CHANGE = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Velocity(2.5, 0.0, 3.2)
+_MIN_VELOCITY, _MOST, _MAX_ACCELERATION = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Velocity(2.5, 0.0, 3.2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,16 +36,16 @@ class Limits:
     """Limits of velocity and acceleration, in m/s, rad/s, m/s^2 and rad/s^2.
 
     Attributes:
-        least: the minimum velocities along x, along y and about z.
-        most: the maximum velocities along x, along y and about z.
+        min_velocity: the minimum velocities along x, along y and about z.
+        max_velocity: the maximum velocities along x, along y and about z.
         acceleration: the maximum acceleration of each velocity.
         deceleration: the maximum deceleration of each velocity; positive.
     """
 
-    least: Velocity = _LEAST
-    most: Velocity = _MOST
-    acceleration: Velocity = _CHANGE
-    deceleration: Velocity = _CHANGE
+    min_velocity: Velocity = _MIN_VELOCITY
+    max_velocity: Velocity = _MOST
+    acceleration: Velocity = _MAX_ACCELERATION
+    deceleration: Velocity = _MAX_ACCELERATION
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,9 +57,9 @@ class SamplingParameters:
         samples: the number of velocities sampled along x, along y and about z.
         seconds: how long each motion is simulated.
         steps: the number of simulation steps.
-        off_path: the cost per metre of distance from the path, in metres of the path.
-        off_heading: the cost per radian of deviation from the direction of the path ahead, in metres of the path.
-        near_obstacle: the weight of the highest cost that the motion touches in the costmap.
+        off_path: the cost of each metre of distance from the path, as an equivalent length of path in metres.
+        off_heading: the cost of each radian of deviation from the path's direction, as a length of path in metres.
+        near_obstacle: the weight of the highest costmap cost along the motion.
         turn_first: the angle to the path above which the robot turns in place, in radians.
     """
 
@@ -73,10 +73,10 @@ class SamplingParameters:
     turn_first: float = 1.2
 
 
-_MOST_FOOTPRINTS = 60
-"""The number of best velocities that are checked with the footprint, which takes longer."""
+_MAX_FOOTPRINTS = 60
+"""The maximum number of velocities that are checked with the footprint, best first; this check is slow."""
 _LOOK_AHEAD = 0.35
-"""The distance in metres along the path, ahead of a motion's end, that the robot should face."""
+"""The distance from a motion's end to the point ahead on the path that the robot should face, in metres."""
 
 
 class SamplingFollower(Follower):
@@ -84,16 +84,16 @@ class SamplingFollower(Follower):
 
     def __init__(self, parameters: SamplingParameters | None = None) -> None:
         self.parameters = parameters or SamplingParameters()
-        self._top = self.parameters.limits.most.x
-        self._turns = False
+        self._max_speed = self.parameters.limits.max_velocity.x
+        self._is_turning = False
 
     def begin(self) -> None:
         """Reset for a new path."""
-        self._turns = False
+        self._is_turning = False
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
         """Limit the speed; see `Follower.limit_speed`."""
-        self._top = limited(self.parameters.limits.most.x, speed, is_percentage=is_percentage)
+        self._max_speed = limited(self.parameters.limits.max_velocity.x, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle; see `Follower.velocity`."""
@@ -102,35 +102,37 @@ class SamplingFollower(Follower):
         if hypot(goal[0] - x, goal[1] - y) < situation.xy_tolerance:
             return self._checked_turn(wrapped(float(goal[2]) - yaw), situation)
         angle = self._angle_to_path(situation)
-        self._turns = abs(angle) > (self.parameters.turn_first / 3.0 if self._turns else self.parameters.turn_first)
-        if self._turns and self.parameters.limits.most.y <= 0.0:
+        self._is_turning = abs(angle) > (
+            self.parameters.turn_first / 3.0 if self._is_turning else self.parameters.turn_first
+        )
+        if self._is_turning and self.parameters.limits.max_velocity.y <= 0.0:
             return self._checked_turn(angle, situation)
-        return self._best(situation)
+        return self._best_velocity(situation)
 
     def _angle_to_path(self, situation: Situation) -> float:
-        seen = to_robot_frame(situation.pose, situation.path[:, :2])
-        index = min(int(np.searchsorted(lengths_along(situation.path), _LOOK_AHEAD)), len(seen) - 1)
-        return atan2(float(seen[index, 1]), float(seen[index, 0]))
+        points = to_robot_frame(situation.pose, situation.path[:, :2])
+        index = min(int(np.searchsorted(lengths_along(situation.path), _LOOK_AHEAD)), len(points) - 1)
+        return atan2(float(points[index, 1]), float(points[index, 0]))
 
     def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
         """Return the velocity to rotate in place by an angle, after a check for collisions.
 
         Raises:
-            FollowingError: an obstacle is in the way.
+            FollowingError: the rotation leads to a collision.
         """
-        limits, now = self.parameters.limits, situation.velocity
-        wanted = Velocity(
-            _brake(now.x, limits.deceleration.x, situation.period),
-            _brake(now.y, limits.deceleration.y, situation.period),
-            rotation_speed(angle, now.yaw, situation.period, limits.most.yaw, limits.acceleration.yaw),
+        limits, current = self.parameters.limits, situation.velocity
+        command = Velocity(
+            _brake(current.x, limits.deceleration.x, situation.period),
+            _brake(current.y, limits.deceleration.y, situation.period),
+            rotation_speed(angle, current.yaw, situation.period, limits.max_velocity.yaw, limits.acceleration.yaw),
         )
-        turning = abs(wanted.yaw)
-        seconds = min(self.parameters.seconds, abs(angle) / turning) if turning > 0.0 else 0.0
-        if not is_free(situation, wanted, seconds):
+        yaw_rate = abs(command.yaw)
+        seconds = min(self.parameters.seconds, abs(angle) / yaw_rate) if yaw_rate > 0.0 else 0.0
+        if not is_free(situation, command, seconds):
             raise FollowingError("there is an obstacle where the robot would turn")
-        return wanted
+        return command
 
-    def _best(self, situation: Situation) -> Velocity:
+    def _best_velocity(self, situation: Situation) -> Velocity:
         """Return the next cycle's velocity towards the best collision-free candidate.
 
         Footprints are checked in the order of the scores, best first.
@@ -140,72 +142,82 @@ class SamplingFollower(Follower):
         """
         parameters = self.parameters
         candidates = self._candidates(situation)
-        ways = predict_poses(situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:])
-        costs = situation.costmap.cost_at(ways[..., :2]).astype(np.float64)
+        motions = predict_poses(
+            situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:]
+        )
+        costs = situation.costmap.cost_at(motions[..., :2]).astype(np.float64)
         costs[costs == UNKNOWN] = 0.0
-        highest: NDArray[np.float64] = costs.max(axis=1)
-        free = np.flatnonzero(highest < INSCRIBED)
-        judged = self._motion_costs(ways[free], highest[free] / INSCRIBED, situation)
-        for index in free[np.argsort(judged)][:_MOST_FOOTPRINTS]:
+        max_costs: NDArray[np.float64] = costs.max(axis=1)
+        free_indices = np.flatnonzero(max_costs < INSCRIBED)
+        motion_costs = self._motion_costs(motions[free_indices], max_costs[free_indices] / INSCRIBED, situation)
+        for index in free_indices[np.argsort(motion_costs)][:_MAX_FOOTPRINTS]:
             best = Velocity(*map(float, candidates[index]))
-            if highest[index] <= 0.0 or is_free(situation, best, parameters.seconds):
+            if max_costs[index] <= 0.0 or is_free(situation, best, parameters.seconds):
                 return self._reachable(best, situation)
         raise FollowingError("every velocity that was tried leads into an obstacle")
 
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
         """Return velocities that are reachable within the simulated time, of shape (candidates, 3)."""
         parameters, limits = self.parameters, self.parameters.limits
-        highest = (min(limits.most.x, self._top), limits.most.y, limits.most.yaw)
+        max_velocity = (min(limits.max_velocity.x, self._max_speed), limits.max_velocity.y, limits.max_velocity.yaw)
         axes = []
         for axis, count in enumerate(parameters.samples):
-            now, change = situation.velocity[axis], limits.acceleration[axis] * parameters.seconds
-            low, high = max(limits.least[axis], now - change), min(highest[axis], now + change)
+            current, max_change = situation.velocity[axis], limits.acceleration[axis] * parameters.seconds
+            low, high = (
+                max(limits.min_velocity[axis], current - max_change),
+                min(max_velocity[axis], current + max_change),
+            )
             values = np.linspace(low, max(low, high), count if high > low else 1)
             axes.append(np.append(values, 0.0) if low < 0.0 < high else values)
         mesh = np.meshgrid(*axes, indexing="ij")
         candidates: NDArray[np.float64] = np.stack([axis_samples.ravel() for axis_samples in mesh], axis=-1)
         return candidates
 
-    def _reachable(self, wanted: Velocity, situation: Situation) -> Velocity:
-        """Return the velocity that the robot can reach in the next cycle towards a wanted one.
+    def _reachable(self, target: Velocity, situation: Situation) -> Velocity:
+        """Return the velocity nearest to a target that the robot can reach in the next cycle.
 
-        All components complete the same share of their change.
+        All components complete the same fraction of their change.
         """
-        limits, now, period = self.parameters.limits, situation.velocity, situation.period
-        share = 1.0
-        for before, after, faster, slower in zip(now, wanted, limits.acceleration, limits.deceleration, strict=True):
-            change = (slower if abs(after) < abs(before) else faster) * period
-            if abs(after - before) > change:
-                share = min(share, change / abs(after - before))
-        return Velocity(*(before + share * (after - before) for before, after in zip(now, wanted, strict=True)))
+        limits, current, period = self.parameters.limits, situation.velocity, situation.period
+        fraction = 1.0
+        for old_speed, new_speed, acceleration, deceleration in zip(
+            current, target, limits.acceleration, limits.deceleration, strict=True
+        ):
+            max_change = (deceleration if abs(new_speed) < abs(old_speed) else acceleration) * period
+            if abs(new_speed - old_speed) > max_change:
+                fraction = min(fraction, max_change / abs(new_speed - old_speed))
+        return Velocity(*(before + fraction * (after - before) for before, after in zip(current, target, strict=True)))
 
     def _motion_costs(
-        self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
+        self, motions: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
         """Return the costs of motions, in metres of the path, of shape (motions,).
 
-        `ways` are the predicted poses, and `costs` are the highest costs in the costmap, from 0 to 1.
+        `motions` are the predicted poses, and `costs` are the highest costs in the costmap, from 0 to 1.
         """
         parameters = self.parameters
         path = situation.path
         lengths = lengths_along(path)
-        checked = ways[:, [parameters.steps // 2, -1], :2]
-        squared = ((checked[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)
+        checked_points = motions[:, [parameters.steps // 2, -1], :2]
+        squared = ((checked_points[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)
         nearest = squared.argmin(axis=-1)
-        beside = np.sqrt(np.take_along_axis(squared, nearest[..., None], axis=-1))[..., 0].sum(axis=1)
+        path_distances = np.sqrt(np.take_along_axis(squared, nearest[..., None], axis=-1))[..., 0].sum(axis=1)
         ends = nearest[:, 1]
-        left = lengths[-1] - lengths[ends]
-        at_end = np.hypot(*(ways[:, -1, :2] - path[-1, :2]).T)
-        left = np.where(ends == len(path) - 1, at_end, left)
-        ahead = np.minimum(np.searchsorted(lengths, lengths[ends] + _LOOK_AHEAD), len(path) - 1)
-        towards = path[ahead, :2] - ways[:, -1, :2]
-        turn = np.arctan2(towards[:, 1], towards[:, 0]) - ways[:, -1, 2]
-        turn = np.abs(np.arctan2(np.sin(turn), np.cos(turn)))
-        turn[np.hypot(towards[:, 0], towards[:, 1]) < _NO_WAY] = 0.0
-        judged: NDArray[np.float64] = (
-            left + parameters.off_path * beside + parameters.off_heading * turn + parameters.near_obstacle * costs
+        remaining = lengths[-1] - lengths[ends]
+        end_distances = np.hypot(*(motions[:, -1, :2] - path[-1, :2]).T)
+        remaining = np.where(ends == len(path) - 1, end_distances, remaining)
+        ahead_indices = np.minimum(np.searchsorted(lengths, lengths[ends] + _LOOK_AHEAD), len(path) - 1)
+        directions = path[ahead_indices, :2] - motions[:, -1, :2]
+        heading_errors = np.arctan2(directions[:, 1], directions[:, 0]) - motions[:, -1, 2]
+        heading_errors = np.abs(np.arctan2(np.sin(heading_errors), np.cos(heading_errors)))
+        heading_errors[np.hypot(directions[:, 0], directions[:, 1]) < _MIN_DIRECTION_DISTANCE] = 0.0
+        total_costs: NDArray[np.float64] = (
+            remaining
+            + parameters.off_path * path_distances
+            + parameters.off_heading * heading_errors
+            + parameters.near_obstacle * costs
         )
-        return judged
+        return total_costs
 
 
 def _brake(speed: float, deceleration: float, period: float) -> float:
@@ -213,5 +225,5 @@ def _brake(speed: float, deceleration: float, period: float) -> float:
     return float(np.sign(speed)) * max(0.0, abs(speed) - deceleration * period)
 
 
-_NO_WAY = 0.05
-"""The least distance in metres from which a direction follows."""
+_MIN_DIRECTION_DISTANCE = 0.05
+"""The minimum distance to a point for its direction to be used, in metres."""

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from linkwright.navigation.grids.library import load_scipy
 
 
-def distance_field(marked: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
+def distance_field(is_marked: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
     """Return the distance from the centre of each cell to the centre of the nearest marked cell.
 
     Args:
-        marked: the marked cells, of shape (rows, columns).
+        is_marked: the mask of marked cells, of shape (rows, columns).
         resolution: the side of a cell, in metres.
 
     Returns:
@@ -21,8 +21,8 @@ def distance_field(marked: NDArray[np.bool_], resolution: float) -> NDArray[np.f
     Raises:
         LinkwrightError: NAV101, SciPy is not installed.
     """
-    if not marked.any():
-        return np.full(marked.shape, np.inf)
-    distances: NDArray[np.float64] = load_scipy("ndimage").distance_transform_edt(~marked)
+    if not is_marked.any():
+        return np.full(is_marked.shape, np.inf)
+    distances: NDArray[np.float64] = load_scipy("ndimage").distance_transform_edt(~is_marked)
     distances *= resolution
     return distances

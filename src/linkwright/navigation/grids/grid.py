@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 FREE: Final = 0
 OCCUPIED: Final = 100
 UNKNOWN: Final = -1
-"""Values of an occupancy grid (nav_msgs/OccupancyGrid); between ``FREE`` and ``OCCUPIED`` it is per cent."""
+"""Values of nav_msgs/OccupancyGrid; values from ``FREE`` to ``OCCUPIED`` are occupancies in per cent."""
 
 
 @dataclass(eq=False, kw_only=True)
@@ -56,8 +56,8 @@ class Grid:
         x = points[..., 0] - self.x
         y = points[..., 1] - self.y
         if self.yaw:
-            c, s = cos(self.yaw), sin(self.yaw)
-            x, y = c * x + s * y, c * y - s * x
+            cosine, sine = cos(self.yaw), sin(self.yaw)
+            x, y = cosine * x + sine * y, cosine * y - sine * x
         indices: NDArray[np.int64] = np.floor(np.stack((y, x), axis=-1) / self.resolution).astype(np.int64)
         return indices
 
@@ -73,8 +73,8 @@ class Grid:
         y = (indices[..., 0] + 0.5) * self.resolution
         x = (indices[..., 1] + 0.5) * self.resolution
         if self.yaw:
-            c, s = cos(self.yaw), sin(self.yaw)
-            x, y = c * x - s * y, s * x + c * y
+            cosine, sine = cos(self.yaw), sin(self.yaw)
+            x, y = cosine * x - sine * y, sine * x + cosine * y
         points: NDArray[np.float64] = np.stack((x + self.x, y + self.y), axis=-1)
         return points
 

@@ -10,13 +10,13 @@ from linkwright.diagnostics import missing_extra
 
 
 @cache
-def load_scipy(part: str) -> Any:
-    """Import a part of SciPy, such as ``ndimage``, as an untyped module.
+def load_scipy(subpackage: str) -> Any:
+    """Import a subpackage of SciPy, such as ``ndimage``, as an untyped module.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed.
     """
     try:
-        return import_module(f"scipy.{part}")
+        return import_module(f"scipy.{subpackage}")
     except ModuleNotFoundError as error:
         raise missing_extra("NAV101", error) from None

@@ -20,7 +20,7 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
     """Convert a grid to a nav_msgs/OccupancyGrid.
 
     Args:
-        grid: the grid, whose cells are per cent or `UNKNOWN`.
+        grid: the grid; its cells are per cent or `UNKNOWN`.
         frame: the frame of the grid.
         stamp: the builtin_interfaces/Time for the stamp and the load time of the map.
     """
@@ -37,7 +37,7 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
     return message
 
 
-def grid_of(message: Any) -> Grid:
+def grid_from_message(message: Any) -> Grid:
     """Convert a nav_msgs/OccupancyGrid to a grid with its own int8 cells.
 
     Raises:
@@ -49,11 +49,11 @@ def grid_of(message: Any) -> Grid:
         raise BadGridError(f"width = {info.width}, height = {info.height}, data size = {cells.size}")
     if not 0.0 < info.resolution < float("inf"):
         raise BadGridError(f"resolution = {info.resolution:g}")
-    turned = info.origin.orientation
+    orientation = info.origin.orientation
     return Grid(
         cells=cells.reshape(info.height, info.width),
-        resolution=float(str(np.float32(info.resolution))),  # The float32 field would turn 0.05 into 0.0500000007.
+        resolution=float(str(np.float32(info.resolution))),  # The float32 field stores 0.05 as 0.0500000007.
         x=info.origin.position.x,
         y=info.origin.position.y,
-        yaw=rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2],
+        yaw=rpy_from_quaternion((orientation.x, orientation.y, orientation.z, orientation.w))[2],
     )

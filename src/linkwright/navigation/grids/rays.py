@@ -31,13 +31,13 @@ def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[An
     starts = np.broadcast_to(np.asarray(starts, np.int64), ends.shape)
     delta = ends - starts
     steps: Cells = np.abs(delta).max(axis=1)
-    line: Cells = np.repeat(np.arange(len(ends)), steps + 1)
-    first: Cells = np.concatenate(([0], np.cumsum(steps + 1)[:-1])) if len(ends) else steps
-    step: Cells = np.arange(len(line)) - first[line]
-    # Round with integers so that a line is the same on every machine.
-    length: Cells = np.maximum(steps[line], 1)[:, None]
-    cells: Cells = starts[line] + (2 * step[:, None] * delta[line] + length) // (2 * length)
-    return cells, line
+    line_indices: Cells = np.repeat(np.arange(len(ends)), steps + 1)
+    first_steps: Cells = np.concatenate(([0], np.cumsum(steps + 1)[:-1])) if len(ends) else steps
+    step_indices: Cells = np.arange(len(line_indices)) - first_steps[line_indices]
+    # Integer rounding gives the same line on every machine.
+    length: Cells = np.maximum(steps[line_indices], 1)[:, None]
+    cells: Cells = starts[line_indices] + (2 * step_indices[:, None] * delta[line_indices] + length) // (2 * length)
+    return cells, line_indices
 
 
 def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.float64], limit: float) -> Any:
@@ -50,49 +50,53 @@ def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.floa
         distances: the metres to the nearest occupied cell (see `distance_field`), 0 in occupied cells.
         points: the origins of the rays, x and y in the frame of the grid, in metres, of shape (..., 2).
         angles: the angles of the rays about z in that frame, in radians, of shape (...).
-        limit: the range of rays that hit nothing or leave the grid, in metres.
+        limit: the range of rays that hit no cell or leave the grid, in metres.
 
     Returns:
         Ranges in metres, of shape (...), accurate to about half a cell.
     """
     shape = np.broadcast_shapes(points.shape[:-1], angles.shape)
-    c, s, size = cos(distances.yaw), sin(distances.yaw), distances.resolution
-    x, y, turned = points[..., 0] - distances.x, points[..., 1] - distances.y, angles - distances.yaw
-    # Coordinates are in cells of the grid with a border, where rays leave the grid. Single precision suffices for half
-    # a
-    # cell.
-    column, row = _flat((c * x + s * y) / size + 1.0, shape), _flat((c * y - s * x) / size + 1.0, shape)
-    along, across = _flat(np.cos(turned), shape), _flat(np.sin(turned), shape)
+    cosine, sine, size = cos(distances.yaw), sin(distances.yaw), distances.resolution
+    x, y, grid_angles = points[..., 0] - distances.x, points[..., 1] - distances.y, angles - distances.yaw
+    # Coordinates are in cells of the grid with a border, where rays leave the grid. Single precision is enough for an
+    # accuracy of half a cell.
+    column, row = _flat((cosine * x + sine * y) / size + 1.0, shape), _flat((cosine * y - sine * x) / size + 1.0, shape)
+    column_steps, row_steps = _flat(np.cos(grid_angles), shape), _flat(np.sin(grid_angles), shape)
     field = np.pad((distances.cells / size).astype(np.float32), 1, constant_values=_OUTSIDE)
-    # Advance no farther than the border of the cell to which the distance was measured, but by at least half a cell;
-    # otherwise rays could stop.
-    ways = np.where(field > 0.0, np.maximum(field - np.float32(0.75), np.float32(0.5)), field).ravel()
-    most = np.float32(limit / size)
-    travelled: NDArray[np.float32] = np.full(row.size, most)
-    so_far: NDArray[np.float32] = np.zeros(row.size, np.float32)
-    under_way: Cells = np.arange(row.size)
-    while under_way.size:
-        cells = _index(row + across * so_far, distances.rows + 1).astype(np.int64)
+    # A ray advances at most to the border of the nearest occupied cell, but by at least half a cell; otherwise it could
+    # stop.
+    advances = np.where(field > 0.0, np.maximum(field - np.float32(0.75), np.float32(0.5)), field).ravel()
+    max_length = np.float32(limit / size)
+    hit_lengths: NDArray[np.float32] = np.full(row.size, max_length)
+    lengths: NDArray[np.float32] = np.zeros(row.size, np.float32)
+    active_rays: Cells = np.arange(row.size)
+    while active_rays.size:
+        cells = _clipped_indices(row + row_steps * lengths, distances.rows + 1).astype(np.int64)
         cells *= distances.columns + 2
-        cells += _index(column + along * so_far, distances.columns + 1)
-        way = ways.take(cells)
-        met = way == 0.0
-        travelled[under_way[met]] = so_far[met]
-        so_far += way
-        going = np.flatnonzero((way > 0.0) & (so_far < most))
-        row, column, along, across = row.take(going), column.take(going), along.take(going), across.take(going)
-        so_far, under_way = so_far.take(going), under_way.take(going)
-    return np.minimum(travelled.astype(np.float64) * size, limit).reshape(shape)
+        cells += _clipped_indices(column + column_steps * lengths, distances.columns + 1)
+        advance = advances.take(cells)
+        is_hit = advance == 0.0
+        hit_lengths[active_rays[is_hit]] = lengths[is_hit]
+        lengths += advance
+        still_active = np.flatnonzero((advance > 0.0) & (lengths < max_length))
+        row, column, column_steps, row_steps = (
+            row.take(still_active),
+            column.take(still_active),
+            column_steps.take(still_active),
+            row_steps.take(still_active),
+        )
+        lengths, active_rays = lengths.take(still_active), active_rays.take(still_active)
+    return np.minimum(hit_lengths.astype(np.float64) * size, limit).reshape(shape)
 
 
 def _flat(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float32]:
     return np.broadcast_to(values.astype(np.float32), shape).ravel()
 
 
-def _index(values: NDArray[np.float32], last: int) -> NDArray[np.int32]:
-    """Return the row or column indices of coordinates in cells, clipped to the grid.
+def _clipped_indices(values: NDArray[np.float32], max_index: int) -> NDArray[np.int32]:
+    """Return the row or column indices of coordinates in cells, clipped to 0 and `max_index`.
 
     `values` are overwritten.
     """
-    np.minimum(np.maximum(values, np.float32(0.0), out=values), np.float32(last), out=values)
+    np.minimum(np.maximum(values, np.float32(0.0), out=values), np.float32(max_index), out=values)
     return values.astype(np.int32)

@@ -16,7 +16,7 @@ Poses = NDArray[np.float64]
 """x and y in metres and yaw in radians, of shape (n, 3)."""
 
 _MIN_TRANSLATION = 0.01
-"""Metres up to which a motion has no direction."""
+"""The minimum distance in metres for a motion to have a direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,17 +24,17 @@ class Noise:
     """The parameters of the odometry noise: nav2's ``alpha1`` to ``alpha5``.
 
     Attributes:
-        turn_of_turn: the rotation error caused by rotation.
-        turn_of_drive: the rotation error caused by translation.
-        drive_of_drive: the translation error caused by translation.
-        drive_of_turn: the translation error caused by rotation.
+        rotation_from_rotation: the rotation error caused by rotation.
+        rotation_from_translation: the rotation error caused by translation.
+        translation_from_translation: the translation error caused by translation.
+        translation_from_rotation: the translation error caused by rotation.
         strafe: the sideways error of omnidirectional robots.
     """
 
-    turn_of_turn: float = 0.2
-    turn_of_drive: float = 0.2
-    drive_of_drive: float = 0.2
-    drive_of_turn: float = 0.2
+    rotation_from_rotation: float = 0.2
+    rotation_from_translation: float = 0.2
+    translation_from_translation: float = 0.2
+    translation_from_rotation: float = 0.2
     strafe: float = 0.2
 
 
@@ -42,7 +42,7 @@ Pose = tuple[float, float, float]
 """x and y in metres and yaw in radians."""
 
 MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
-"""Moves particles in place: particles, the odometry poses before and after, the noise, and the random generator."""
+"""Moves particles in place. The arguments: particles, old and new odometry pose, noise, random generator."""
 
 
 def wrap_angle(angle: float) -> float:
@@ -52,35 +52,39 @@ def wrap_angle(angle: float) -> float:
 
 def differential(
     particles: Poses,
-    before: Pose,
-    after: Pose,
+    old_pose: Pose,
+    new_pose: Pose,
     noise: Noise,
     random: np.random.Generator,
 ) -> None:
     """Move particles in place by the differential model: rotation, translation, rotation."""
-    x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
-    drive = hypot(x, y)
-    first = 0.0 if drive < _MIN_TRANSLATION else wrap_angle(atan2(y, x) - before[2])
-    second = wrap_angle(turn - first)
-    # Driving backward must not count as a half turn.
-    first_size, second_size = (min(abs(rotation), abs(wrap_angle(rotation - pi))) for rotation in (first, second))
-    count = len(particles)
-    drive_sigma = sqrt(
-        noise.drive_of_drive * drive**2 + noise.drive_of_turn * first_size**2 + noise.drive_of_turn * second_size**2
+    x, y, rotation_angle = new_pose[0] - old_pose[0], new_pose[1] - old_pose[1], wrap_angle(new_pose[2] - old_pose[2])
+    distance = hypot(x, y)
+    first_rotation = 0.0 if distance < _MIN_TRANSLATION else wrap_angle(atan2(y, x) - old_pose[2])
+    second_rotation = wrap_angle(rotation_angle - first_rotation)
+    # A rotation by about half a turn means that the robot drives backward, so it must not add rotation noise.
+    first_size, second_size = (
+        min(abs(rotation), abs(wrap_angle(rotation - pi))) for rotation in (first_rotation, second_rotation)
     )
-    first_sigma = sqrt(noise.turn_of_turn * first_size**2 + noise.turn_of_drive * drive**2)
-    second_sigma = sqrt(noise.turn_of_turn * second_size**2 + noise.turn_of_drive * drive**2)
-    heading = particles[:, 2] + first - random.normal(0.0, first_sigma, count)
-    way = drive - random.normal(0.0, drive_sigma, count)
-    particles[:, 0] += way * np.cos(heading)
-    particles[:, 1] += way * np.sin(heading)
-    particles[:, 2] = heading + second - random.normal(0.0, second_sigma, count)
+    count = len(particles)
+    distance_sigma = sqrt(
+        noise.translation_from_translation * distance**2
+        + noise.translation_from_rotation * first_size**2
+        + noise.translation_from_rotation * second_size**2
+    )
+    first_sigma = sqrt(noise.rotation_from_rotation * first_size**2 + noise.rotation_from_translation * distance**2)
+    second_sigma = sqrt(noise.rotation_from_rotation * second_size**2 + noise.rotation_from_translation * distance**2)
+    heading = particles[:, 2] + first_rotation - random.normal(0.0, first_sigma, count)
+    distances = distance - random.normal(0.0, distance_sigma, count)
+    particles[:, 0] += distances * np.cos(heading)
+    particles[:, 1] += distances * np.sin(heading)
+    particles[:, 2] = heading + second_rotation - random.normal(0.0, second_sigma, count)
 
 
 def omnidirectional(
     particles: Poses,
-    before: Pose,
-    after: Pose,
+    old_pose: Pose,
+    new_pose: Pose,
     noise: Noise,
     random: np.random.Generator,
 ) -> None:
@@ -88,15 +92,19 @@ def omnidirectional(
 
     The model consists of a translation in any direction, and a rotation.
     """
-    x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
-    drive = hypot(x, y)
+    x, y, rotation_angle = new_pose[0] - old_pose[0], new_pose[1] - old_pose[1], wrap_angle(new_pose[2] - old_pose[2])
+    distance = hypot(x, y)
     count = len(particles)
-    drive_sigma = sqrt(noise.drive_of_drive * drive**2 + noise.turn_of_turn * turn**2)
-    turn_sigma = sqrt(noise.drive_of_turn * turn**2 + noise.turn_of_drive * drive**2)
-    strafe_sigma = sqrt(noise.turn_of_turn * turn**2 + noise.strafe * drive**2)
-    bearing = wrap_angle(atan2(y, x) - before[2]) + particles[:, 2]
-    way = drive + random.normal(0.0, drive_sigma, count)
-    sideways = random.normal(0.0, strafe_sigma, count)
-    particles[:, 0] += way * np.cos(bearing) + sideways * np.sin(bearing)
-    particles[:, 1] += way * np.sin(bearing) - sideways * np.cos(bearing)
-    particles[:, 2] += turn + random.normal(0.0, turn_sigma, count)
+    distance_sigma = sqrt(
+        noise.translation_from_translation * distance**2 + noise.rotation_from_rotation * rotation_angle**2
+    )
+    rotation_sigma = sqrt(
+        noise.translation_from_rotation * rotation_angle**2 + noise.rotation_from_translation * distance**2
+    )
+    strafe_sigma = sqrt(noise.rotation_from_rotation * rotation_angle**2 + noise.strafe * distance**2)
+    bearing = wrap_angle(atan2(y, x) - old_pose[2]) + particles[:, 2]
+    distances = distance + random.normal(0.0, distance_sigma, count)
+    sideways_distances = random.normal(0.0, strafe_sigma, count)
+    particles[:, 0] += distances * np.cos(bearing) + sideways_distances * np.sin(bearing)
+    particles[:, 1] += distances * np.sin(bearing) - sideways_distances * np.cos(bearing)
+    particles[:, 2] += rotation_angle + random.normal(0.0, rotation_sigma, count)

@@ -1,4 +1,4 @@
-"""Images of maps: PGM, read and written here, and other formats (PNG, BMP, ...) by Pillow."""
+"""Reading and writing of map images: PGM directly, and other formats (PNG, BMP, ...) with Pillow."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import read_file
 
-MOST_PIXELS = 1 << 28
-"""No map with more pixels is read: a small file can claim any size."""
-_LARGEST_FILE = 1 << 30
+MAX_PIXELS = 1 << 28
+"""The maximum number of pixels of a map that is read, because the header of a small file can declare any size."""
+_MAX_FILE_BYTES = 1 << 30
 _PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
 
 
@@ -50,14 +50,14 @@ def read_image(path: Path) -> MapImage:
             and Pillow, which reads other formats, is not installed.
     """
     try:
-        data = read_file(path, _LARGEST_FILE)
+        data = read_file(path, _MAX_FILE_BYTES)
     except FileNotFoundError:
-        message = phrase("the image '{path}' of the map does not exist", path=display_path(path))
+        message = phrase("the map image '{path}' does not exist", path=display_path(path))
         raise LinkwrightError(Diagnostic("NAV203", message, hint=missing_file_hint(path))) from None
     except OSError as error:
         raise _unreadable(path, foreign(error.strerror or error)) from None
     header = _PGM.match(data)
-    return _pgm(path, data, header) if header else _by_pillow(path, data)
+    return _parse_pgm(path, data, header) if header else _read_with_pillow(path, data)
 
 
 def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
@@ -69,11 +69,13 @@ def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
 def pillow_bytes(pixels: NDArray[np.uint8], kind: str) -> bytes:
     """Encode pixels as an image file in one of Pillow's formats.
 
-    The shape is (rows, columns) for grey, or (rows, columns, 2) for grey and opacity.
+    Args:
+        pixels: the pixels, of shape (rows, columns) for grey, or (rows, columns, 2) for grey and opacity.
+        kind: the name of the format, such as ``png``.
 
     Raises:
         LinkwrightError: NAV204, Pillow is not installed.
-        ValueError: Pillow cannot write the format, or not with such pixels.
+        ValueError: Pillow cannot write the format, or cannot write these pixels in it.
     """
     image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _grey_with_opacity(pixels)
     file = BytesIO()
@@ -89,39 +91,47 @@ def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
     return _pillow().fromarray(np.stack((grey, grey, grey, pixels[..., 1]), axis=-1))
 
 
-def _pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
-    columns, rows, most = (int(group) for group in header.groups()[1:])
-    if not 0 < rows * columns <= MOST_PIXELS or not 0 < most < 1 << 16:
-        raise _unreadable(path, phrase("its header says {size}", size=f"{columns} x {rows}, {most}"))
-    rest = data[header.end() :]
+def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
+    columns, rows, max_value = (int(group) for group in header.groups()[1:])
+    if not 0 < rows * columns <= MAX_PIXELS or not 0 < max_value < 1 << 16:
+        raise _unreadable(
+            path,
+            phrase(
+                "its header declares {size}, which is not a valid size and maximum value",
+                size=f"{columns} x {rows}, {max_value}",
+            ),
+        )
+    pixel_bytes = data[header.end() :]
     if header[1] == b"2":
         try:
-            values = np.array(rest.split()[: rows * columns], np.float64)
+            values = np.array(pixel_bytes.split()[: rows * columns], np.float64)
         except ValueError:
             raise _unreadable(path, phrase("its pixels are not numbers")) from None
     else:
-        values = np.frombuffer(rest, ">u2" if most > 255 else np.uint8, -1 if most < 256 else len(rest) // 2)
+        values = np.frombuffer(
+            pixel_bytes, ">u2" if max_value > 255 else np.uint8, -1 if max_value < 256 else len(pixel_bytes) // 2
+        )
     if values.size < rows * columns:
-        reason = phrase("it has {count} of {size} pixels", count=values.size, size=rows * columns)
+        reason = phrase("it has only {count} of {size} pixels", count=values.size, size=rows * columns)
         raise _unreadable(path, reason)
-    return MapImage(np.minimum(values[: rows * columns].reshape(rows, columns) / most, 1.0))
+    return MapImage(np.minimum(values[: rows * columns].reshape(rows, columns) / max_value, 1.0))
 
 
-def _by_pillow(path: Path, data: bytes) -> MapImage:
+def _read_with_pillow(path: Path, data: bytes) -> MapImage:
     pillow = _pillow()
     try:
         with pillow.open(BytesIO(data)) as file:
-            if file.width * file.height > MOST_PIXELS:
-                raise _unreadable(path, phrase("it has more than {most} pixels", most=MOST_PIXELS))
-            wide = file.mode.startswith("I")
-            clear = file.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in file.info
-            values = np.asarray(file if wide else file.convert("RGBA" if clear else "RGB"), np.float64)
+            if file.width * file.height > MAX_PIXELS:
+                raise _unreadable(path, phrase("it has more than {most} pixels", most=MAX_PIXELS))
+            has_16_bits = file.mode.startswith("I")
+            has_opacity = file.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in file.info
+            values = np.asarray(file if has_16_bits else file.convert("RGBA" if has_opacity else "RGB"), np.float64)
     except (OSError, ValueError, SyntaxError, pillow.DecompressionBombError) as error:
         raise _unreadable(path, foreign(str(error).replace(repr(BytesIO), "it"))) from None
-    if wide:
+    if has_16_bits:
         return MapImage(values / 65535.0)
     values = values / 255.0
-    return MapImage(values[..., :3].mean(axis=-1), values[..., 3] if clear else None)
+    return MapImage(values[..., :3].mean(axis=-1), values[..., 3] if has_opacity else None)
 
 
 def _pillow() -> Any:
@@ -133,5 +143,5 @@ def _pillow() -> Any:
 
 
 def _unreadable(path: Path, reason: Phrase) -> LinkwrightError:
-    message = phrase("the image '{path}' of the map cannot be read: {reason}", path=display_path(path), reason=reason)
+    message = phrase("the map image '{path}' cannot be read: {reason}", path=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("NAV203", message))

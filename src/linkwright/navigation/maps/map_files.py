@@ -1,4 +1,4 @@
-"""Loading and saving of maps as a YAML file with an image, as in nav2_map_server."""
+"""Loads and saves maps as a YAML file with an image, as nav2_map_server does."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _FORMATS = ("bmp", "pgm", "png")
 _WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
 
 
-def _unheard(_line: str) -> None:
+def _ignore_warning(_line: str) -> None:
     """Ignore a warning."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapSaveSettings:
-    """The settings with which a map is saved.
+    """The settings for saving a map.
 
     Attributes:
         name: the path of the files, without an extension.
@@ -56,12 +56,14 @@ def load_map(path: str | Path) -> Grid:
     return Grid(cells=cells, resolution=map_yaml.resolution, x=x, y=y, yaw=yaw)
 
 
-def save_map(grid: Grid, saved: MapSaveSettings, warn: Callable[[str], object] = _unheard) -> tuple[Path, Path]:
+def save_map(
+    grid: Grid, settings: MapSaveSettings, warn: Callable[[str], object] = _ignore_warning
+) -> tuple[Path, Path]:
     """Save a grid as a map.
 
     Args:
         grid: the grid; its cells are per cent or unknown.
-        saved: the name and settings.
+        settings: the name of the files and the settings.
         warn: called with each warning for the user.
 
     Returns:
@@ -71,45 +73,45 @@ def save_map(grid: Grid, saved: MapSaveSettings, warn: Callable[[str], object] =
         LinkwrightError: NAV205, the thresholds are invalid; NAV206, a file cannot be written; NAV204, Pillow is needed
             and not installed.
     """
-    _check(saved)
-    kind = (saved.image_format or ("png" if saved.mode is MapMode.SCALE else "pgm")).lower()
-    if kind not in _FORMATS:
-        hint = did_you_mean(kind, _FORMATS)
+    _check_thresholds(settings)
+    extension = (settings.image_format or ("png" if settings.mode is MapMode.SCALE else "pgm")).lower()
+    if extension not in _FORMATS:
+        hint = did_you_mean(extension, _FORMATS)
         warn(
-            f"Requested image format '{kind}' is not one of the recommended formats: 'bmp', 'pgm', 'png'"
+            f"Requested image format '{extension}' is not one of the recommended formats: 'bmp', 'pgm', 'png'"
             + (f"; {hint}" if hint else "")
         )
-    if saved.mode is MapMode.SCALE and kind in _WITHOUT_OPACITY:
+    if settings.mode is MapMode.SCALE and extension in _WITHOUT_OPACITY:
         warn(
-            f"Map mode 'scale' requires transparency, but format '{kind}' does not support it. "
+            f"Map mode 'scale' requires transparency, but format '{extension}' does not support it. "
             "Consider switching image format to 'png'."
         )
-    if saved.mode is MapMode.TRINARY and saved.free_thresh > UNKNOWN_DARKNESS and bool((grid.cells < 0).any()):
+    if settings.mode is MapMode.TRINARY and settings.free_thresh > UNKNOWN_DARKNESS and bool((grid.cells < 0).any()):
         warn(
-            f"Unknown cells are read back as free with a free threshold of {saved.free_thresh:g}, in nav2 as here. "
+            f"Unknown cells are read back as free with a free threshold of {settings.free_thresh:g}, in nav2 as here. "
             "With 0.196 they stay unknown."
         )
-    pixels = pixels_of_cells(grid.cells, saved.mode, saved.occupied_thresh, saved.free_thresh)
-    if kind in _WITHOUT_OPACITY and pixels.ndim == 3:
+    pixels = pixels_of_cells(grid.cells, settings.mode, settings.occupied_thresh, settings.free_thresh)
+    if extension in _WITHOUT_OPACITY and pixels.ndim == 3:
         pixels = pixels[..., 0]
     try:
-        data = pgm_bytes(pixels) if kind == "pgm" else pillow_bytes(pixels, kind)
+        data = pgm_bytes(pixels) if extension == "pgm" else pillow_bytes(pixels, extension)
     except ValueError as error:
-        warn(f"Format '{kind}' is not usable. Using 'png' instead: {error}")
-        kind, data = "png", pillow_bytes(pixels, "png")
-    image, text = Path(f"{saved.name}.{kind}"), Path(f"{saved.name}.yaml")
-    _write(image, data)
-    _write(text, _yaml(grid, saved, image.name).encode())
-    return image, text
+        warn(f"Format '{extension}' is not usable. Using 'png' instead: {error}")
+        extension, data = "png", pillow_bytes(pixels, "png")
+    image_path, yaml_path = Path(f"{settings.name}.{extension}"), Path(f"{settings.name}.yaml")
+    _write(image_path, data)
+    _write(yaml_path, _yaml_text(grid, settings, image_path.name).encode())
+    return image_path, yaml_path
 
 
-def _check(saved: MapSaveSettings) -> None:
+def _check_thresholds(settings: MapSaveSettings) -> None:
     problem = None
-    if saved.occupied_thresh > 1.0:
+    if settings.occupied_thresh > 1.0:
         problem = phrase("Threshold_occupied must be 1.0 or less")
-    elif saved.free_thresh < 0.0:
+    elif settings.free_thresh < 0.0:
         problem = phrase("Free threshold must be 0.0 or greater")
-    elif saved.occupied_thresh <= saved.free_thresh:
+    elif settings.occupied_thresh <= settings.free_thresh:
         problem = phrase("Threshold_free must be smaller than threshold_occupied")
     if problem is not None:
         raise LinkwrightError(Diagnostic("NAV205", problem))
@@ -124,15 +126,17 @@ def _write(path: Path, data: bytes) -> None:
         raise LinkwrightError(Diagnostic("NAV206", message)) from None
 
 
-def _yaml(grid: Grid, saved: MapSaveSettings, image: str) -> str:
-    origin = ", ".join(_number(number) for number in (grid.x, grid.y, grid.yaw))
+def _yaml_text(grid: Grid, settings: MapSaveSettings, image: str) -> str:
+    origin = ", ".join(_format_number(number) for number in (grid.x, grid.y, grid.yaw))
     return (
-        f"image: {image}\nmode: {saved.mode.value}\nresolution: {_number(grid.resolution)}\norigin: [{origin}]\n"
-        f"negate: 0\noccupied_thresh: {_number(saved.occupied_thresh)}\nfree_thresh: {_number(saved.free_thresh)}"
+        f"image: {image}\nmode: {settings.mode.value}\nresolution: "
+        f"{_format_number(grid.resolution)}\norigin: [{origin}]\n"
+        f"negate: 0\noccupied_thresh: {_format_number(settings.occupied_thresh)}\nfree_thresh: "
+        f"{_format_number(settings.free_thresh)}"
     )
 
 
-def _number(value: float) -> str:
-    """Format a number with three digits as nav2 does, or with more if a millimetre needs them."""
+def _format_number(value: float) -> str:
+    """Format a number with three significant digits as nav2 does, or with more to keep millimetres."""
     digits = 3 if value == 0.0 else max(3, floor(log10(abs(value))) + 4)
     return f"{value:.{digits}g}"

@@ -1,7 +1,7 @@
 """The YAML file of a map: image, resolution, origin, and the meaning of pixels.
 
-The keys, their meanings and the required keys are those of nav2_map_server. Errors have a line and column. Two rules
-are stricter than nav2's: the resolution must be greater than 0, and thresholds must be between 0 and 1.
+The keys, their meanings and the required keys are the same as in nav2_map_server. Errors have a line and column. Two
+rules are stricter than in nav2: the resolution must be greater than 0, and thresholds must be between 0 and 1.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def read_map_yaml(path: str | Path) -> MapYaml:
         LinkwrightError: NAV201, the file cannot be read; NAV202, the content is invalid.
     """
     if not str(path):
-        raise LinkwrightError(Diagnostic("NAV201", phrase("YAML file name is empty, can't load!")))
+        raise LinkwrightError(Diagnostic("NAV201", phrase("the name of the map's YAML file is empty")))
     path = Path(path)
     return _Reader(read_source(path, phrase("map file"), "NAV201")).read(path)
 
@@ -79,7 +79,7 @@ class _Reader:
         self._nodes: dict[str, yaml.Node] = {}
 
     def read(self, path: Path) -> MapYaml:
-        self._compose()
+        self._collect_keys()
         missing = [key for key in _REQUIRED if key not in self._nodes]
         if missing:
             hint = did_you_mean(missing[0], [key for key in self._nodes if key not in _REQUIRED])
@@ -95,10 +95,12 @@ class _Reader:
             mode=self._mode(),
         )
 
-    def _compose(self) -> None:
+    def _collect_keys(self) -> None:
         root = self._document.root
         if not isinstance(root, yaml.MappingNode):
-            message = phrase("the YAML of a map must have keys and values: {names}", names=", ".join(_REQUIRED))
+            message = phrase(
+                ("the YAML file of a map must be a mapping with the keys {names}"), names=", ".join(_REQUIRED)
+            )
             raise self._error(message, root)
         for key, value in root.value:
             if isinstance(key, yaml.ScalarNode):
@@ -123,7 +125,7 @@ class _Reader:
         node = self._nodes["resolution"]
         value = self._number(node, "resolution")
         if not value > 0.0:
-            raise self._error(phrase("'resolution', in metres per pixel, must be more than 0"), node)
+            raise self._error(phrase("'resolution' must be more than 0 (metres per pixel)"), node)
         return value
 
     def _origin(self) -> list[float]:
@@ -158,10 +160,10 @@ class _Reader:
         if node is None:
             return MapMode.TRINARY
         text = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
-        known = [map_mode.value for map_mode in MapMode]
-        if text not in known:
-            message = phrase("'mode' must be one of {known}", known=", ".join(known))
-            raise self._error(message, node, did_you_mean(text, known))
+        mode_names = [map_mode.value for map_mode in MapMode]
+        if text not in mode_names:
+            message = phrase("'mode' must be one of {known}", known=", ".join(mode_names))
+            raise self._error(message, node, did_you_mean(text, mode_names))
         return MapMode(text)
 
     def _error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:

@@ -11,7 +11,7 @@ from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
 
 _FREE_GREY, _UNKNOWN_GREY = 254, 205
 UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GREY / 255.0
-"""The darkness of ``trinary``'s pixels for unknown cells: a ``free_thresh`` above it reads them as free."""
+"""The darkness of pixels for unknown cells in the mode ``trinary``; a higher ``free_thresh`` reads them as free."""
 _OPAQUE = 255
 
 
@@ -27,17 +27,23 @@ def cells_of_image(image: MapImage, map_yaml: MapYaml) -> NDArray[np.int8]:
     """
     shade, opacity = image.shade[::-1], None if image.opacity is None else image.opacity[::-1]
     if map_yaml.mode is MapMode.RAW:
-        value = np.floor(shade * 255.0 + 0.5)
-        return np.where(value <= OCCUPIED, value, UNKNOWN).astype(np.int8)
+        grey = np.floor(shade * 255.0 + 0.5)
+        return np.where(grey <= OCCUPIED, grey, UNKNOWN).astype(np.int8)
     if map_yaml.mode is MapMode.TRINARY and opacity is not None:
         shade = (shade * 3.0 + opacity) / 4.0  # nav2 counts opacity as a fourth colour channel.
-    dark = shade if map_yaml.negate else 1.0 - shade
+    darkness = shade if map_yaml.negate else 1.0 - shade
     if map_yaml.mode is MapMode.SCALE:
-        span = map_yaml.occupied_thresh - map_yaml.free_thresh
-        between = np.rint((dark - map_yaml.free_thresh) / span * 100.0) if span > 0.0 else np.zeros_like(dark)
+        threshold_span = map_yaml.occupied_thresh - map_yaml.free_thresh
+        undecided = (
+            np.rint((darkness - map_yaml.free_thresh) / threshold_span * 100.0)
+            if threshold_span > 0.0
+            else np.zeros_like(darkness)
+        )
     else:
-        between = np.full_like(dark, UNKNOWN)
-    cells = np.where(dark > map_yaml.occupied_thresh, OCCUPIED, np.where(dark < map_yaml.free_thresh, FREE, between))
+        undecided = np.full_like(darkness, UNKNOWN)
+    cells = np.where(
+        darkness > map_yaml.occupied_thresh, OCCUPIED, np.where(darkness < map_yaml.free_thresh, FREE, undecided)
+    )
     if map_yaml.mode is MapMode.SCALE and opacity is not None:
         cells = np.where(opacity < 1.0, UNKNOWN, cells)
     return cells.astype(np.int8)
@@ -57,14 +63,14 @@ def pixels_of_cells(
     Returns:
         Grey pixels, of the shape of the cells; in the mode ``scale``, grey and opacity, of shape (rows, columns, 2).
     """
-    turned = cells[::-1].astype(np.int16)
-    known = (turned >= 0) & (turned <= 100)
+    values = cells[::-1].astype(np.int16)
+    is_known = (values >= 0) & (values <= 100)
     if mode is MapMode.RAW:
-        return np.where(known, turned, 255).astype(np.uint8)
+        return np.where(is_known, values, 255).astype(np.uint8)
     if mode is MapMode.SCALE:
-        grey = np.where(known, np.rint((100 - turned) / 100.0 * 255.0), 128)
-        return np.stack((grey, np.where(known, _OPAQUE, 0)), axis=-1).astype(np.uint8)
-    free = known & (turned <= round(free_thresh * 100.0))
-    occupied = known & (turned >= round(occupied_thresh * 100.0))
-    grey = np.where(free, _FREE_GREY, np.where(occupied, 0, _UNKNOWN_GREY))
+        grey = np.where(is_known, np.rint((100 - values) / 100.0 * 255.0), 128)
+        return np.stack((grey, np.where(is_known, _OPAQUE, 0)), axis=-1).astype(np.uint8)
+    is_free = is_known & (values <= round(free_thresh * 100.0))
+    is_occupied = is_known & (values >= round(occupied_thresh * 100.0))
+    grey = np.where(is_free, _FREE_GREY, np.where(is_occupied, 0, _UNKNOWN_GREY))
     return grey.astype(np.uint8)

@@ -1,7 +1,7 @@
 """nav2's amcl, which localizes the robot on a map from laser scans and odometry.
 
-Parameters, topics, services and texts are those of nav2. Deliberate differences: the random seed is fixed, so the same
-data give the same result; a persistent mismatch of scans and map is logged; clusters of particles are continuous
+The node has nav2's parameters, topics, services and texts. Deliberate differences: the random seed is fixed, so the
+same data give the same result; a persistent mismatch of scans and map is logged; clusters of particles are continuous
 across +-pi in yaw; ``save_pose_rate`` and ``freespace_downsampling`` have no effect.
 """
 
@@ -19,7 +19,7 @@ from linkwright.graph import LATCHED_QOS, SENSOR_DATA_QOS, TF_QOS, TransformExce
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
-from linkwright.navigation.grids.occupancy import BadGridError, grid_of
+from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message
 from linkwright.navigation.localization.beams import Beams, beams_of_scan
 from linkwright.navigation.localization.motion_models import Pose, wrap_angle
 from linkwright.navigation.localization.particle_filter import Estimate, ParticleFilter
@@ -28,15 +28,15 @@ from linkwright.navigation.nodes.amcl_parameters import declare_parameters, read
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
-_MOST_WAITING = 10
-_SECONDS_BETWEEN_COMPLAINTS = 5.0
-_SECONDS_OF_SILENCE = 15.0
+_POSE_TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+_MAX_QUEUED_SCANS = 10
+_WARNING_PERIOD = 5.0
+_SCAN_TIMEOUT = 15.0
 _UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
 _MIN_FIT = 0.3
-"""The share of beams near obstacles of the map below which a scan does not fit."""
-_MISFITS = 5
-"""The number of consecutive measurements that do not match after which a warning is logged."""
+"""A scan does not fit if at most this share of its beams ends near an obstacle of the map."""
+_MAX_MISFITS = 5
+"""A warning is logged after this number of consecutive scans that do not fit the map."""
 
 
 class AmclNode(ManagedNode):
@@ -48,8 +48,8 @@ class AmclNode(ManagedNode):
         self._pose: Pose | None = None
         self._covariance: NDArray[np.float64] = _UNKNOWN_COVARIANCE
         self._map: MapLikelihoods | None = None
-        self._active = self._begun = self._forced = False
-        self._measured = self._misfits = 0
+        self._active = self._begun = self._update_requested = False
+        self._update_count = self._misfit_count = 0
         self._odometry: Pose = (0.0, 0.0, 0.0)
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
@@ -60,40 +60,40 @@ class AmclNode(ManagedNode):
             LinkwrightError: NODE433, a parameter has an invalid value.
         """
         self._settings = read_parameters(self)
-        if self._settings.given.always_reset_initial_pose:
+        if self._settings.parameters.always_reset_initial_pose:
             self._pose = None
         self._map = None
         self._filter = ParticleFilter(self._settings.filter)
-        self._waiting: deque[Any] = deque(maxlen=_MOST_WAITING)
+        self._waiting: deque[Any] = deque(maxlen=_MAX_QUEUED_SCANS)
         self._map_to_odom: Transform | None = None
-        self._begin_at(self._pose, self._covariance)
+        self._initialize_particles(self._pose, self._covariance)
         self._join()
 
     def _join(self) -> None:
         settings, register = self._settings, self.register
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         listener = TransformListener(self, self)
-        register(_ListenerPart(listener))
-        self._clouds = register(
+        register(_DestroyableListener(listener))
+        self._cloud_publisher = register(
             self.create_publisher(get_message("nav2_msgs/msg/ParticleCloud"), "particle_cloud", SENSOR_DATA_QOS)
         )
-        pose, scan = get_message(_POSE), get_message("sensor_msgs/msg/LaserScan")
-        self._poses = register(self.create_publisher(pose, "amcl_pose", LATCHED_QOS))
+        pose, scan = get_message(_POSE_TYPE), get_message("sensor_msgs/msg/LaserScan")
+        self._pose_publisher = register(self.create_publisher(pose, "amcl_pose", LATCHED_QOS))
         self._transforms = register(self.create_publisher(TFMessage, "/tf", TF_QOS))
         register(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
         grid = get_message("nav_msgs/msg/OccupancyGrid")
-        register(self.create_subscription(grid, settings.given.map_topic, self._on_map, LATCHED_QOS))
-        register(self.create_subscription(scan, settings.given.scan_topic, self._on_scan, SENSOR_DATA_QOS))
-        empty = get_service("std_srvs/srv/Empty")
-        register(self.create_service(empty, "reinitialize_global_localization", self._on_global_localization))
-        register(self.create_service(empty, "request_nomotion_update", self._on_no_motion))
-        initial = get_service("nav2_msgs/srv/SetInitialPose")
-        register(self.create_service(initial, "set_initial_pose", self._on_set_initial_pose))
+        register(self.create_subscription(grid, settings.parameters.map_topic, self._on_map, LATCHED_QOS))
+        register(self.create_subscription(scan, settings.parameters.scan_topic, self._on_scan, SENSOR_DATA_QOS))
+        empty_type = get_service("std_srvs/srv/Empty")
+        register(self.create_service(empty_type, "reinitialize_global_localization", self._on_global_localization))
+        register(self.create_service(empty_type, "request_nomotion_update", self._on_no_motion))
+        initial_pose_type = get_service("nav2_msgs/srv/SetInitialPose")
+        register(self.create_service(initial_pose_type, "set_initial_pose", self._on_set_initial_pose))
 
     def activate(self) -> None:
         """Start localizing, from the initial pose if one is set."""
-        self._heard_ns = self.get_clock().now().nanoseconds
-        self._silence = self.create_timer(_SECONDS_OF_SILENCE, self._check_scan_timeout)
+        self._last_scan_ns = self.get_clock().now().nanoseconds
+        self._scan_timer = self.create_timer(_SCAN_TIMEOUT, self._check_scan_timeout)
         if self._settings.initial_pose is not None:
             self._set_pose(self._settings.initial_pose, np.zeros((3, 3)))
         self._active = True
@@ -101,7 +101,7 @@ class AmclNode(ManagedNode):
     def deactivate(self) -> None:
         """Stop localizing; the estimated pose is kept."""
         self._active = False
-        self._silence.destroy()
+        self._scan_timer.destroy()
         self._waiting.clear()
 
     def cleanup(self) -> None:
@@ -118,12 +118,12 @@ class AmclNode(ManagedNode):
             self._work()
 
     def _on_map(self, message: Any) -> None:
-        if self._map is not None and self._settings.given.first_map_only:
+        if self._map is not None and self._settings.parameters.first_map_only:
             return
         try:
-            grid = grid_of(message)
+            grid = grid_from_message(message)
         except BadGridError as error:
-            self.get_logger().error(f"the message on '{self._settings.given.map_topic}' is not a map: {error}")
+            self.get_logger().error(f"the message on '{self._settings.parameters.map_topic}' is not a map: {error}")
             return
         self.get_logger().info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:.3f} m/pix")
         if message.header.frame_id != self._settings.world:
@@ -136,21 +136,22 @@ class AmclNode(ManagedNode):
     def _on_scan(self, message: Any) -> None:
         if not self._active:
             return
-        self._heard_ns = self.get_clock().now().nanoseconds
+        self._last_scan_ns = self.get_clock().now().nanoseconds
         if self._map is None:
-            topic = self.resolve_topic_name(self._settings.given.map_topic)
-            nobody = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
-            self.get_logger().warning(f"Waiting for map....{nobody}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+            topic = self.resolve_topic_name(self._settings.parameters.map_topic)
+            hint = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
+            self.get_logger().warning(f"Waiting for map....{hint}", throttle_duration_sec=_WARNING_PERIOD)
             return
         self._waiting.append(message)
         self._work()
 
     def _check_scan_timeout(self) -> None:
-        silent = (self.get_clock().now().nanoseconds - self._heard_ns) / 1e9
-        if silent >= _SECONDS_OF_SILENCE:
+        silent_seconds = (self.get_clock().now().nanoseconds - self._last_scan_ns) / 1e9
+        if silent_seconds >= _SCAN_TIMEOUT:
             self.get_logger().warning(
-                f"No laser scan received (and thus no pose updates have been published) for {silent:.1f} seconds. "
-                f"Verify that data is being published on the {self._settings.given.scan_topic} topic."
+                "No laser scan received (and thus no pose updates have been published) for "
+                f"{silent_seconds:.1f} seconds. "
+                f"Verify that data is being published on the {self._settings.parameters.scan_topic} topic."
             )
 
     def _work(self) -> None:
@@ -165,19 +166,25 @@ class AmclNode(ManagedNode):
                 robot_in_odom, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
                 laser, _ = self._buffer.lookup(self._settings.base, scan.header.frame_id.removeprefix("/"), stamp_ns)
             except TransformException as error:
-                late = self.get_clock().now().nanoseconds - stamp_ns > self._settings.given.transform_tolerance * 1e9
-                if not late and len(self._waiting) < _MOST_WAITING:
+                is_late = (
+                    self.get_clock().now().nanoseconds - stamp_ns > self._settings.parameters.transform_tolerance * 1e9
+                )
+                if not is_late and len(self._waiting) < _MAX_QUEUED_SCANS:
                     return
                 self._waiting.popleft()
                 self.get_logger().error(
                     f"Couldn't determine robot's pose associated with laser scan: {error}",
-                    throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS,
+                    throttle_duration_sec=_WARNING_PERIOD,
                 )
                 continue
             self._waiting.popleft()
             settings = self._settings
             beams = beams_of_scan(
-                scan, laser, settings.given.max_beams, settings.given.laser_min_range, settings.given.laser_max_range
+                scan,
+                laser,
+                settings.parameters.max_beams,
+                settings.parameters.laser_min_range,
+                settings.parameters.laser_max_range,
             )
             self._update(beams, robot_in_odom, stamp_ns)
 
@@ -185,53 +192,53 @@ class AmclNode(ManagedNode):
 
     def _update(self, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
         assert self._map is not None, "scans wait for the map"
-        settings, odometry = self._settings, _flat(robot_in_odom)
-        moved = not self._begun or self._forced or self._has_moved(odometry)
-        if self._begun and moved:
+        settings, odometry = self._settings, _planar_pose(robot_in_odom)
+        must_update = not self._begun or self._update_requested or self._has_moved(odometry)
+        if self._begun and must_update:
             settings.motion(self._filter.particles, self._odometry, odometry, settings.noise, self._filter.random)
-        published = not self._begun
-        self._begun, self._forced = True, False
-        if moved:
+        must_publish = not self._begun
+        self._begun, self._update_requested = True, False
+        if must_update:
             self._odometry = odometry
             skipping = settings.skipping if self._filter.has_converged() else None
-            self._filter.weigh(
-                self._map.likelihoods(settings.given.laser_model_type, self._filter.particles, beams, skipping)
+            self._filter.update_weights(
+                self._map.likelihoods(settings.parameters.laser_model_type, self._filter.particles, beams, skipping)
             )
-            self._measured += 1
-            if self._measured % settings.given.resample_interval == 0:
+            self._update_count += 1
+            if self._update_count % settings.parameters.resample_interval == 0:
                 grid = self._map
                 self._filter.resample(lambda count: grid.random_poses(count, self._filter.random))
-                published = True
+                must_publish = True
             self._publish_cloud(stamp_ns)
-        if published:
+        if must_publish:
             self._publish(self._filter.estimate(), beams, robot_in_odom, stamp_ns)
         self._broadcast(stamp_ns)
 
     def _has_moved(self, odometry: Pose) -> bool:
-        before, settings = self._odometry, self._settings
+        previous, settings = self._odometry, self._settings
         return (
-            abs(odometry[0] - before[0]) > settings.given.update_min_d
-            or abs(odometry[1] - before[1]) > settings.given.update_min_d
-            or abs(wrap_angle(odometry[2] - before[2])) > settings.given.update_min_a
+            abs(odometry[0] - previous[0]) > settings.parameters.update_min_d
+            or abs(odometry[1] - previous[1]) > settings.parameters.update_min_d
+            or abs(wrap_angle(odometry[2] - previous[2])) > settings.parameters.update_min_a
         )
 
-    def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
+    def _initialize_particles(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
         """Initialise the particles around a pose, or around the map's origin if the pose is None."""
         self._pose, self._covariance = pose, covariance
         self._filter.draw_around(pose or (0.0, 0.0, 0.0), covariance)
         self._reset()
 
     def _reset(self) -> None:
-        self._begun = self._forced = False
-        self._measured = self._misfits = 0
+        self._begun = self._update_requested = False
+        self._update_count = self._misfit_count = 0
 
     def _follow(self) -> None:
         """Apply changed parameters to the active node; frames and topics remain as configured."""
         if not hasattr(self, "_settings"):
             return
-        before, self._settings = self._settings, read_parameters(self)
+        previous, self._settings = self._settings, read_parameters(self)
         self._filter.settings = self._settings.filter
-        if self._map is not None and before.laser != self._settings.laser:
+        if self._map is not None and previous.laser != self._settings.laser:
             self._map = MapLikelihoods(self._map.grid, self._settings.laser)
 
     # --- output ------------------------------------------------------------------------------------------------------
@@ -240,12 +247,12 @@ class AmclNode(ManagedNode):
         if self._pose is None:
             self.get_logger().warning(
                 "AMCL cannot publish a pose or update the transform. Please set the initial pose...",
-                throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS,
+                throttle_duration_sec=_WARNING_PERIOD,
             )
             return
         self._pose, self._covariance = estimate.pose, estimate.covariance
-        self._map_to_odom = compose(_transform(estimate.pose), invert(robot_in_odom))
-        message = get_message(_POSE)()
+        self._map_to_odom = compose(_spatial_pose(estimate.pose), invert(robot_in_odom))
+        message = get_message(_POSE_TYPE)()
         message.header.frame_id = self._settings.world
         message.header.stamp = _stamp(stamp_ns)
         _write_pose(message.pose.pose, estimate.pose)
@@ -253,25 +260,25 @@ class AmclNode(ManagedNode):
         covariance[:2, :2] = estimate.covariance[:2, :2]
         covariance[5, 5] = estimate.covariance[2, 2]
         message.pose.covariance = covariance.reshape(36)
-        self._poses.publish(message)
-        self._judge(estimate, beams)
+        self._pose_publisher.publish(message)
+        self._check_fit(estimate, beams)
 
-    def _judge(self, estimate: Estimate, beams: Beams) -> None:
+    def _check_fit(self, estimate: Estimate, beams: Beams) -> None:
         """Warn if several consecutive scans did not match the map."""
         assert self._map is not None, "there is an estimate"
         fit = self._map.fit(estimate.pose, beams)
         if fit is None:
             return
-        self._misfits = 0 if fit > _MIN_FIT else self._misfits + 1
-        if self._misfits >= _MISFITS:
+        self._misfit_count = 0 if fit > _MIN_FIT else self._misfit_count + 1
+        if self._misfit_count >= _MAX_MISFITS:
             self.get_logger().warning(
                 f"only {fit:.0%} of the beams end near something on the map: the robot is elsewhere, or the map is "
                 "another one. Say where it is (2D Pose Estimate), or call /reinitialize_global_localization and drive",
-                throttle_duration_sec=_SECONDS_OF_SILENCE,
+                throttle_duration_sec=_SCAN_TIMEOUT,
             )
 
     def _publish_cloud(self, stamp_ns: int) -> None:
-        if self._pose is None or not self._clouds.get_subscription_count():
+        if self._pose is None or not self._cloud_publisher.get_subscription_count():
             return
         message = get_message("nav2_msgs/msg/ParticleCloud")()
         message.header.frame_id = self._settings.world
@@ -281,14 +288,16 @@ class AmclNode(ManagedNode):
             particle = kind(weight=weight)
             _write_pose(particle.pose, (x, y, yaw))
             message.particles.append(particle)
-        self._clouds.publish(message)
+        self._cloud_publisher.publish(message)
 
     def _broadcast(self, stamp_ns: int) -> None:
-        if self._map_to_odom is None or not self._settings.given.tf_broadcast:
+        if self._map_to_odom is None or not self._settings.parameters.tf_broadcast:
             return
-        good_until = stamp_ns + round(self._settings.given.transform_tolerance * 1e9)
+        valid_until_ns = stamp_ns + round(self._settings.parameters.transform_tolerance * 1e9)
         frames = (self._settings.world,), (self._settings.odom,)
-        self._transforms.publish(TFMessage(batch=TransformBatch(*frames, good_until, np.array([self._map_to_odom]))))
+        self._transforms.publish(
+            TFMessage(batch=TransformBatch(*frames, valid_until_ns, np.array([self._map_to_odom])))
+        )
 
     # --- commands ----------------------------------------------------------------------------------------------------
 
@@ -304,8 +313,12 @@ class AmclNode(ManagedNode):
                 f'"{self._settings.world}"'
             )
             return
-        position, turned = message.pose.pose.position, message.pose.pose.orientation
-        pose = (position.x, position.y, rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2])
+        position, orientation = message.pose.pose.position, message.pose.pose.orientation
+        pose = (
+            position.x,
+            position.y,
+            rpy_from_quaternion((orientation.x, orientation.y, orientation.z, orientation.w))[2],
+        )
         covariance = np.asarray(message.pose.covariance, np.float64).reshape(6, 6)[np.ix_((0, 1, 5), (0, 1, 5))]
         if not all(map(isfinite, pose)) or not np.isfinite(covariance).all():
             logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
@@ -316,23 +329,23 @@ class AmclNode(ManagedNode):
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
     def _moved_by_odometry(self, pose: Pose, stamp_ns: int) -> Pose:
-        """Return a pose of an earlier time, moved by the odometry since then.
+        """Return an earlier pose, moved by the odometry since its time.
 
         The pose is returned unchanged if its time is 0 or the odometry is unknown.
         """
         if not stamp_ns:
             return pose
         try:
-            then, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
-            now, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
+            old_pose, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
+            new_pose, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
         except TransformException:
             return pose
-        return _flat(compose(_transform(pose), compose(invert(then), now)))
+        return _planar_pose(compose(_spatial_pose(pose), compose(invert(old_pose), new_pose)))
 
     def _set_pose(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
         seconds = self.get_clock().now().nanoseconds / 1e9
         self.get_logger().info(f"Setting pose ({seconds:.6f}): {pose[0]:.3f} {pose[1]:.3f} {pose[2]:.3f}")
-        self._begin_at(pose, covariance)
+        self._initialize_particles(pose, covariance)
 
     def _on_set_initial_pose(self, request: Any, response: Any) -> Any:
         self._on_initial_pose(request.pose)
@@ -351,12 +364,12 @@ class AmclNode(ManagedNode):
 
     def _on_no_motion(self, _request: Any, response: Any) -> Any:
         self.get_logger().info("Requesting no-motion update")
-        self._forced = True
+        self._update_requested = True
         return response
 
 
-class _ListenerPart:
-    """A transform listener as a part that is destroyed when the node is cleaned up."""
+class _DestroyableListener:
+    """A wrapper that removes a transform listener when the node is cleaned up."""
 
     def __init__(self, listener: TransformListener) -> None:
         self._listener = listener
@@ -366,11 +379,11 @@ class _ListenerPart:
         self._listener.unregister()
 
 
-def _flat(pose: Transform) -> Pose:
+def _planar_pose(pose: Transform) -> Pose:
     return pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]
 
 
-def _transform(pose: Pose) -> Transform:
+def _spatial_pose(pose: Pose) -> Transform:
     return (pose[0], pose[1], 0.0, *quaternion_from_rpy((0.0, 0.0, pose[2])))
 
 
@@ -380,8 +393,8 @@ def _stamp(time_ns: int) -> Any:
 
 def _write_pose(message: Any, pose: Pose) -> None:
     message.position.x, message.position.y = pose[0], pose[1]
-    turned = message.orientation
-    turned.x, turned.y, turned.z, turned.w = quaternion_from_rpy((0.0, 0.0, pose[2]))
+    orientation = message.orientation
+    orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy((0.0, 0.0, pose[2]))
 
 
 class Amcl(ManagedServer):

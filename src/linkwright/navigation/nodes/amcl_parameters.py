@@ -12,14 +12,14 @@ from linkwright.navigation.localization.sensor_models import MODELS, BeamSkippin
 from linkwright.nodes.parameter_tables import declared
 from linkwright.nodes.settings import bad_value
 
-_MOTIONS: dict[str, MotionModel] = {
+_MOTION_MODELS: dict[str, MotionModel] = {
     "differential": differential,
     "nav2_amcl::DifferentialMotionModel": differential,
     "omnidirectional": omnidirectional,
     "nav2_amcl::OmniMotionModel": omnidirectional,
 }
 _POSITIVE = ("max_particles", "min_particles", "max_beams", "resample_interval", "sigma_hit", "pf_err")
-_NOT_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in range(1, 6)))
+_NON_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in range(1, 6)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +76,7 @@ class AmclSettings:
     """The parameters, and the objects created from them.
 
     Attributes:
-        given: the parameter values.
+        parameters: the values of `AmclParameters`.
         base: the frame of the robot.
         odom: the frame of odometry.
         world: the frame of the map.
@@ -85,10 +85,10 @@ class AmclSettings:
         laser: the settings of the laser model.
         skipping: the settings of beam skipping; None to skip no beams.
         filter: the settings of the particle filter.
-        initial_pose: the pose to start at; None to wait for one.
+        initial_pose: the initial pose of the robot; None to wait for one.
     """
 
-    given: AmclParameters
+    parameters: AmclParameters
     base: str
     odom: str
     world: str
@@ -111,40 +111,43 @@ def read_parameters(node: Node) -> AmclSettings:
     Raises:
         LinkwrightError: NODE433, a parameter has an invalid value.
     """
-    given, laser, particles = declare_parameters(node)
-    for name in (*_POSITIVE, *_NOT_NEGATIVE):
+    parameters, laser, particles = declare_parameters(node)
+    for name in (*_POSITIVE, *_NON_NEGATIVE):
         value: Any = node.get_parameter(name).value
         if value < 0 or (name in _POSITIVE and value == 0):
             raise bad_value(name, value, node.get_name())
-    if given.laser_model_type not in MODELS:
-        raise bad_value("laser_model_type", given.laser_model_type, node.get_name(), MODELS)
+    if parameters.laser_model_type not in MODELS:
+        raise bad_value("laser_model_type", parameters.laser_model_type, node.get_name(), MODELS)
     if particles.min_particles > particles.max_particles:
         raise bad_value("min_particles", particles.min_particles, node.get_name())
     skipping = None
-    if given.do_beamskip and given.laser_model_type == "likelihood_field_prob":
-        skipping = BeamSkipping(given.beam_skip_distance, given.beam_skip_threshold, given.beam_skip_error_threshold)
-    pose = given.initial_pose
+    if parameters.do_beamskip and parameters.laser_model_type == "likelihood_field_prob":
+        skipping = BeamSkipping(
+            parameters.beam_skip_distance, parameters.beam_skip_threshold, parameters.beam_skip_error_threshold
+        )
+    pose = parameters.initial_pose
     return AmclSettings(
-        given=given,
-        base=given.base_frame_id.removeprefix("/"),
-        odom=given.odom_frame_id.removeprefix("/"),
-        world=given.global_frame_id.removeprefix("/"),
-        motion=_motion(node, given.robot_model_type),
+        parameters=parameters,
+        base=parameters.base_frame_id.removeprefix("/"),
+        odom=parameters.odom_frame_id.removeprefix("/"),
+        world=parameters.global_frame_id.removeprefix("/"),
+        motion=_motion_model(node, parameters.robot_model_type),
         # alpha1: rotation from rotation, alpha2: rotation from translation, alpha3: translation from translation,
         # alpha4: translation from rotation.
-        noise=Noise(given.alpha1, given.alpha2, given.alpha3, given.alpha4, given.alpha5),
+        noise=Noise(parameters.alpha1, parameters.alpha2, parameters.alpha3, parameters.alpha4, parameters.alpha5),
         laser=laser,
         skipping=skipping,
         filter=particles,
-        initial_pose=(pose.x, pose.y, pose.yaw) if given.set_initial_pose else None,
+        initial_pose=(pose.x, pose.y, pose.yaw) if parameters.set_initial_pose else None,
     )
 
 
-def _motion(node: Node, name: str) -> MotionModel:
-    motion = _MOTIONS.get(name)
+def _motion_model(node: Node, name: str) -> MotionModel:
+    motion = _MOTION_MODELS.get(name)
     if motion is None:
         node.get_logger().warning(
-            f"robot_model_type '{name}' is not one of {', '.join(_MOTIONS)}; particles move as for a differential drive"
+            f"robot_model_type '{name}' is not one of {', '.join(_MOTION_MODELS)}; particles move as for "
+            "a differential drive"
         )
         return differential
     return motion

@@ -1,4 +1,4 @@
-"""nav2's behavior_server: spin, back up, drive on heading, wait and assisted teleoperation as actions.
+"""nav2's behavior_server, with the actions spin, back up, drive on heading, wait and assisted teleoperation.
 
 Source: nav2_behaviors, Humble and Jazzy. Obstacles are read from ``local_costmap/costmap_raw``, and the footprint from
 ``local_costmap/published_footprint``. A deliberate difference: a behaviour other than wait fails when the costmap is no
@@ -32,7 +32,7 @@ from linkwright.navigation.behaviors.behaviors import (
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import Footprint
 from linkwright.navigation.following.follower import STILL, Pose, Velocity
-from linkwright.navigation.nodes.costmap_reading import costmap_of
+from linkwright.navigation.nodes.costmap_reading import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.plugins import string_list, type_of
@@ -41,10 +41,10 @@ from linkwright.nodes.settings import bad_value, positive
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
-_SILENT_COSTMAP = 5.0
-"""The seconds after which a costmap is out of date."""
-_CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
-_TYPES = {
+_COSTMAP_TIMEOUT = 5.0
+"""The age in seconds at which a costmap is out of date."""
+_ERROR_CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
+_BEHAVIOR_TYPES = {
     "spin": ("nav2_behaviors/Spin", "nav2_msgs/action/Spin"),
     "backup": ("nav2_behaviors/BackUp", "nav2_msgs/action/BackUp"),
     "drive_on_heading": ("nav2_behaviors/DriveOnHeading", "nav2_msgs/action/DriveOnHeading"),
@@ -61,15 +61,15 @@ class _AssistedTeleop(Behavior):
     Args:
         allowance: the time limit in seconds; 0 for no limit.
         seconds: how far ahead the motion is checked for collisions, in seconds.
-        asked: returns the requested velocity.
+        requested_velocity: returns the requested velocity.
     """
 
-    def __init__(self, allowance: float, seconds: float, asked: Callable[[], Velocity]) -> None:
+    def __init__(self, allowance: float, seconds: float, requested_velocity: Callable[[], Velocity]) -> None:
         super().__init__(allowance)
-        self._seconds, self._asked = seconds, asked
+        self._seconds, self._requested_velocity = seconds, requested_velocity
 
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        return Step(Outcome.RUNNING, slow_near_obstacles(pose, self._asked(), self._seconds, is_free))
+        return Step(Outcome.RUNNING, slow_near_obstacles(pose, self._requested_velocity(), self._seconds, is_free))
 
 
 class BehaviorNode(ManagedNode):
@@ -80,11 +80,11 @@ class BehaviorNode(ManagedNode):
     def declare(self) -> None:
         """Declare nav2's parameters."""
         declare = self.declare_parameter
-        given = set(self.undeclared_overrides())
-        self._humble = {"costmap_topic", "footprint_topic"} & given
-        for which in ("local", "global"):
-            declare(f"{which}_costmap_topic", f"{which}_costmap/costmap_raw")
-            declare(f"{which}_footprint_topic", f"{which}_costmap/published_footprint")
+        overrides = set(self.undeclared_overrides())
+        self._humble_parameters = {"costmap_topic", "footprint_topic"} & overrides
+        for scope in ("local", "global"):
+            declare(f"{scope}_costmap_topic", f"{scope}_costmap/costmap_raw")
+            declare(f"{scope}_footprint_topic", f"{scope}_costmap/published_footprint")
         declare("costmap_topic", "local_costmap/costmap_raw")  # Humble's names of the parameters above.
         declare("footprint_topic", "local_costmap/published_footprint")
         declare("cycle_frequency", 10.0)
@@ -100,15 +100,15 @@ class BehaviorNode(ManagedNode):
         declare("simulation_time_step", 0.1)
         declare("cmd_vel_teleop", "cmd_vel_teleop")
         declare("action_server_result_timeout", 10.0)
-        self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._publishes_stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
         self._poses = FramePoses(self, "the pose of the robot is not known:")
         self._servers: dict[str, GoalServer] = {}
         self._running: tuple[GoalServer, Behavior, str] | None = None
         self._costmap: Costmap | None = None
-        self._heard_ns = 0
+        self._costmap_received_ns = 0
         self._costmap_frame = ""
         self._footprint: Footprint | None = None
-        self._asked = STILL
+        self._requested_velocity = STILL
 
     def configure(self) -> None:
         """Create the topics and the action servers.
@@ -120,21 +120,21 @@ class BehaviorNode(ManagedNode):
         raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
         self.register(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, LATCHED_QOS))
         self.register(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
-        asked = self._value("cmd_vel_teleop")
-        for kind in velocity_types(self, asked, self._stamped):
-            self.register(self.create_subscription(kind, asked, self._on_teleop_velocity, _DEPTH))
-        self._output = VelocityTopic(self, "cmd_vel", self._stamped)
-        for plugin in string_list(self, "behavior_plugins", list(_TYPES)):
-            kind = type_of(self, plugin, {name: class_name for name, (class_name, _) in _TYPES.items()})
-            known = {class_name: (name, action) for name, (class_name, action) in _TYPES.items()}
-            if kind not in known:
-                raise bad_value(f"{plugin}.plugin", kind, self.get_name(), list(known))
-            name, action = known[kind]
+        teleop_topic = self._value("cmd_vel_teleop")
+        for kind in velocity_types(self, teleop_topic, self._publishes_stamped):
+            self.register(self.create_subscription(kind, teleop_topic, self._on_teleop_velocity, _DEPTH))
+        self._output = VelocityTopic(self, "cmd_vel", self._publishes_stamped)
+        for plugin in string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
+            kind = type_of(self, plugin, {name: class_name for name, (class_name, _) in _BEHAVIOR_TYPES.items()})
+            behavior_by_class = {class_name: (name, action) for name, (class_name, action) in _BEHAVIOR_TYPES.items()}
+            if kind not in behavior_by_class:
+                raise bad_value(f"{plugin}.plugin", kind, self.get_name(), list(behavior_by_class))
+            name, action = behavior_by_class[kind]
             self.get_logger().info(f"Creating behavior plugin {plugin} of type {kind}")
             self._servers[plugin] = self.register(self._server(plugin, name, action))
 
     def deactivate(self) -> None:
-        """Stop the robot, and refuse goals."""
+        """Stop the robot and abort the current goal."""
         if self._running is not None:
             server, _, _ = self._running
             self._halt()
@@ -165,19 +165,19 @@ class BehaviorNode(ManagedNode):
         if start is None:
             server.abort("TF_ERROR", "Initial robot pose is not available.")
             return
-        behavior = self._behavior(name, goal, start)
+        behavior = self._create_behavior(name, goal, start)
         if isinstance(behavior, str):
             self.get_logger().error(behavior)
             server.abort("INVALID_INPUT", behavior)
             return
         self._running = (server, behavior, name)
-        self._since_ns = self.now_ns()
-        self._asked = STILL
+        self._started_ns = self.now_ns()
+        self._requested_velocity = STILL
         self._output.review()
         self.begin_cycles(self._period, self._cycle)
 
-    def _behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
-        """Return the behaviour for a goal, or the reason for which the goal is aborted."""
+    def _create_behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
+        """Return the behaviour for a goal, or the reason why the goal is aborted."""
         if name == "wait":
             return Wait(_seconds(goal.time))
         allowance = _seconds(goal.time_allowance)
@@ -190,7 +190,7 @@ class BehaviorNode(ManagedNode):
             )
             return Spin(goal.target_yaw, allowance, parameters, start)
         if name == "assisted_teleop":
-            return _AssistedTeleop(allowance, self._value("projection_time"), lambda: self._asked)
+            return _AssistedTeleop(allowance, self._value("projection_time"), lambda: self._requested_velocity)
         if goal.target.y or goal.target.z:
             return f"{name} drives along x alone, and its target has y or z"
         distance, speed = goal.target.x, abs(goal.speed)
@@ -207,7 +207,7 @@ class BehaviorNode(ManagedNode):
             self.end_cycles()
             return
         server, behavior, name = self._running
-        elapsed = (self.now_ns() - self._since_ns) / 1e9
+        elapsed = (self.now_ns() - self._started_ns) / 1e9
         if server.is_canceled:
             self.get_logger().info(f"Canceling {name}")
             self._halt()
@@ -230,7 +230,7 @@ class BehaviorNode(ManagedNode):
             self._halt()
             server.succeed(total_elapsed_time=_duration(elapsed))
         else:
-            self._finish(server, name, _CODES[step.outcome], step.outcome.value, elapsed)
+            self._finish(server, name, _ERROR_CODES[step.outcome], step.outcome.value, elapsed)
 
     def _finish(self, server: GoalServer, name: str, code: str, reason: str, elapsed: float) -> None:
         self.get_logger().warning(f"{name} failed: {reason}")
@@ -250,7 +250,7 @@ class BehaviorNode(ManagedNode):
         """Return the reason why obstacles are unknown, or an empty string if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"
-        if self.now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
+        if self.now_ns() - self._costmap_received_ns > _COSTMAP_TIMEOUT * 1e9:
             return "the costmap has fallen silent"
         return ""
 
@@ -262,41 +262,41 @@ class BehaviorNode(ManagedNode):
     def _pose(self) -> Pose | None:
         """Return the robot's pose in the frame of the costmap, or None if it is unknown."""
         frame = self._costmap_frame or self._value("local_frame")
-        found = self._poses.pose(frame, self._value("robot_base_frame"), 0)
-        return None if found is None else (found[0], found[1], rpy_from_quaternion(found[3:])[2])
+        pose = self._poses.pose(frame, self._value("robot_base_frame"), 0)
+        return None if pose is None else (pose[0], pose[1], rpy_from_quaternion(pose[3:])[2])
 
     def _on_costmap(self, message: Any) -> None:
-        self._costmap = costmap_of(message)
+        self._costmap = costmap_from_message(message)
         self._costmap_frame = message.header.frame_id
-        self._heard_ns = self.now_ns()
+        self._costmap_received_ns = self.now_ns()
 
     def _on_footprint(self, message: Any) -> None:
         """Store a published footprint, transformed to the robot's frame at the time of the message."""
-        found = self._poses.pose(
+        pose = self._poses.pose(
             message.header.frame_id,
             self._value("robot_base_frame"),
             Time.from_msg(message.header.stamp).nanoseconds,
         )
-        if found is None:
+        if pose is None:
             return
-        yaw = rpy_from_quaternion(found[3:])[2]
+        yaw = rpy_from_quaternion(pose[3:])[2]
         corners = np.array([(point.x, point.y) for point in message.polygon.points], np.float64).reshape(-1, 2)
-        c, s = np.cos(yaw), np.sin(yaw)
-        footprint: Footprint = (corners - found[:2]) @ np.array([[c, -s], [s, c]])
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        footprint: Footprint = (corners - pose[:2]) @ np.array([[cosine, -sine], [sine, cosine]])
         self._footprint = footprint
 
     def _on_teleop_velocity(self, message: Any) -> None:
         twist = message.twist if hasattr(message, "twist") else message
-        self._asked = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
+        self._requested_velocity = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 
-    def _topic(self, what: str) -> str:
+    def _topic(self, kind: str) -> str:
         """Return the name of the costmap or footprint topic.
 
-        Humble's parameter is used if it is set, else Jazzy's.
+        Humble's parameter is used if it is set, and Jazzy's parameter otherwise.
         """
-        old = str(self._value(f"{what}_topic"))
-        new = str(self._value(f"local_{what}_topic"))
-        return old if f"{what}_topic" in self._humble else new
+        humble_topic = str(self._value(f"{kind}_topic"))
+        jazzy_topic = str(self._value(f"local_{kind}_topic"))
+        return humble_topic if f"{kind}_topic" in self._humble_parameters else jazzy_topic
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value

@@ -23,7 +23,7 @@ from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_action, get_message, get_service
 from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
-from linkwright.navigation.nodes.costmap_reading import costmap_of
+from linkwright.navigation.nodes.costmap_reading import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedServer
 from linkwright.navigation.nodes.plugins import string_list
@@ -31,15 +31,15 @@ from linkwright.navigation.nodes.steps import SentGoal, Step, StepError, StepNod
 
 _DEPTH = 10
 _COSTMAP_TOPIC = "global_costmap/costmap_raw"
-_OUTSIDE = 255
-"""The cost of an unknown place, or one outside of the map."""
-_RETRIES = 6
+_UNKNOWN_COST = 255
+"""The cost of positions that are unknown or outside the map."""
+_MAX_RECOVERIES = 6
 """The number of recoveries after which a goal is aborted."""
-_REPLANNING = {"pose": 1.0, "poses": 3.0}
-"""Seconds between two paths, as nav2's trees have it."""
-_PASSED = 0.7
-"""A pose on the way counts as passed when the robot is so close, in metres."""
-_SPIN, _WAIT, _BACK_UP, _BACK_UP_SPEED = 1.57, 5.0, 0.3, 0.05
+_REPLANNING_PERIODS = {"pose": 1.0, "poses": 3.0}
+"""The seconds between two plans for each action, as in nav2's trees."""
+_PASSED_DISTANCE = 0.7
+"""The distance within which an intermediate pose counts as passed, in metres."""
+_SPIN_ANGLE, _WAIT_SECONDS, _BACK_UP_DISTANCE, _BACK_UP_SPEED = 1.57, 5.0, 0.3, 0.05
 _ALLOWANCE = 10.0
 
 
@@ -51,14 +51,14 @@ class NavigatorNode(StepNode):
         declare = self.declare_parameter
         for name, value in _PARAMETERS.items():
             declare(name, value)
-        for name in _LISTS:
+        for name in _STRING_LISTS:
             string_list(self, name, [])
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self)
         self._costmap: Costmap | None = None
         self._costmap_frame = ""
         self._path: Any = None
-        self._left = 0.0
+        self._remaining_distance = 0.0
         self._speed = 0.0
 
     def configure(self) -> None:
@@ -72,37 +72,37 @@ class NavigatorNode(StepNode):
             name: self.register(ActionClient(self, f"nav2_msgs/action/{kind}", name)) for name, kind in _ACTIONS.items()
         }
         clear = get_service("nav2_msgs/srv/ClearEntireCostmap")
-        self._clearing = {
-            which: self.register(self.create_client(clear, f"{which}_costmap/clear_entirely_{which}_costmap"))
-            for which in ("global", "local")
+        self._clear_clients = {
+            variant: self.register(self.create_client(clear, f"{variant}_costmap/clear_entirely_{variant}_costmap"))
+            for variant in ("global", "local")
         }
-        self._own = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
+        self._goal_client = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
         self._servers = {
-            "pose": self._offered("NavigateToPose", "navigate_to_pose", "pose"),
-            "poses": self._offered("NavigateThroughPoses", "navigate_through_poses", "poses"),
+            "pose": self._create_server("NavigateToPose", "navigate_to_pose", "pose"),
+            "poses": self._create_server("NavigateThroughPoses", "navigate_through_poses", "poses"),
         }
         for which in ("pose", "poses"):
-            given = self._value(f"default_nav_{'to_pose' if which == 'pose' else 'through_poses'}_bt_xml")
-            if given and not _is_default_tree(given):
-                self._log_ignored_tree(given)
+            tree = self._value(f"default_nav_{'to_pose' if which == 'pose' else 'through_poses'}_bt_xml")
+            if tree and not _is_default_tree(tree):
+                self._log_ignored_tree(tree)
 
     def activate(self) -> None:
         """Accept goals."""
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _offered(self, kind: str, name: str, which: str) -> GoalServer:
+    def _create_server(self, kind: str, name: str, variant: str) -> GoalServer:
         def begin(goal: ServerGoalHandle) -> None:
-            self._start(which, goal.request)
+            self._start(variant, goal.request)
 
         return self.register(
             GoalServer(
-                self, f"nav2_msgs/action/{kind}", name, begin, may_begin=lambda goal: self._may_begin(which, goal)
+                self, f"nav2_msgs/action/{kind}", name, begin, may_begin=lambda goal: self._accepts_goal(variant, goal)
             )
         )
 
-    def _may_begin(self, which: str, goal: Any) -> bool:
-        poses = [goal.pose] if which == "pose" else list(goal.poses)
+    def _accepts_goal(self, variant: str, goal: Any) -> bool:
+        poses = [goal.pose] if variant == "pose" else list(goal.poses)
         if not poses:
             self.get_logger().error("the goal has no poses, so it is rejected")
             return False
@@ -113,34 +113,37 @@ class NavigatorNode(StepNode):
     def _log_ignored_tree(self, path: str) -> None:
         self.get_logger().warning(f"behaviour trees are not supported: the default navigation runs instead of {path}")
 
-    def _start(self, which: str, goal: Any) -> None:
+    def _start(self, variant: str, goal: Any) -> None:
         """Start navigating for a goal; a running goal of the other action is aborted."""
-        poses = [goal.pose] if which == "pose" else list(goal.poses)
-        at = poses[-1].pose.position
-        x, y = self._pose() or (float("nan"),) * 2
-        self.get_logger().info(f"Begin navigating from current location ({x:.2f}, {y:.2f}) to ({at.x:.2f}, {at.y:.2f})")
+        poses = [goal.pose] if variant == "pose" else list(goal.poses)
+        goal_position = poses[-1].pose.position
+        x, y = self._robot_position() or (float("nan"),) * 2
+        self.get_logger().info(
+            f"Begin navigating from current location ({x:.2f}, {y:.2f}) to ({goal_position.x:.2f}, "
+            f"{goal_position.y:.2f})"
+        )
         self._poses = poses
         self._recoveries = 0
-        self._path, self._left = None, 0.0
-        self._since_ns = self.now_ns()
-        self.work_on(self._servers[which], self._navigate(which))
+        self._path, self._remaining_distance = None, 0.0
+        self._started_ns = self.now_ns()
+        self.work_on(self._servers[variant], self._navigate(variant))
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish the robot's pose and the remaining distance and time as feedback for the goal."""
         pose = get_message("geometry_msgs/msg/PoseStamped")()
-        found = self._transform()
-        if found is not None:
+        robot_pose = self._transform()
+        if robot_pose is not None:
             pose.header.frame_id, pose.header.stamp = self._value("global_frame"), self.get_clock().now().to_msg()
-            pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = found[:3]
-            turn = pose.pose.orientation
-            turn.x, turn.y, turn.z, turn.w = found[3:]
-        left = self._left
+            pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = robot_pose[:3]
+            orientation = pose.pose.orientation
+            orientation.x, orientation.y, orientation.z, orientation.w = robot_pose[3:]
+        remaining_distance = self._remaining_distance
         feedback: dict[str, Any] = {
             "current_pose": pose,
-            "distance_remaining": left,
+            "distance_remaining": remaining_distance,
             "number_of_recoveries": self._recoveries,
-            "navigation_time": Duration(nanoseconds=self.now_ns() - self._since_ns).to_msg(),
-            "estimated_time_remaining": Duration(seconds=left / max(self._speed, _SLOWEST)).to_msg(),
+            "navigation_time": Duration(nanoseconds=self.now_ns() - self._started_ns).to_msg(),
+            "estimated_time_remaining": Duration(seconds=remaining_distance / max(self._speed, _MIN_SPEED)).to_msg(),
         }
         if server is self._servers["poses"]:
             feedback["number_of_poses_remaining"] = len(self._poses)
@@ -148,22 +151,22 @@ class NavigatorNode(StepNode):
 
     # --- navigation ---------------------------------------------------------------------------------------------------
 
-    def _navigate(self, which: str) -> Step:
+    def _navigate(self, variant: str) -> Step:
         """Navigate to the goal's poses, and run recoveries after failures."""
         recoveries = [self._clear_costmaps, self._spin, self._wait, self._back_up]
         while True:
             try:
-                yield from self._plan_and_drive(which)
+                yield from self._plan_and_drive(variant)
             except StepError as failure:
-                if failure.is_final or self._recoveries >= _RETRIES:
+                if failure.is_final or self._recoveries >= _MAX_RECOVERIES:
                     raise
-                self.get_logger().warning(f"{failure}: recovery {self._recoveries + 1} of {_RETRIES}")
+                self.get_logger().warning(f"{failure}: recovery {self._recoveries + 1} of {_MAX_RECOVERIES}")
             else:
                 return
             yield from self._recover(recoveries)
 
     def _recover(self, recoveries: Sequence[Any]) -> Step:
-        """Run recoveries in turn, like nav2's RoundRobin, until one succeeds."""
+        """Run the recoveries in turn until one succeeds, as nav2's RoundRobin does."""
         for _ in recoveries:
             recovery = recoveries[self._turn % len(recoveries)]
             self._turn += 1
@@ -177,53 +180,53 @@ class NavigatorNode(StepNode):
 
     _turn = 0
 
-    def _plan_and_drive(self, which: str) -> Step:
+    def _plan_and_drive(self, variant: str) -> Step:
         """Plan a path and follow it, with periodic replanning."""
-        path = yield from self._planned(which)
-        driving = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
-        cleared = False
+        path = yield from self._plan_with_retry(variant)
+        path_goal = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
+        is_cleared = False
         planned_ns = self.now_ns()
         try:
             while True:
                 yield
-                if which == "poses":
-                    self._drop_passed()
-                if driving.has_failed:
-                    if cleared:
-                        raise StepError("UNKNOWN", driving.reason("the controller failed"))
-                    cleared = True
+                if variant == "poses":
+                    self._drop_passed_poses()
+                if path_goal.has_failed:
+                    if is_cleared:
+                        raise StepError("UNKNOWN", path_goal.reason("the controller failed"))
+                    is_cleared = True
                     yield from self._clear("local")
-                    driving = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
-                elif driving.has_succeeded:
+                    path_goal = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
+                elif path_goal.has_succeeded:
                     return
-                elif self.now_ns() - planned_ns > _REPLANNING[which] * 1e9:
-                    path = yield from self._planned(which)
+                elif self.now_ns() - planned_ns > _REPLANNING_PERIODS[variant] * 1e9:
+                    path = yield from self._plan_with_retry(variant)
                     planned_ns = self.now_ns()
-                    if not driving.is_over:
-                        driving = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
+                    if not path_goal.is_over:
+                        path_goal = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
         finally:
-            driving.cancel()
+            path_goal.cancel()
 
-    def _planned(self, which: str) -> Step:
+    def _plan_with_retry(self, variant: str) -> Step:
         """Plan a path and return it; if that fails, clear the global costmap and try once more."""
         try:
-            return (yield from self._plan(which))
+            return (yield from self._plan(variant))
         except StepError as failure:
             self.get_logger().warning(str(failure))
         yield from self._clear("global")
         try:
-            return (yield from self._plan(which))
+            return (yield from self._plan(variant))
         except StepError as failure:
             if reason := self._refusal_reason():
                 raise StepError("UNKNOWN", f"{reason}: {failure}", is_final=True) from None
             raise
 
-    def _plan(self, which: str) -> Step:
-        if which == "pose":
+    def _plan(self, variant: str) -> Step:
+        if variant == "pose":
             goal = get_action("nav2_msgs/action/ComputePathToPose").Goal(goal=self._poses[0])
             name = "compute_path_to_pose"
         else:
-            self._drop_passed()
+            self._drop_passed_poses()
             goal = get_action("nav2_msgs/action/ComputePathThroughPoses").Goal(goals=self._poses)
             name = "compute_path_through_poses"
         response = yield from self.run_remote_goal(self._clients[name], goal, "the planner found no path")
@@ -231,28 +234,28 @@ class NavigatorNode(StepNode):
         if not path.poses:
             raise StepError("NO_VALID_PATH", "the planner found no path")
         self._path = path
-        self._left = _length(path)
+        self._remaining_distance = _path_length(path)
         return path
 
     def _refusal_reason(self) -> str:
-        """Return why the goal cannot be reached on the global costmap, or an empty string if it can."""
-        at, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
+        """Return why the global costmap makes the goal unreachable, or an empty string if it does not."""
+        goal_position, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
             return ""
-        cost = int(self._costmap.cost_at(np.array([at.x, at.y]), outside=_OUTSIDE))
-        if cost == _OUTSIDE:
-            return f"the goal ({at.x:.2f}, {at.y:.2f}) is outside of the map or in unknown space"
+        cost = int(self._costmap.cost_at(np.array([goal_position.x, goal_position.y]), outside=_UNKNOWN_COST))
+        if cost == _UNKNOWN_COST:
+            return f"the goal ({goal_position.x:.2f}, {goal_position.y:.2f}) is outside of the map or in unknown space"
         if cost == LETHAL:
-            return f"the goal ({at.x:.2f}, {at.y:.2f}) is in an obstacle"
+            return f"the goal ({goal_position.x:.2f}, {goal_position.y:.2f}) is in an obstacle"
         if cost == INSCRIBED:
-            return f"the goal ({at.x:.2f}, {at.y:.2f}) is too close to an obstacle"
+            return f"the goal ({goal_position.x:.2f}, {goal_position.y:.2f}) is too close to an obstacle"
         return ""
 
-    def _drop_passed(self) -> None:
-        place = self._pose()
-        while place is not None and len(self._poses) > 1:
-            at = self._poses[0].pose.position
-            if hypot(at.x - place[0], at.y - place[1]) > _PASSED:
+    def _drop_passed_poses(self) -> None:
+        robot_position = self._robot_position()
+        while robot_position is not None and len(self._poses) > 1:
+            pose_position = self._poses[0].pose.position
+            if hypot(pose_position.x - robot_position[0], pose_position.y - robot_position[1]) > _PASSED_DISTANCE:
                 return
             self._poses = self._poses[1:]
 
@@ -263,28 +266,28 @@ class NavigatorNode(StepNode):
         yield from self._clear("local")
         yield from self._clear("global")
 
-    def _clear(self, which: str) -> Step:
+    def _clear(self, scope: str) -> Step:
         """Clear a costmap if its service is available; otherwise log a warning."""
-        client = self._clearing[which]
+        client = self._clear_clients[scope]
         if not client.service_is_ready():
-            self.get_logger().warning(f"the {which} costmap is not cleared: there is no {client.service_name}")
+            self.get_logger().warning(f"the {scope} costmap is not cleared: there is no {client.service_name}")
             return
-        answer = client.call_async(get_service("nav2_msgs/srv/ClearEntireCostmap").Request())
-        yield from self.until(answer.done, client.service_name)
+        future = client.call_async(get_service("nav2_msgs/srv/ClearEntireCostmap").Request())
+        yield from self.until(future.done, client.service_name)
 
     def _spin(self) -> Step:
-        goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN)
+        goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN_ANGLE)
         goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
         yield from self.run_remote_goal(self._clients["spin"], goal, "it could not spin")
 
     def _wait(self) -> Step:
         goal = get_action("nav2_msgs/action/Wait").Goal()
-        goal.time = Duration(seconds=_WAIT).to_msg()
+        goal.time = Duration(seconds=_WAIT_SECONDS).to_msg()
         yield from self.run_remote_goal(self._clients["wait"], goal, "it could not wait")
 
     def _back_up(self) -> Step:
         goal = get_action("nav2_msgs/action/BackUp").Goal(speed=_BACK_UP_SPEED)
-        goal.target.x = _BACK_UP
+        goal.target.x = _BACK_UP_DISTANCE
         goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
         yield from self.run_remote_goal(self._clients["backup"], goal, "it could not back up")
 
@@ -295,17 +298,17 @@ class NavigatorNode(StepNode):
         if not self.is_active:
             self.get_logger().warning("a goal was received on goal_pose, but this node is not active")
             return
-        self._own.send_goal_async(get_action("nav2_msgs/action/NavigateToPose").Goal(pose=message))
+        self._goal_client.send_goal_async(get_action("nav2_msgs/action/NavigateToPose").Goal(pose=message))
 
     def _on_costmap(self, message: Any) -> None:
-        self._costmap, self._costmap_frame = costmap_of(message), message.header.frame_id
+        self._costmap, self._costmap_frame = costmap_from_message(message), message.header.frame_id
 
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         self._speed = hypot(twist.linear.x, twist.linear.y)
-        place = self._pose() if self._path is not None else None
-        if place is not None:
-            self._left = _remaining_distance(self._path, *place)
+        robot_position = self._robot_position() if self._path is not None else None
+        if robot_position is not None:
+            self._remaining_distance = _remaining_distance(self._path, *robot_position)
 
     def _transform(self) -> Any:
         """Return the robot's pose in the global frame, or None if it is unknown."""
@@ -314,9 +317,9 @@ class NavigatorNode(StepNode):
         except TransformException:
             return None
 
-    def _pose(self) -> tuple[float, float] | None:
-        found = self._transform()
-        return None if found is None else (found[0], found[1])
+    def _robot_position(self) -> tuple[float, float] | None:
+        robot_pose = self._transform()
+        return None if robot_pose is None else (robot_pose[0], robot_pose[1])
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
@@ -331,24 +334,24 @@ class BtNavigator(ManagedServer):
 
 def _is_default_tree(path: str) -> bool:
     """Return whether a behaviour tree has the file name of one of nav2's defaults."""
-    return path.rpartition("/")[2] in _USUAL_TREES
+    return path.rpartition("/")[2] in _DEFAULT_TREES
 
 
-def _length(path: Any) -> float:
-    places = [pose.pose.position for pose in path.poses]
-    return sum(hypot(b.x - a.x, b.y - a.y) for a, b in pairwise(places))
+def _path_length(path: Any) -> float:
+    positions = [pose.pose.position for pose in path.poses]
+    return sum(hypot(end.x - start.x, end.y - start.y) for start, end in pairwise(positions))
 
 
 def _remaining_distance(path: Any, x: float, y: float) -> float:
     """Return the remaining distance from a position along a path, in metres.
 
-    The distance is from the position to the nearest pose of the path, plus the length from there to the end.
+    The result is the distance to the nearest pose of the path plus the length of the path from that pose to the end.
     """
-    places = [pose.pose.position for pose in path.poses]
-    nearest = min(range(len(places)), key=lambda index: hypot(places[index].x - x, places[index].y - y))
-    rest = places[nearest:]
-    along = sum(hypot(b.x - a.x, b.y - a.y) for a, b in pairwise(rest))
-    return hypot(rest[0].x - x, rest[0].y - y) + along
+    positions = [pose.pose.position for pose in path.poses]
+    nearest = min(range(len(positions)), key=lambda index: hypot(positions[index].x - x, positions[index].y - y))
+    remaining = positions[nearest:]
+    length = sum(hypot(end.x - start.x, end.y - start.y) for start, end in pairwise(remaining))
+    return hypot(remaining[0].x - x, remaining[0].y - y) + length
 
 
 _ACTIONS = {
@@ -359,13 +362,13 @@ _ACTIONS = {
     "wait": "Wait",
     "backup": "BackUp",
 }
-_USUAL_TREES = (
+_DEFAULT_TREES = (
     "navigate_to_pose_w_replanning_and_recovery.xml",
     "navigate_through_poses_w_replanning_and_recovery.xml",
 )
-_SLOWEST = 0.1
-"""m/s with which the time that is left is reckoned at the least."""
-_LISTS = ("plugin_lib_names", "navigators", "error_code_names", "error_code_name_prefixes")
+_MIN_SPEED = 0.1
+"""The minimum speed for the estimate of the remaining time, in m/s."""
+_STRING_LISTS = ("plugin_lib_names", "navigators", "error_code_names", "error_code_name_prefixes")
 _PARAMETERS: dict[str, Any] = {
     "global_frame": "map",
     "robot_base_frame": "base_link",

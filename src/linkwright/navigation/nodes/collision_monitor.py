@@ -1,10 +1,10 @@
 """nav2's collision_monitor, which slows down or stops the robot when sensors detect something in a zone.
 
-Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Deliberate differences: unless
+The node has nav2's parameters, topics and rules, for Humble and Jazzy. Deliberate differences: unless
 ``enable_stamped_cmd_vel`` is set, the node accepts Twist and TwistStamped, and publishes the type that subscribers
-expect. A sensor that stops publishing stops the robot, unlike in Humble, and so does the loss of the publisher of
-commands. Sensors of the types ``polygon`` and ``costmap`` are not supported. ``transform_tolerance`` has no effect:
-data are queued until their transform is available.
+expect. Unlike in Humble, the robot stops if a sensor stops publishing or the publisher of commands disappears. Sensors
+of the types ``polygon`` and ``costmap`` are not supported. ``transform_tolerance`` has no effect: data are queued until
+their transform is available.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
-_NO_SOURCE = "invalid source"
-"""nav2's name of the zone when a sensor is silent."""
+_SILENT_SENSOR_ZONE = "invalid source"
+"""The name that nav2 reports as the zone when a sensor publishes nothing."""
 _ACTION_MESSAGES = {
     Action.STOP: "Robot to stop due to {}",
     Action.SLOWDOWN: "Robot to slow down due to {}",
@@ -71,10 +71,10 @@ class MonitorNode(ManagedNode):
         self._sources: list[Source] = []
         self._output: VelocityTopic | None = None
         self._state: Any = None
-        self._verdict = Verdict(STILL)
+        self._last_verdict = Verdict(STILL)
         self._stopped_ns: int | None = None
         self._table = ParameterTable(self, MonitorParameters)
-        self._stamped = self._table.values.enable_stamped_cmd_vel
+        self._is_stamped = self._table.values.enable_stamped_cmd_vel
 
     def configure(self) -> None:
         """Read the zones and sensors, and create the topics.
@@ -82,22 +82,25 @@ class MonitorNode(ManagedNode):
         Raises:
             LinkwrightError: NODE431, a parameter is missing; NODE433, a parameter has an invalid value.
         """
-        given = self._table.values
-        base, fixed = given.base_frame_id, given.odom_frame_id if given.base_shift_correction else None
+        parameters = self._table.values
+        base_frame, fixed_frame = (
+            parameters.base_frame_id,
+            parameters.odom_frame_id if parameters.base_shift_correction else None,
+        )
         for name in string_list(self, "observation_sources", []):
-            self._sources.append(self.register(Source(self, name, self._transforms, base, fixed)))
+            self._sources.append(self.register(Source(self, name, self._transforms, base_frame, fixed_frame)))
         for name in string_list(self, "polygons", []):
-            self._zones.append(self.register(Zone(self, name, self._transforms, base)))
-        topic = given.state_topic
+            self._zones.append(self.register(Zone(self, name, self._transforms, base_frame)))
+        topic = parameters.state_topic
         if topic:
             self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
-        self._output = VelocityTopic(self, given.cmd_vel_out_topic, self._stamped)
-        topic = given.cmd_vel_in_topic
-        for kind in velocity_types(self, topic, self._stamped):
-            commander = Commander(self._on_lost, DriverWatch.of(self))
+        self._output = VelocityTopic(self, parameters.cmd_vel_out_topic, self._is_stamped)
+        topic = parameters.cmd_vel_in_topic
+        for kind in velocity_types(self, topic, self._is_stamped):
+            commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
             callback = commander.tracking_callback(self._on_velocity)
-            heard: Subscription[Any] = self.create_subscription(kind, topic, callback, _DEPTH)
-            commander.watch(self.register(heard))
+            subscription: Subscription[Any] = self.create_subscription(kind, topic, callback, _DEPTH)
+            commander.watch(self.register(subscription))
 
     def activate(self) -> None:
         """Start forwarding velocities."""
@@ -106,9 +109,9 @@ class MonitorNode(ManagedNode):
 
     def deactivate(self) -> None:
         """Stop the robot, and stop forwarding velocities."""
-        if self._output is not None and self._verdict.velocity != STILL:
+        if self._output is not None and self._last_verdict.velocity != STILL:
             self._output.stop()
-        self._verdict = Verdict(STILL)
+        self._last_verdict = Verdict(STILL)
 
     def cleanup(self) -> None:
         """Remove the topics."""
@@ -125,26 +128,26 @@ class MonitorNode(ManagedNode):
         if not all(map(isfinite, velocity)):
             self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
             return
-        if self._verdict.velocity == STILL:
+        if self._last_verdict.velocity == STILL:
             self._output.review()
         self._output.frame_id = message.header.frame_id if stamped else ""
-        verdict = self._judged(velocity)
-        if verdict.zone != self._verdict.zone:
+        verdict = self._limit(velocity)
+        if verdict.zone != self._last_verdict.zone:
             self._publish_state(verdict)
         self._publish(verdict.velocity)
-        self._verdict = verdict
+        self._last_verdict = verdict
         for zone in self._zones:
             zone.publish()
 
-    def _judged(self, velocity: Velocity) -> Verdict:
+    def _limit(self, velocity: Velocity) -> Verdict:
         now_ns = self.get_clock().now().nanoseconds
-        seen = {}
+        points_by_sensor = {}
         for source in self._sources:
             points = source.points(now_ns, self._table.values.source_timeout)
             if points is None:
-                return Verdict(STILL, Action.STOP, _NO_SOURCE)
-            seen[source.name] = points
-        zones = [zone.input_at_velocity(velocity, seen) for zone in self._zones]
+                return Verdict(STILL, Action.STOP, _SILENT_SENSOR_ZONE)
+            points_by_sensor[source.name] = points
+        zones = [zone.input_at_velocity(velocity, points_by_sensor) for zone in self._zones]
         return limit_by_zones(velocity, [zone for zone in zones if zone is not None])
 
     def _publish(self, velocity: Velocity) -> None:
@@ -162,13 +165,13 @@ class MonitorNode(ManagedNode):
             return
         self._output.publish((velocity.x, velocity.y, 0.0), (0.0, 0.0, velocity.yaw))
 
-    def _on_lost(self, publisher: EndpointInfo) -> None:
-        if self._output is not None and self._verdict.velocity != STILL:
+    def _on_publisher_lost(self, publisher: EndpointInfo) -> None:
+        if self._output is not None and self._last_verdict.velocity != STILL:
             self.get_logger().warning(
-                str(phrase("{who}: the robot is stopped", who=describe_lost_publisher(publisher)))
+                str(phrase("{who}; the robot is stopped", who=describe_lost_publisher(publisher)))
             )
             self._output.stop()
-            self._verdict = Verdict(STILL)
+            self._last_verdict = Verdict(STILL)
 
     def _publish_state(self, verdict: Verdict) -> None:
         self.get_logger().info(_ACTION_MESSAGES[verdict.action].format(verdict.zone))

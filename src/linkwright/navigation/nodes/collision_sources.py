@@ -1,4 +1,4 @@
-"""Sensors of collision_monitor, whose latest points are given in the robot's current frame."""
+"""The sensors of collision_monitor, which provide their latest points in the robot's current frame."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from linkwright.messages import get_message
 from linkwright.navigation.behaviors.zones import Points
 from linkwright.navigation.nodes.plugins import value_of
 from linkwright.nodes.settings import bad_value
-from linkwright.perception.nodes.laser_filters import scan_of
-from linkwright.perception.nodes.pointcloud_to_laserscan import points_of
-from linkwright.perception.scans.projection import points_of_scan
+from linkwright.perception.nodes.laser_filters import to_scan
+from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
+from linkwright.perception.scans.projection import points_from_scan
 
-_WAITING = 20
+_MAX_QUEUED = 20
 
 
 class Source:
@@ -30,30 +30,30 @@ class Source:
 
     Args:
         node: the node that subscribes.
-        name: the name of the sensor, the prefix of its parameters.
+        name: the name of the sensor, which is also the prefix of its parameters.
         transforms: the transforms between frames.
-        base: the frame of the robot.
-        fixed: the frame in which obstacles are static while the robot moves; None to ignore the robot's motion.
+        base_frame: the frame of the robot.
+        fixed_frame: the frame in which obstacles are static while the robot moves; None to ignore the robot's motion.
 
     Raises:
         LinkwrightError: NODE433, the type of the sensor is not supported.
     """
 
-    def __init__(self, node: Node, name: str, transforms: BufferCore, base: str, fixed: str | None) -> None:
+    def __init__(self, node: Node, name: str, transforms: BufferCore, base_frame: str, fixed_frame: str | None) -> None:
         self.name = name
-        self._node, self._transforms, self._base, self._fixed = node, transforms, base, fixed
-        self._waiting: deque[Any] = deque(maxlen=_WAITING)
-        kinds: dict[str, tuple[str, Callable[[Any], NDArray[np.float64] | None]]] = {
-            "scan": ("LaserScan", _of_scan),
-            "pointcloud": ("PointCloud2", self._of_cloud),
-            "range": ("Range", self._of_range),
+        self._node, self._transforms, self._base, self._fixed = node, transforms, base_frame, fixed_frame
+        self._waiting: deque[Any] = deque(maxlen=_MAX_QUEUED)
+        readers: dict[str, tuple[str, Callable[[Any], NDArray[np.float64] | None]]] = {
+            "scan": ("LaserScan", _points_from_scan),
+            "pointcloud": ("PointCloud2", self._points_from_cloud),
+            "range": ("Range", self._points_from_range),
         }
         kind = str(self._value("type", "scan"))
-        if kind not in kinds:
-            raise bad_value(f"{name}.type", kind, node.get_name(), list(kinds))
-        message, self._read = kinds[kind]
+        if kind not in readers:
+            raise bad_value(f"{name}.type", kind, node.get_name(), list(readers))
+        message, self._read = readers[kind]
         if kind == "pointcloud":
-            self._height = float(self._value("min_height", 0.05)), float(self._value("max_height", 0.5))
+            self._height_range = float(self._value("min_height", 0.05)), float(self._value("max_height", 0.5))
         if kind == "range":
             self._spacing = float(self._value("obstacles_angle", pi / 180.0))
         self._value("enabled", True)
@@ -68,7 +68,7 @@ class Source:
     def points(self, now_ns: int, timeout: float) -> Points | None:
         """Return the latest points, of shape (points, 2), or None if they are missing or too old.
 
-        A disabled sensor has no points. With a timeout of 0, missing points count as no points.
+        A disabled sensor returns an empty array. So does a sensor without data if the timeout is 0.
 
         Args:
             now_ns: the current time.
@@ -77,22 +77,24 @@ class Source:
         """
         if not self._value("enabled", True):
             return np.zeros((0, 2))
-        own = float(self._value("source_timeout", timeout))
-        found = self._placed(now_ns, own)
-        return np.zeros((0, 2)) if found is None and own == 0.0 else found
+        sensor_timeout = float(self._value("source_timeout", timeout))
+        current_points = self._current_points(now_ns, sensor_timeout)
+        return np.zeros((0, 2)) if current_points is None and sensor_timeout == 0.0 else current_points
 
-    def _placed(self, now_ns: int, timeout: float) -> Points | None:
-        found = self._newest()
-        if found is None or (timeout and now_ns - found[0].header.stamp.nanoseconds > timeout * 1e9):
+    def _current_points(self, now_ns: int, timeout: float) -> Points | None:
+        newest = self._newest()
+        if newest is None or (timeout and now_ns - newest[0].header.stamp.nanoseconds > timeout * 1e9):
             return None
-        message, pose = found
+        message, pose = newest
         points = self._read(message)
         if points is None:
             return None
-        placed: NDArray[np.float64] = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
-        if self._read == self._of_cloud:
-            placed = placed[(placed[:, 2] >= self._height[0]) & (placed[:, 2] <= self._height[1])]
-        return placed[:, :2]
+        robot_points: NDArray[np.float64] = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
+        if self._read == self._points_from_cloud:
+            robot_points = robot_points[
+                (robot_points[:, 2] >= self._height_range[0]) & (robot_points[:, 2] <= self._height_range[1])
+            ]
+        return robot_points[:, :2]
 
     def _newest(self) -> tuple[Any, Transform] | None:
         """Return the latest message whose transform is available, and the sensor's pose.
@@ -115,8 +117,8 @@ class Source:
         try:
             if self._fixed is None:
                 return self._transforms.lookup(self._base, frame, 0)[0]
-            then = self._transforms.lookup(self._fixed, frame, stamp_ns)[0]
-            return compose(self._transforms.lookup(self._base, self._fixed, 0)[0], then)
+            fixed_pose = self._transforms.lookup(self._fixed, frame, stamp_ns)[0]
+            return compose(self._transforms.lookup(self._base, self._fixed, 0)[0], fixed_pose)
         except TransformException:
             return None
 
@@ -126,22 +128,22 @@ class Source:
     def _receive(self, message: Any) -> None:
         self._waiting.append(message)
 
-    def _of_cloud(self, message: Any) -> NDArray[np.float64] | None:
-        points = points_of(message)
+    def _points_from_cloud(self, message: Any) -> NDArray[np.float64] | None:
+        points = read_points(message)
         return None if points is None else points[np.isfinite(points).all(axis=1)]
 
-    def _of_range(self, message: Any) -> NDArray[np.float64]:
+    def _points_from_range(self, message: Any) -> NDArray[np.float64]:
         """Return points on the arc of a range reading, of shape (points, 3).
 
         If the reading is outside the limits of the sensor, no points are returned.
         """
         if not message.min_range <= message.range <= message.max_range:
             return np.zeros((0, 3))
-        half = message.field_of_view / 2.0
-        angles = np.append(np.arange(-half, half, self._spacing), half)
+        half_angle = message.field_of_view / 2.0
+        angles = np.append(np.arange(-half_angle, half_angle, self._spacing), half_angle)
         rays: NDArray[np.float64] = np.stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))], axis=-1)
         return rays * float(message.range)
 
 
-def _of_scan(message: Any) -> NDArray[np.float64]:
-    return points_of_scan(scan_of(message))[0].astype(np.float64)
+def _points_from_scan(message: Any) -> NDArray[np.float64]:
+    return points_from_scan(to_scan(message))[0].astype(np.float64)

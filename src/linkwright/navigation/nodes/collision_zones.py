@@ -1,4 +1,4 @@
-"""Zones of collision_monitor, with shapes from parameters or topics."""
+"""The zones of collision_monitor, with their shapes from parameters or topics."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ class Zone:
 
     Args:
         node: the node that has the zone's parameters.
-        name: the name of the zone, the prefix of its parameters.
+        name: the name of the zone, which is also the prefix of its parameters.
         transforms: the transforms between frames.
-        base: the frame of the robot.
+        base_frame: the frame of the robot.
 
     Raises:
         LinkwrightError: NODE433, a parameter has an invalid value.
     """
 
-    def __init__(self, node: Node, name: str, transforms: BufferCore, base: str) -> None:
+    def __init__(self, node: Node, name: str, transforms: BufferCore, base_frame: str) -> None:
         self.name = name
-        self._node, self._transforms, self._base = node, transforms, base
-        self._parts: list[Any] = []
+        self._node, self._transforms, self._base = node, transforms, base_frame
+        self._endpoints: list[Any] = []
         self._shape: Shape | None = None
         self._polygon: Any = None
         self._ranges: list[SpeedRange] = []
@@ -56,7 +56,7 @@ class Zone:
         if kind not in _TYPES:
             raise bad_value(f"{name}.type", kind, node.get_name(), _TYPES)
         if kind == "velocity_polygon":
-            self._ranges = [self._read_range(part) for part in string_list(node, f"{name}.velocity_polygons", [])]
+            self._ranges = [self._read_range(polygon) for polygon in string_list(node, f"{name}.velocity_polygons", [])]
         else:
             self._read_shape(kind)
         self._publisher: Any = None
@@ -66,13 +66,13 @@ class Zone:
 
     def destroy(self) -> None:
         """Destroy the publisher and the subscriptions."""
-        for part in self._parts:
-            part.destroy()
+        for endpoint in self._endpoints:
+            endpoint.destroy()
 
     def input_at_velocity(
-        self, velocity: Velocity, seen: Mapping[str, Points]
+        self, velocity: Velocity, points_by_sensor: Mapping[str, Points]
     ) -> tuple[str, Rule, Shape, Points] | None:
-        """Return the zone's name, rule, shape at a velocity, and the points of the zone's sensors.
+        """Return the zone's name, its rule, its shape at a velocity, and the points of its sensors.
 
         Returns None if the zone is disabled or has no shape yet.
         """
@@ -86,8 +86,8 @@ class Zone:
         if self._shape is None:
             self._node.get_logger().warning(f"[{self.name}]: Polygon shape is not set yet", throttle_duration_sec=2.0)
             return None
-        mine = [points for name, points in seen.items() if not self._sources or name in self._sources]
-        return self.name, self.rule, self._shape, np.concatenate(mine) if mine else np.zeros((0, 2))
+        own_points = [points for name, points in points_by_sensor.items() if not self._sources or name in self._sources]
+        return self.name, self.rule, self._shape, np.concatenate(own_points) if own_points else np.zeros((0, 2))
 
     def publish(self) -> None:
         """Publish the zone's polygon for displays, if there are subscribers."""
@@ -109,36 +109,36 @@ class Zone:
         return value_of(self._node, f"{self.name}.{name}", default)
 
     def _read_rule(self) -> Rule:
-        word = str(self._value("action_type", ""))
-        if word not in _ACTIONS:
-            raise bad_value(f"{self.name}.action_type", word, self._node.get_name(), list(_ACTIONS))
-        least = int(self._value("min_points", 4))
+        action_name = str(self._value("action_type", ""))
+        if action_name not in _ACTIONS:
+            raise bad_value(f"{self.name}.action_type", action_name, self._node.get_name(), list(_ACTIONS))
+        min_points = int(self._value("min_points", 4))
         if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter.
-            least = int(self._value("max_points", 3)) + 1
-        usual = Rule(_ACTIONS[word])
+            min_points = int(self._value("max_points", 3)) + 1
+        default_rule = Rule(_ACTIONS[action_name])
         names = [
-            *(("slowdown_ratio",) if usual.action is Action.SLOWDOWN else ()),
-            *(("linear_limit", "angular_limit") if usual.action is Action.LIMIT else ()),
-            *(("time_before_collision", "simulation_time_step") if usual.action is Action.APPROACH else ()),
+            *(("slowdown_ratio",) if default_rule.action is Action.SLOWDOWN else ()),
+            *(("linear_limit", "angular_limit") if default_rule.action is Action.LIMIT else ()),
+            *(("time_before_collision", "simulation_time_step") if default_rule.action is Action.APPROACH else ()),
         ]
-        values = {name: float(self._value(name, getattr(usual, name))) for name in names}
+        values = {name: float(self._value(name, getattr(default_rule, name))) for name in names}
         for name in ("time_before_collision", "simulation_time_step"):
             if values.get(name, 1.0) <= 0.0:
                 raise bad_value(f"{self.name}.{name}", values[name], self._node.get_name())
-        return Rule(usual.action, least, **values)
+        return Rule(default_rule.action, min_points, **values)
 
-    def _read_range(self, part: str) -> SpeedRange:
-        corners = self._corners(f"{part}.points")
+    def _read_range(self, polygon: str) -> SpeedRange:
+        corners = self._corners(f"{polygon}.points")
         if corners is None:
-            raise bad_value(f"{self.name}.{part}.points", "", self._node.get_name())
-        between = [float(self._value(f"{part}.{item}", 0.0)) for item in _RANGES]
+            raise bad_value(f"{self.name}.{polygon}.points", "", self._node.get_name())
+        bounds = [float(self._value(f"{polygon}.{item}", 0.0)) for item in _RANGE_PARAMETERS]
         direction = None
         if self._value("holonomic", False):
             direction = (
-                float(self._value(f"{part}.direction_start_angle", -np.pi)),
-                float(self._value(f"{part}.direction_end_angle", np.pi)),
+                float(self._value(f"{polygon}.direction_start_angle", -np.pi)),
+                float(self._value(f"{polygon}.direction_end_angle", np.pi)),
             )
-        return SpeedRange(Outline(corners), (between[0], between[1]), (between[2], between[3]), direction)
+        return SpeedRange(Outline(corners), (bounds[0], bounds[1]), (bounds[2], bounds[3]), direction)
 
     def _read_shape(self, kind: str) -> None:
         """Read the shape from parameters, or subscribe to the topic that provides it."""
@@ -167,14 +167,14 @@ class Zone:
             self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
-        """Return the corners from Jazzy's parameter (a string) or Humble's (a list of numbers).
+        """Return the corners from a parameter, which is a string in Jazzy and a list of numbers in Humble.
 
         Returns None if the parameter is not set.
         """
-        full = f"{self.name}.{name}"
-        if not self._node.has_parameter(full):
-            self._node.declare_parameter(full, None, ParameterDescriptor(dynamic_typing=True))
-        value = self._node.get_parameter(full).value
+        full_name = f"{self.name}.{name}"
+        if not self._node.has_parameter(full_name):
+            self._node.declare_parameter(full_name, None, ParameterDescriptor(dynamic_typing=True))
+        value = self._node.get_parameter(full_name).value
         if value is None or value == "":
             return None
         if not isinstance(value, str):
@@ -183,13 +183,13 @@ class Zone:
         try:
             return parse_footprint(value)
         except BadFootprintError:
-            raise bad_value(full, value, self._node.get_name()) from None
+            raise bad_value(full_name, value, self._node.get_name()) from None
 
     # --- topics ------------------------------------------------------------------------------------------------------
 
-    def _register(self, part: Any) -> Any:
-        self._parts.append(part)
-        return part
+    def _register(self, endpoint: Any) -> Any:
+        self._endpoints.append(endpoint)
+        return endpoint
 
     def _on_radius(self, message: Any) -> None:
         self._shape = Circle(float(message.data))
@@ -217,4 +217,4 @@ class Zone:
             self._polygon = None
 
 
-_RANGES = ("linear_min", "linear_max", "theta_min", "theta_max")
+_RANGE_PARAMETERS = ("linear_min", "linear_max", "theta_min", "theta_max")

@@ -1,7 +1,8 @@
 """nav2's controller_server, which follows paths for the action ``follow_path``.
 
-Parameters, topics and results are those of nav2. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set, the
-type that subscribers expect, Twist or TwistStamped, is published; the robot stops while the costmap is not current.
+The node has nav2's parameters, topics and results. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set,
+the node publishes the type that subscribers expect, Twist or TwistStamped; the robot stops while the costmap is not
+current.
 """
 
 from __future__ import annotations
@@ -23,18 +24,18 @@ from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.followers import make_follower, make_goal_checker, make_progress_checker
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.paths import poses_of
+from linkwright.navigation.nodes.paths import poses_from_messages
 from linkwright.navigation.nodes.plugins import string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 
 _DEPTH = 10
-_SECONDS_BETWEEN_COMPLAINTS = 2.0
-_LONGEST_WAIT = 3.0
-"""The seconds that the robot waits for missing data before the goal is aborted."""
-_STALE_PATH_FRAME = 5.0
-"""Seconds after which where the path's frame is, is not known any more."""
+_WARNING_PERIOD = 2.0
+_MIN_WAIT = 3.0
+"""The minimum time that the robot waits for missing data before the goal is aborted, in seconds."""
+_MAX_PATH_FRAME_AGE = 5.0
+"""The maximum age of the pose of the path's frame, in seconds."""
 
 
 class _TemporarilyUnavailableError(GoalError):
@@ -64,11 +65,11 @@ class ControllerNode(ManagedNode):
         declare("publish_zero_velocity", True)
         declare("use_realtime_priority", False)
         declare("action_server_result_timeout", 10.0)
-        self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
-        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's parameter.
+        self._is_stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._humble_progress_checker: str = declare("progress_checker_plugin", "").value  # Humble's parameter.
         self._followers: dict[str, Follower] = {}
         self._goals: GoalServer | None = None
-        self._measured = STILL
+        self._measured_velocity = STILL
         self._command: Velocity | None = None
 
     def configure(self) -> None:
@@ -78,20 +79,20 @@ class ControllerNode(ManagedNode):
             LinkwrightError: a parameter is missing or has an invalid value.
         """
         self._frequency = positive(self, "controller_frequency", self._value("controller_frequency"))
-        progress = [self._old_progress] if self._old_progress else None
+        humble_checkers = [self._humble_progress_checker] if self._humble_progress_checker else None
         self._progress = {
             checker: make_progress_checker(self, checker)
-            for checker in progress or string_list(self, "progress_checker_plugins", ["progress_checker"])
+            for checker in humble_checkers or string_list(self, "progress_checker_plugins", ["progress_checker"])
         }
         names = string_list(self, "goal_checker_plugins", ["goal_checker"])
-        self._checkers = {name: make_goal_checker(self, name) for name in names}
+        self._goal_checkers = {name: make_goal_checker(self, name) for name in names}
         names = string_list(self, "controller_plugins", ["FollowPath"])
         self._followers = {name: make_follower(self, name) for name in names}
         self.costmap.trigger_configure()
         odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
         self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
         self.register(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
-        self._output = VelocityTopic(self, "cmd_vel", self._stamped)
+        self._output = VelocityTopic(self, "cmd_vel", self._is_stamped)
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
 
     def activate(self) -> None:
@@ -99,7 +100,7 @@ class ControllerNode(ManagedNode):
         self.costmap.trigger_activate()
 
     def deactivate(self) -> None:
-        """Stop the robot, deactivate the costmap, and refuse goals."""
+        """Stop the robot, abort the current goal, and deactivate the costmap."""
         if self._goals is not None and self._goals.current is not None:
             self._halt()
             self._goals.abort("UNKNOWN", "the server was deactivated")
@@ -122,42 +123,44 @@ class ControllerNode(ManagedNode):
         """Start following the path of a goal; a robot that follows a path keeps moving."""
         request = goal.request
         assert self._goals is not None, "it is configured"
-        drives = self.is_cycling
+        is_driving = self.is_cycling
         self.get_logger().info(
-            "Passing new path to controller." if drives else "Received a goal, begin computing control effort."
+            "Passing new path to controller." if is_driving else "Received a goal, begin computing control effort."
         )
         try:
-            self._follower = _chosen(self._followers, request.controller_id, "controller", "INVALID_CONTROLLER")
-            self._checker = _chosen(self._checkers, request.goal_checker_id, "goal checker", "INVALID_CONTROLLER")
-            asked = getattr(request, "progress_checker_id", "")
-            checker = _chosen(self._progress, asked, "progress checker", "INVALID_CONTROLLER")
+            self._follower = _choose_plugin(self._followers, request.controller_id, "controller", "INVALID_CONTROLLER")
+            self._goal_checker = _choose_plugin(
+                self._goal_checkers, request.goal_checker_id, "goal checker", "INVALID_CONTROLLER"
+            )
+            checker_name = getattr(request, "progress_checker_id", "")
+            checker = _choose_plugin(self._progress, checker_name, "progress checker", "INVALID_CONTROLLER")
             self._accept_path(request.path)
         except GoalError as failure:
             self._fail(failure)
             return
-        if not drives:
+        if not is_driving:
             self._progress_checker = checker
             self._progress_checker.begin()
-            self._good_ns = self.now_ns()
+            self._last_valid_ns = self.now_ns()
             self._output.review()
             self.begin_cycles(1.0 / self._frequency, self._cycle)
 
     def _accept_path(self, message: Any) -> None:
-        poses = poses_of(message.poses)
+        poses = poses_from_messages(message.poses)
         if not len(poses):
             raise GoalError("INVALID_PATH", "Path is empty.")
         goal = tuple(poses[-1])
         if not self.is_cycling or getattr(self, "_goal_in_path", None) != goal:
-            self._checker.begin()
+            self._goal_checker.begin()
         self._goal_in_path: Pose = goal
         self._path_frame = message.header.frame_id or message.poses[0].header.frame_id
         grid = self.costmap.costmap.grid
-        self._reach = max(grid.rows, grid.columns) * grid.resolution / 2.0
-        self._path = FollowedPath(poses if len(poses) > 1 else np.repeat(poses, 2, axis=0), self._reach)
+        self._local_radius = max(grid.rows, grid.columns) * grid.resolution / 2.0
+        self._path = FollowedPath(poses if len(poses) > 1 else np.repeat(poses, 2, axis=0), self._local_radius)
         self._follower.begin()
 
     def _cycle(self) -> None:
-        """Run one control cycle: end the goal if it was canceled, else drive."""
+        """Run one control cycle: end the goal if it was canceled, and drive otherwise."""
         goals = self._goals
         if goals is None or goals.current is None:
             self._halt()
@@ -177,12 +180,12 @@ class ControllerNode(ManagedNode):
     def _wait(self, problem: _TemporarilyUnavailableError) -> None:
         """Stop the robot until missing data arrive, or abort the goal after a timeout."""
         self._publish(STILL)
-        waited = (self.now_ns() - self._good_ns) / 1e9
-        if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
+        waited_seconds = (self.now_ns() - self._last_valid_ns) / 1e9
+        if waited_seconds > max(self._value("costmap_update_timeout"), _MIN_WAIT):
             self._fail(GoalError(problem.code, f"{problem}: given up"))
         else:
             message = f"{problem}: the robot waits"
-            self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+            self.get_logger().warning(message, throttle_duration_sec=_WARNING_PERIOD)
 
     def _drive(self, goals: GoalServer) -> None:
         """Compute and publish the next velocity, or succeed if the goal is reached.
@@ -191,14 +194,14 @@ class ControllerNode(ManagedNode):
             GoalError: the goal must be aborted, or data are temporarily unavailable.
         """
         now_ns = self.now_ns()
-        frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
-        pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
+        frame = self._frame_pose(self._path_frame, _MAX_PATH_FRAME_AGE)
+        pose = self._frame_pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
         if not self.costmap.is_current:
             raise _TemporarilyUnavailableError("CONTROLLER_TIMED_OUT", "the costmap is not current")
-        x, y, yaw = _seen_from(frame, pose)
+        x, y, yaw = _relative_pose(frame, pose)
         self._path.progress(x, y)
         velocity = self._velocity()
-        if self._checker.is_reached((x, y, yaw), self._goal_in_path, self._measured):
+        if self._goal_checker.is_reached((x, y, yaw), self._goal_in_path, self._measured_velocity):
             self.get_logger().info("Reached the goal!")
             self._halt()
             goals.succeed()
@@ -208,20 +211,23 @@ class ControllerNode(ManagedNode):
         situation = Situation(
             pose=pose,
             velocity=velocity,
-            path=_transform_poses(frame, self._path.poses_ahead(self._reach)),
+            path=_transform_poses(frame, self._path.poses_ahead(self._local_radius)),
             costmap=self.costmap.costmap,
             footprint=self.costmap.footprint,
             period=1.0 / self._frequency,
-            xy_tolerance=self._checker.xy_tolerance,
+            xy_tolerance=self._goal_checker.xy_tolerance,
         )
         try:
             command = self._follower.velocity(situation)
         except FollowingError as error:
             self._tolerate_failure(str(error), now_ns)
             return
-        self._good_ns = now_ns
+        self._last_valid_ns = now_ns
         self._publish(command)
-        goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
+        goals.feedback(
+            distance_to_goal=self._path.remaining_distance(x, y),
+            speed=hypot(self._measured_velocity.x, self._measured_velocity.y),
+        )
 
     def _tolerate_failure(self, reason: str, now_ns: int) -> None:
         """Stop the robot when there is no valid velocity.
@@ -232,34 +238,34 @@ class ControllerNode(ManagedNode):
         tolerance = self._value("failure_tolerance")
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)
-        self.get_logger().warning(reason, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+        self.get_logger().warning(reason, throttle_duration_sec=_WARNING_PERIOD)
         self._publish(STILL)
-        if 0.0 < tolerance < (now_ns - self._good_ns) / 1e9:
+        if 0.0 < tolerance < (now_ns - self._last_valid_ns) / 1e9:
             raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 
     def _velocity(self) -> Velocity:
-        """Return the last commanded velocity, or the measured one before the first command."""
-        return self._measured if self._command is None else self._command
+        """Return the last commanded velocity, or the measured velocity before the first command."""
+        return self._measured_velocity if self._command is None else self._command
 
-    def _pose(self, frame: str, most_seconds: float) -> Pose:
+    def _frame_pose(self, frame: str, max_age: float) -> Pose:
         """Return the pose of a frame in the frame of the costmap.
 
         Raises:
-            _TemporarilyUnavailableError: the pose is unknown, or older than `most_seconds`.
+            _TemporarilyUnavailableError: the pose is unknown, or older than `max_age` seconds.
         """
         target = self.costmap.global_frame
         if not frame or frame == target:
             return 0.0, 0.0, 0.0
         try:
-            found, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
+            pose, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
         except TransformException as error:
             raise _TemporarilyUnavailableError(
                 "TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}"
             ) from None
         age = (self.now_ns() - stamp_ns) / 1e9
-        if stamp_ns and age > most_seconds:
+        if stamp_ns and age > max_age:
             raise _TemporarilyUnavailableError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
-        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+        return pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]
 
     def _fail(self, failure: GoalError) -> None:
         self.get_logger().error(str(failure))
@@ -282,8 +288,10 @@ class ControllerNode(ManagedNode):
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         measured = (twist.linear.x, twist.linear.y, twist.angular.z)
-        least = (self._value(f"min_{axis}_velocity_threshold") for axis in ("x", "y", "theta"))
-        self._measured = Velocity(*(v if abs(v) > low else 0.0 for v, low in zip(measured, least, strict=True)))
+        thresholds = (self._value(f"min_{axis}_velocity_threshold") for axis in ("x", "y", "theta"))
+        self._measured_velocity = Velocity(
+            *(value if abs(value) > threshold else 0.0 for value, threshold in zip(measured, thresholds, strict=True))
+        )
 
     def _on_speed_limit(self, message: Any) -> None:
         for follower in self._followers.values():
@@ -310,10 +318,10 @@ class ControllerServer(ManagedServer):
         self._node.costmap.destroy_node()
 
 
-def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
+def _choose_plugin(plugins: dict[str, Any], name: str, kind: str, code: str) -> Any:
     """Return the plugin that a goal names, or the only plugin if the goal names none.
 
-    `what` is the kind of plugin, for the error message.
+    `kind` is the kind of plugin, for the error message.
 
     Raises:
         GoalError: there is no such plugin; the error has the code `code`.
@@ -322,21 +330,26 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
         return plugins[name]
     if not name and len(plugins) == 1:
         return next(iter(plugins.values()))
-    raise GoalError(code, f"there is no {what} '{name}'; available: {', '.join(plugins)}")
+    raise GoalError(code, f"there is no {kind} '{name}'; available: {', '.join(plugins)}")
 
 
 def _transform_poses(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Transform poses, of shape (poses, 3), from a frame with a given pose."""
+    """Transform poses, of shape (poses, 3), out of the frame whose pose is `frame`."""
     x, y, yaw = frame
-    c, s = cos(yaw), sin(yaw)
-    placed: NDArray[np.float64] = np.stack(
-        (x + c * poses[:, 0] - s * poses[:, 1], y + s * poses[:, 0] + c * poses[:, 1], yaw + poses[:, 2]), axis=-1
+    cosine, sine = cos(yaw), sin(yaw)
+    transformed: NDArray[np.float64] = np.stack(
+        (
+            x + cosine * poses[:, 0] - sine * poses[:, 1],
+            y + sine * poses[:, 0] + cosine * poses[:, 1],
+            yaw + poses[:, 2],
+        ),
+        axis=-1,
     )
-    return placed
+    return transformed
 
 
-def _seen_from(frame: Pose, pose: Pose) -> Pose:
+def _relative_pose(frame: Pose, pose: Pose) -> Pose:
     """Return a pose relative to a frame; both arguments are in a common frame."""
-    c, s = cos(frame[2]), sin(frame[2])
+    cosine, sine = cos(frame[2]), sin(frame[2])
     dx, dy = pose[0] - frame[0], pose[1] - frame[1]
-    return c * dx + s * dy, c * dy - s * dx, pose[2] - frame[2]
+    return cosine * dx + sine * dy, cosine * dy - sine * dx, pose[2] - frame[2]

@@ -45,8 +45,8 @@ from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import bad_value
 
-_SECONDS_BETWEEN_COMPLAINTS = 5.0
-_LEAST_CORNERS = 3
+_WARNING_PERIOD = 5.0
+_MIN_CORNERS = 3
 _TF_TOPICS = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 
@@ -87,18 +87,18 @@ class CostmapNode(ManagedNode):
         transforms: the transforms between frames; available before the node is configured.
     """
 
-    def __init__(self, *arguments: Any, **named: Any) -> None:
-        super().__init__(*arguments, **named)
-        self._beats = 0.0  # A costmap needs no bond of its own because its server has one.
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:
+        super().__init__(*arguments, **keywords)
+        self._beats = 0.0  # A costmap needs no bond because its server has one.
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a layer."""
-        self._shared: Surroundings | None = None
+        self._surroundings: Surroundings | None = None
         self._layered: LayeredCostmap | None = None
         self._publisher: CostmapPublisher | None = None
-        self._published_ns: int | None = None
+        self._last_published_ns: int | None = None
         self.add_post_set_parameters_callback(self._follow)
-        self._table = ParameterTable(self, CostmapParameters)  # Added last, so that its callback runs before `_follow`.
+        self._table = ParameterTable(self, CostmapParameters)  # Added last, so that its callback runs first.
         self._filters: list[str] = string_list(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self.transforms, self)
@@ -108,12 +108,12 @@ class CostmapNode(ManagedNode):
     @property
     def global_frame(self) -> str:
         """The frame of the costmap."""
-        return self._given.global_frame
+        return self._values.global_frame
 
     @property
     def robot_base_frame(self) -> str:
         """The frame of the robot."""
-        return self._given.robot_base_frame
+        return self._values.robot_base_frame
 
     @property
     def layered(self) -> LayeredCostmap:
@@ -130,7 +130,7 @@ class CostmapNode(ManagedNode):
     def costmap(self) -> Costmap:
         """The costs after the last update.
 
-        After the costmap has moved, this is another object. See `layered` for exceptions.
+        Moving the costmap replaces this object. See `layered` for exceptions.
         """
         return self.layered.costmap
 
@@ -141,8 +141,8 @@ class CostmapNode(ManagedNode):
 
     @property
     def uses_radius(self) -> bool:
-        """Whether the robot is round: the parameter ``footprint`` is empty."""
-        return self._given.footprint.replace(" ", "") in {"", "[]"}
+        """Whether the robot is round, because the parameter ``footprint`` is empty."""
+        return self._values.footprint.replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
@@ -169,11 +169,11 @@ class CostmapNode(ManagedNode):
         try:
             transform: Transform = self.transforms.lookup(self.global_frame, frame, time_ns)[0]
         except TransformException as error:
-            self.get_logger().warning(str(error), throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+            self.get_logger().warning(str(error), throttle_duration_sec=_WARNING_PERIOD)
             return None
         x, y, yaw = pose
-        found = compose(transform, (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))))
-        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+        transformed = compose(transform, (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))))
+        return transformed[0], transformed[1], rpy_from_quaternion(transformed[3:])[2]
 
     # --- lifecycle ----------------------------------------------------------------------------------------------------
 
@@ -186,30 +186,30 @@ class CostmapNode(ManagedNode):
         """
         load_scipy("ndimage")
         footprint = self._read_footprint()
-        self._shared = Surroundings(self, self.transforms, self.global_frame, self._on_map)
-        self._leave_out_filters()
-        make_layers(self._shared, string_list(self, "plugins", list(DEFAULT_LAYERS)))
-        resolution = self._positive("resolution")
-        rows, columns = (max(1, int(self._positive(name) / resolution)) for name in ("height", "width"))
+        self._surroundings = Surroundings(self, self.transforms, self.global_frame, self._on_map)
+        self._ignore_filters()
+        make_layers(self._surroundings, string_list(self, "plugins", list(DEFAULT_LAYERS)))
+        resolution = self._positive_value("resolution")
+        rows, columns = (max(1, int(self._positive_value(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
-        grid = Grid(cells=cells, resolution=resolution, x=self._given.origin_x, y=self._given.origin_y)
+        grid = Grid(cells=cells, resolution=resolution, x=self._values.origin_x, y=self._values.origin_y)
         self._layered = LayeredCostmap(
             grid,
-            list(self._shared.layers.values()),
+            list(self._surroundings.layers.values()),
             footprint,
-            rolling=self._given.rolling_window,
-            track_unknown=self._given.track_unknown_space,
-            footprint_padding=self._given.footprint_padding,
+            rolling=self._values.rolling_window,
+            track_unknown=self._values.track_unknown_space,
+            footprint_padding=self._values.footprint_padding,
         )
-        always_full = self._given.always_send_full_costmap
+        always_full = self._values.always_send_full_costmap
         self._publisher = self.register(
             CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
         )
         polygon = get_message("geometry_msgs/msg/PolygonStamped")
-        self._footprints = self.register(self.create_publisher(polygon, "published_footprint", 10))
+        self._footprint_publisher = self.register(self.create_publisher(polygon, "published_footprint", 10))
         polygon = get_message("geometry_msgs/msg/Polygon")
         self.register(self.create_subscription(polygon, "footprint", self._on_footprint, 10))
-        self._offer_services()
+        self._create_services()
 
     def activate(self) -> None:
         """Start updating the costmap."""
@@ -223,20 +223,20 @@ class CostmapNode(ManagedNode):
     def cleanup(self) -> None:
         """Drop the layers, and remove their subscriptions."""
         self.end_cycles()
-        for topic in self._shared.topics if self._shared is not None else []:
+        for topic in self._surroundings.topics if self._surroundings is not None else []:
             topic.destroy()
-        self._shared = self._layered = self._publisher = None
+        self._surroundings = self._layered = self._publisher = None
 
     def update(self) -> bool:
         """Process queued sensor data, and update the costmap.
 
         Returns False, without an update, if the robot's pose is unknown.
         """
-        assert self._shared is not None, "it is configured"
+        assert self._surroundings is not None, "it is configured"
         pose = self.robot_pose()
         if pose is None:
             return False
-        for sensor in self._shared.sensors:
+        for sensor in self._surroundings.sensors:
             sensor.process()
         layered = self.layered
         if layered.update(pose, self.now_ns()) and self._publisher is not None:
@@ -247,55 +247,55 @@ class CostmapNode(ManagedNode):
     # --- updates ------------------------------------------------------------------------------------------------------
 
     @property
-    def _given(self) -> CostmapParameters:
+    def _values(self) -> CostmapParameters:
         return self._table.values
 
-    def _positive(self, name: str) -> float:
-        value: float = getattr(self._given, name)
+    def _positive_value(self, name: str) -> float:
+        value: float = getattr(self._values, name)
         if not value > 0:
             raise bad_value(name, value, self.get_name())
         return float(value)
 
     def _read_footprint(self) -> Footprint:
-        text = self._given.footprint
+        text = self._values.footprint
         if self.uses_radius:
-            return circle(self._positive("robot_radius"))
+            return circle(self._positive_value("robot_radius"))
         try:
             return parse_footprint(text)
         except BadFootprintError as error:
             self.get_logger().error(str(error))
             raise bad_value("footprint", text, self.get_name()) from None
 
-    def _leave_out_filters(self) -> None:
+    def _ignore_filters(self) -> None:
         for name in self._filters:
             declare_unused(self, name)
         if self._filters:
-            named = ", ".join(self._filters)
-            self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {named}")
+            filter_names = ", ".join(self._filters)
+            self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {filter_names}")
 
     def _begin_updates(self) -> None:
         self.end_cycles()
-        frequency = self._given.update_frequency
+        frequency = self._values.update_frequency
         if frequency > 0.0:
             self.begin_cycles(1.0 / frequency, self._cycle)
 
     def _cycle(self) -> None:
         if not self.update() or self._publisher is None:
             return
-        frequency, now_ns = self._given.publish_frequency, self.now_ns()
+        frequency, now_ns = self._values.publish_frequency, self.now_ns()
         if frequency <= 0.0:
             return
-        if self._published_ns is None or not 0 <= now_ns - self._published_ns < 1e9 / frequency:
-            self._published_ns = now_ns
+        if self._last_published_ns is None or not 0 <= now_ns - self._last_published_ns < 1e9 / frequency:
+            self._last_published_ns = now_ns
             self._publisher.publish()
 
     def _publish_footprint(self, pose: Pose) -> None:
-        message = self._footprints.msg_type()
+        message = self._footprint_publisher.msg_type()
         message.header.frame_id, message.header.stamp = self.global_frame, self.get_clock().now().to_msg()
         point = get_message("geometry_msgs/msg/Point32")
         corners = place_footprint(self.layered.footprint, *pose)
         message.polygon.points = [point(x=float(x), y=float(y)) for x, y in corners]
-        self._footprints.publish(message)
+        self._footprint_publisher.publish(message)
 
     def _on_map(self, grid: Grid, frame: str) -> None:
         """Resize the costmap to a new map, unless the costmap moves with the robot."""
@@ -305,20 +305,20 @@ class CostmapNode(ManagedNode):
         layered = self._layered
         if layered is None or layered.rolling:
             return
-        known = layered.costmap.grid
-        wanted = _axis_aligned_grid(grid) if frame == self.global_frame else grid
-        if (known.rows, known.columns, known.resolution, known.x, known.y) != (
-            wanted.rows,
-            wanted.columns,
-            wanted.resolution,
-            wanted.x,
-            wanted.y,
+        old_grid = layered.costmap.grid
+        new_grid = _axis_aligned_grid(grid) if frame == self.global_frame else grid
+        if (old_grid.rows, old_grid.columns, old_grid.resolution, old_grid.x, old_grid.y) != (
+            new_grid.rows,
+            new_grid.columns,
+            new_grid.resolution,
+            new_grid.x,
+            new_grid.y,
         ):
-            layered.resize(wanted)
+            layered.resize(new_grid)
 
     def _on_footprint(self, message: Any) -> None:
         corners = np.array([(point.x, point.y) for point in message.points], np.float64).reshape(-1, 2)
-        if len(corners) < _LEAST_CORNERS or not np.isfinite(corners).all():
+        if len(corners) < _MIN_CORNERS or not np.isfinite(corners).all():
             self.get_logger().error(
                 f"a footprint needs at least three corners, but the received one has {len(corners)}"
             )
@@ -328,33 +328,33 @@ class CostmapNode(ManagedNode):
     def _follow(self, changed: list[Parameter]) -> None:
         """Apply changed parameters to the configured node."""
         layered = self._layered
-        if layered is None or self._shared is None:
+        if layered is None or self._surroundings is None:
             return
         names = {parameter.name for parameter in changed}
         if names & {"footprint", "robot_radius", "footprint_padding"}:
             try:
-                layered.padding = self._given.footprint_padding
+                layered.padding = self._values.footprint_padding
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
                 self.log_error(error)
-        if follow(self._shared, changed):
+        if follow(self._surroundings, changed):
             layered.touch()
         if "update_frequency" in names and self.is_cycling:
             self._begin_updates()
 
     # --- services -----------------------------------------------------------------------------------------------------
 
-    def _offer_services(self) -> None:
+    def _create_services(self) -> None:
         name = self.get_name()
-        offered: list[tuple[str, str, Any]] = [
+        services: list[tuple[str, str, Any]] = [
             ("ClearEntireCostmap", f"clear_entirely_{name}", self._clear_entirely),
             ("ClearCostmapAroundRobot", f"clear_around_{name}", self._clear_around),
             ("ClearCostmapExceptRegion", f"clear_except_{name}", self._clear_except),
             ("GetCostmap", "get_costmap", self._get_costmap),
         ]
         if not is_before_iron():
-            offered.append(("GetCost", f"get_cost_{name}", self._get_cost))
-        for kind, service, callback in offered:
+            services.append(("GetCost", f"get_cost_{name}", self._get_cost))
+        for kind, service, callback in services:
             self.register(self.create_service(get_service(f"nav2_msgs/srv/{kind}"), service, callback))
 
     def _clear_entirely(self, _request: Any, response: Any) -> Any:
@@ -374,7 +374,7 @@ class CostmapNode(ManagedNode):
         if pose is None:
             self.get_logger().error("Cannot clear map because robot pose cannot be retrieved.")
             return response
-        self.layered.clear_around(pose, request.reset_distance, except_it=except_it)
+        self.layered.clear_around(pose, request.reset_distance, outside=except_it)
         self.update()
         return response
 
@@ -403,12 +403,12 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
     Raises:
         LinkwrightError: a parameter has the wrong type.
     """
-    ros = parse(options.arguments)
+    ros_arguments = parse(options.arguments)
     rules = ParameterRules()
-    rules.add(options.for_others)
-    rules.add(ros.parameters)
+    rules.add(options.parameters_of_others)
+    rules.add(ros_arguments.parameters)
     namespace = join(server.get_namespace(), name)
-    remappings = [*ros.remappings_for(name), *options.remappings]
+    remappings = [*ros_arguments.remappings_for(name), *options.remappings]
     parameters = rules.for_node(join(namespace, name))
     parameters["use_sim_time"] = server.get_parameter("use_sim_time").value
     return CostmapNode(
@@ -419,16 +419,15 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
         remappings=[
             _adapt_tf_remapping(server, remapping) for remapping in remappings if not remapping[0].startswith("__")
         ],
-        enclave=ros.enclave or "/",
+        enclave=ros_arguments.enclave or "/",
     )
 
 
 def _adapt_tf_remapping(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
-    """Return the remapping rule for the costmap that corresponds to one of the server.
+    """Return a remapping rule of the server, adapted to the costmap.
 
-    A relative tf topic is resolved in the server's namespace.
-
-    Source: in nav2, a costmap listens to transforms with a node of its process that is not in the costmap's namespace.
+    A relative tf topic is resolved in the server's namespace, because in nav2 a costmap listens to transforms with a
+    node of its process that is not in the costmap's namespace.
     """
     source, target = rule
     if source not in _TF_TOPICS or target.startswith("/"):

@@ -21,7 +21,7 @@ from linkwright.navigation.costmaps.observations import ObservationBuffer, Sourc
 from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
 from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeSettings
 from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose, StaticLayer
-from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
+from linkwright.navigation.costmaps.voxel_layer import MAX_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
 from linkwright.navigation.nodes.plugins import declare_unused, string_list, value_of
@@ -33,7 +33,7 @@ DEFAULT_LAYERS: Final = {
     "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
     "inflation_layer": "nav2_costmap_2d::InflationLayer",
 }
-_KINDS: Final = ("LaserScan", "PointCloud2")
+_DATA_TYPES: Final = ("LaserScan", "PointCloud2")
 
 
 @dataclass(slots=True)
@@ -64,56 +64,56 @@ class Surroundings:
 
 
 def make_layers(shared: Surroundings, names: list[str]) -> None:
-    """Create the layers that the parameter ``plugins`` names.
+    """Create the layers named by the parameter ``plugins``.
 
-    Layers of unknown types are skipped with a warning.
+    Layers of unsupported types are skipped with a warning.
 
     Raises:
         LinkwrightError: NODE431, a layer has no type; NODE433, a parameter has an invalid value.
     """
-    makers: dict[str, Callable[[Surroundings, str], Layer]] = {
+    factories: dict[str, Callable[[Surroundings, str], Layer]] = {
         "StaticLayer": _static,
         "ObstacleLayer": _make_obstacle_layer,
-        "VoxelLayer": _voxels,
-        "InflationLayer": _inflation,
+        "VoxelLayer": _make_voxel_layer,
+        "InflationLayer": _make_inflation_layer,
         "DenoiseLayer": _make_denoise_layer,
-        "RangeSensorLayer": _ranges,
+        "RangeSensorLayer": _make_range_layer,
     }
     node = shared.node
     for name in names:
         kind = shared.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
         if not kind:
-            message = phrase("parameter '{name}' of '{node}' is not given", name=f"{name}.plugin", node=node.get_name())
+            message = phrase("parameter '{name}' of '{node}' is not set", name=f"{name}.plugin", node=node.get_name())
             raise LinkwrightError(Diagnostic("NODE431", message))
-        maker = makers.get(kind.removeprefix("nav2_costmap_2d::"))
-        if maker is None:
+        factory = factories.get(kind.removeprefix("nav2_costmap_2d::"))
+        if factory is None:
             declare_unused(node, name)
             node.get_logger().warning(f"layers of type {kind} are not supported: the costmap ignores '{name}'")
             continue
         node.get_logger().info(f'Using plugin "{name}"')
-        layer = maker(shared, name)
+        layer = factory(shared, name)
         layer.enabled = shared.value(f"{name}.enabled", True)
         shared.layers[name] = layer
-    given = [
+    ignored_layers = [
         undeclared_override.removesuffix(".plugin")
         for undeclared_override in node.undeclared_overrides()
         if undeclared_override.endswith(".plugin")
     ]
-    for name in given:
+    for name in ignored_layers:
         declare_unused(node, name)
-    if given:
-        node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(given)}")
+    if ignored_layers:
+        node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(ignored_layers)}")
 
 
 def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
-    """Apply changed parameters to the layers, and return whether any belongs to a layer."""
-    found = False
+    """Apply changed parameters to the layers, and return whether any of them belongs to a layer."""
+    is_layer_changed = False
     for changed_parameter in changed:
         name, _, parameter = changed_parameter.name.partition(".")
         layer = shared.layers.get(name)
         if layer is None:
             continue
-        found = True
+        is_layer_changed = True
         if parameter == "enabled":
             layer.enabled = changed_parameter.value
         elif isinstance(layer, InflationLayer) and hasattr(layer.inflation, parameter):
@@ -122,7 +122,7 @@ def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
             layer.heights = replace(layer.heights, **{parameter: changed_parameter.value})
         elif isinstance(layer, ObstacleLayer) and parameter == "combination_method":
             layer.combination_method = changed_parameter.value
-    return found
+    return is_layer_changed
 
 
 def _static(shared: Surroundings, name: str) -> Layer:
@@ -141,10 +141,10 @@ def _static(shared: Surroundings, name: str) -> Layer:
         if frame is None or frame == shared.frame:
             return 0.0, 0.0, 0.0
         try:
-            found, _ = shared.transforms.lookup(frame, shared.frame, 0)
+            frame_pose, _ = shared.transforms.lookup(frame, shared.frame, 0)
         except TransformException:
             return None
-        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+        return frame_pose[0], frame_pose[1], rpy_from_quaternion(frame_pose[3:])[2]
 
     layer = StaticLayer(
         interpretation,
@@ -168,22 +168,22 @@ def _static(shared: Surroundings, name: str) -> Layer:
 
 def _make_obstacle_layer(shared: Surroundings, name: str) -> Layer:
     return ObstacleLayer(
-        _buffers(shared, name),
+        _make_buffers(shared, name),
         declared(shared.node, Heights, name),
         combination_method=shared.value(f"{name}.combination_method", 1),
         footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
     )
 
 
-def _voxels(shared: Surroundings, name: str) -> Layer:
+def _make_voxel_layer(shared: Surroundings, name: str) -> Layer:
     if shared.value(f"{name}.publish_voxel_map", False):
         shared.node.get_logger().info(f"'{name}' publishes no voxels, though {name}.publish_voxel_map asks for them")
     voxels: Voxels = declared(shared.node, Voxels, name)
-    if not 0 < voxels.z_voxels <= MOST_LEVELS:
-        known = [str(count) for count in range(1, MOST_LEVELS + 1)]
-        raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), known)
+    if not 0 < voxels.z_voxels <= MAX_LEVELS:
+        valid_counts = [str(count) for count in range(1, MAX_LEVELS + 1)]
+        raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), valid_counts)
     return VoxelLayer(
-        _buffers(shared, name),
+        _make_buffers(shared, name),
         declared(shared.node, Heights, name),
         voxels,
         combination_method=shared.value(f"{name}.combination_method", 1),
@@ -191,14 +191,14 @@ def _voxels(shared: Surroundings, name: str) -> Layer:
     )
 
 
-def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
+def _make_buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
     shared.value(f"{name}.tf_filter_tolerance", 0.05)
     buffers = []
     for source in shared.value(f"{name}.observation_sources", "").split():
         prefix = f"{name}.{source}"
         kind = shared.value(f"{prefix}.data_type", "LaserScan")
-        if kind not in _KINDS:
-            raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _KINDS)
+        if kind not in _DATA_TYPES:
+            raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _DATA_TYPES)
         buffer = ObservationBuffer(declared(shared.node, Source, prefix))
         topic = PointsTopic(
             shared.node,
@@ -216,20 +216,20 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
     return buffers
 
 
-def _inflation(shared: Surroundings, name: str) -> Layer:
+def _make_inflation_layer(shared: Surroundings, name: str) -> Layer:
     return InflationLayer(declared(shared.node, Inflation, name))
 
 
-def _ranges(shared: Surroundings, name: str) -> Layer:
+def _make_range_layer(shared: Surroundings, name: str) -> Layer:
     layer = RangeLayer(declared(shared.node, RangeSettings, name))
     shared.value(f"{name}.inflate_cone", 1.0)
     shared.value(f"{name}.input_sensor_type", "ALL")
     for topic in string_list(shared.node, f"{name}.topics", []):
-        listening = RangeTopic(
+        range_topic = RangeTopic(
             shared.node, _in_parent_namespace(shared.node, topic), layer, shared.transforms, shared.frame
         )
-        shared.topics.append(listening)
-        shared.sensors.append(listening)
+        shared.topics.append(range_topic)
+        shared.sensors.append(range_topic)
     return layer
 
 

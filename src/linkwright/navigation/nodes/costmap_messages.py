@@ -1,4 +1,4 @@
-"""Publication of costmaps, as occupancy grids for displays and as raw costs for other nodes.
+"""Publishers of costmaps, as occupancy grids for displays and as raw costs for other nodes.
 
 Source: nav2_costmap_2d ``Costmap2DPublisher``.
 """
@@ -30,7 +30,7 @@ def _percentages() -> Costs:
 
 
 PERCENTAGES = _percentages()
-"""The value of an occupancy grid for each cost, as a byte: 255 is -1."""
+"""The value in an occupancy grid for each cost, as an unsigned byte: 255 is -1."""
 
 
 def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:
@@ -62,69 +62,73 @@ class CostmapPublisher:
     def __init__(self, node: Node, costmap: LayeredCostmap, frame: str, *, always_full: bool) -> None:
         self._node, self._costmap, self._frame = node, costmap, frame
         self._always_full = always_full
-        self._pending = Window()
-        self._sent: tuple[float, float, int, int] | None = None
-        self._listeners = 0
-        self._full = node.create_publisher(get_message("nav_msgs/msg/OccupancyGrid"), "costmap", LATCHED_QOS)
-        self._raw = node.create_publisher(get_message("nav2_msgs/msg/Costmap"), "costmap_raw", LATCHED_QOS)
-        update = get_message("map_msgs/msg/OccupancyGridUpdate")
-        self._updates = node.create_publisher(update, "costmap_updates", LATCHED_QOS)
-        self._raw_updates: Any = None
+        self._pending_window = Window()
+        self._published_geometry: tuple[float, float, int, int] | None = None
+        self._subscriber_count = 0
+        self._full_publisher = node.create_publisher(get_message("nav_msgs/msg/OccupancyGrid"), "costmap", LATCHED_QOS)
+        self._raw_publisher = node.create_publisher(get_message("nav2_msgs/msg/Costmap"), "costmap_raw", LATCHED_QOS)
+        update_type = get_message("map_msgs/msg/OccupancyGridUpdate")
+        self._updates = node.create_publisher(update_type, "costmap_updates", LATCHED_QOS)
+        self._raw_update_publisher: Any = None
         if not is_before_iron():
-            self._raw_updates = node.create_publisher(
+            self._raw_update_publisher = node.create_publisher(
                 get_message("nav2_msgs/msg/CostmapUpdate"), "costmap_raw_updates", LATCHED_QOS
             )
 
     def destroy(self) -> None:
         """Destroy the publishers."""
-        for publisher in (self._full, self._raw, self._updates, self._raw_updates):
+        for publisher in (self._full_publisher, self._raw_publisher, self._updates, self._raw_update_publisher):
             if publisher is not None:
                 publisher.destroy()
 
     def note(self, window: Window) -> None:
         """Add a changed window to the changes that the next `publish` sends."""
-        self._pending = self._pending.joined(window)
+        self._pending_window = self._pending_window.joined(window)
 
     def publish(self) -> None:
-        """Publish the recorded changes.
+        """Publish the changes since the last call.
 
         The whole costmap is published if it moved or was resized, or if there are new subscribers.
         """
         grid = self._costmap.costmap.grid
-        place = (grid.x, grid.y, grid.rows, grid.columns)
-        listeners = self._full.get_subscription_count() + self._raw.get_subscription_count()
-        whole = self._always_full or place != self._sent or listeners > self._listeners
-        window, self._pending = self._pending.within(grid), Window()
-        self._listeners = listeners
-        if not listeners:
-            self._sent = None
+        geometry = (grid.x, grid.y, grid.rows, grid.columns)
+        subscriber_count = self._full_publisher.get_subscription_count() + self._raw_publisher.get_subscription_count()
+        is_full = self._always_full or geometry != self._published_geometry or subscriber_count > self._subscriber_count
+        window, self._pending_window = self._pending_window.within(grid), Window()
+        self._subscriber_count = subscriber_count
+        if not subscriber_count:
+            self._published_geometry = None
             return
-        self._sent = place
+        self._published_geometry = geometry
         stamp = self._node.get_clock().now().to_msg()
-        if whole:
+        if is_full:
             percentages = Grid(
                 cells=PERCENTAGES[grid.cells].view(np.int8), resolution=grid.resolution, x=grid.x, y=grid.y
             )
-            self._full.publish(occupancy_message(percentages, self._frame, stamp))
+            self._full_publisher.publish(occupancy_message(percentages, self._frame, stamp))
         elif not window.is_empty:
             cells = PERCENTAGES[grid.cells[window.cells]].tobytes()
-            message = self._update("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)
+            message = self._update_message("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)
             message.width, message.height = window.right - window.left, window.bottom - window.top
             self._updates.publish(message)
-        if whole or not window.is_empty:
+        if is_full or not window.is_empty:
             self._publish_raw(window, stamp)
 
     def _publish_raw(self, window: Window, stamp: Any) -> None:
         """Publish the whole costmap on ``costmap_raw``, and the changes on ``costmap_raw_updates``."""
-        if self._raw.get_subscription_count():
-            self._raw.publish(raw_message(self._costmap.costmap, self._frame, stamp))
-        if self._raw_updates is not None and self._raw_updates.get_subscription_count() and not window.is_empty:
+        if self._raw_publisher.get_subscription_count():
+            self._raw_publisher.publish(raw_message(self._costmap.costmap, self._frame, stamp))
+        if (
+            self._raw_update_publisher is not None
+            and self._raw_update_publisher.get_subscription_count()
+            and not window.is_empty
+        ):
             cells = array("B", self._costmap.costmap.grid.cells[window.cells].tobytes())
-            message = self._update("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
+            message = self._update_message("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
             message.size_x, message.size_y = window.right - window.left, window.bottom - window.top
-            self._raw_updates.publish(message)
+            self._raw_update_publisher.publish(message)
 
-    def _update(self, kind: str, cells: Any, window: Window, stamp: Any) -> Any:
+    def _update_message(self, kind: str, cells: Any, window: Window, stamp: Any) -> Any:
         message = get_message(kind)()
         message.header.frame_id, message.header.stamp = self._frame, stamp
         message.x, message.y, message.data = window.left, window.top, cells

@@ -1,4 +1,4 @@
-"""Conversion of other nodes' nav2_msgs/Costmap messages to costmaps."""
+"""Conversion of received nav2_msgs/Costmap messages to costmaps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.navigation.costmaps.costmap import Costmap
 from linkwright.navigation.grids.grid import Grid
 
 
-def costmap_of(message: Any) -> Costmap:
+def costmap_from_message(message: Any) -> Costmap:
     """Convert a nav2_msgs/Costmap to a costmap."""
     metadata = message.metadata
     cells = np.frombuffer(message.data, np.uint8).reshape(metadata.size_y, metadata.size_x)

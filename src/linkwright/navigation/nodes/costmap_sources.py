@@ -1,4 +1,4 @@
-"""Subscriptions of a costmap's layers: laser scans, point clouds, ranges and maps.
+"""Subscriptions of a costmap's layers to laser scans, point clouds, ranges and maps.
 
 Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Messages are queued until their transform is available,
 and are processed when the costmap is updated. If a sensor's points do not persist, only its last message with an
@@ -32,16 +32,16 @@ from linkwright.navigation.costmaps.observations import ObservationBuffer
 from linkwright.navigation.costmaps.range_layer import RangeLayer, Reading
 from linkwright.navigation.costmaps.static_layer import StaticLayer
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.grids.occupancy import BadGridError, grid_of
-from linkwright.perception.nodes.laser_filters import scan_of
-from linkwright.perception.nodes.pointcloud_to_laserscan import points_of
-from linkwright.perception.scans.projection import points_of_scan
+from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message
+from linkwright.perception.nodes.laser_filters import to_scan
+from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
+from linkwright.perception.scans.projection import points_from_scan
 
-_WAITING = 50
-_MOST_POINTS = 40_000
-"""The greatest number of points of a cloud; of a larger one every n-th is used, still many for each cell."""
-_LITTLE = 1e-4
-"""The distance in metres before the greatest range at which a ray without a hit ends."""
+_MAX_QUEUED = 50
+_MAX_POINTS = 40_000
+"""The maximum number of points of a cloud; every n-th point of a larger cloud is used."""
+_RANGE_MARGIN = 1e-4
+"""The distance by which a ray without a hit is shorter than the maximum range, in metres."""
 
 
 class SensorTopic(ABC):
@@ -57,7 +57,7 @@ class SensorTopic(ABC):
 
     def __init__(self, node: Node, topic: str, kind: str, transforms: BufferCore, frame: str) -> None:
         self._transforms, self._frame = transforms, frame
-        self._waiting: deque[Any] = deque(maxlen=_WAITING)
+        self._waiting: deque[Any] = deque(maxlen=_MAX_QUEUED)
         message = get_message(f"sensor_msgs/msg/{kind}")
         self._subscription = node.create_subscription(message, topic, self._receive, SENSOR_DATA_QOS)
 
@@ -68,22 +68,22 @@ class SensorTopic(ABC):
     def process(self) -> None:
         """Pass the queued messages whose transforms are available to the layer.
 
-        Messages that are older than the last of these are dropped.
+        Older messages without a transform are dropped.
         """
-        waiting = list(self._waiting)
-        placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
-        if not placed:
+        messages = list(self._waiting)
+        placed_messages = [(message, pose) for message in messages if (pose := self._pose(message)) is not None]
+        if not placed_messages:
             return
-        later = waiting[waiting.index(placed[-1][0]) + 1 :]
+        later_messages = messages[messages.index(placed_messages[-1][0]) + 1 :]
         self._waiting.clear()
-        self._waiting.extend(later)
-        for message, pose in placed if self.all_count else placed[-1:]:
+        self._waiting.extend(later_messages)
+        for message, pose in placed_messages if self.all_count else placed_messages[-1:]:
             self._observe(message, pose)
 
     @property
     @abstractmethod
     def all_count(self) -> bool:
-        """Whether all messages are used; otherwise only the latest one is."""
+        """Whether all messages are used; otherwise only the latest message is."""
 
     @abstractmethod
     def _observe(self, message: Any, pose: Transform) -> None:
@@ -130,18 +130,20 @@ class PointsTopic(SensorTopic):
         self.buffer = buffer
         self._sensor_frame = sensor_frame
         self._inf_is_valid = inf_is_valid
-        self._points: Callable[[Any], NDArray[np.float64] | None] = self._of_scan if kind == "LaserScan" else points_of
+        self._read_points: Callable[[Any], NDArray[np.float64] | None] = (
+            self._points_from_scan if kind == "LaserScan" else read_points
+        )
 
     @property
     def all_count(self) -> bool:
-        """Whether observations persist, so that every message is used."""
+        """Whether every message is used, because observations persist."""
         return bool(self.buffer.source.observation_persistence)
 
     def _observe(self, message: Any, pose: Transform) -> None:
-        points = self._points(message)
+        points = self._read_points(message)
         if points is None:
             return
-        points = points[:: max(1, ceil(len(points) / _MOST_POINTS))]
+        points = points[:: max(1, ceil(len(points) / _MAX_POINTS))]
         origin = np.array(pose[:3])
         if self._sensor_frame and self._sensor_frame != message.header.frame_id:
             stamp = message.header.stamp.nanoseconds
@@ -149,14 +151,14 @@ class PointsTopic(SensorTopic):
                 origin = np.array(self._transforms.lookup(self._frame, self._sensor_frame, stamp)[0][:3])
             except TransformException:
                 return
-        placed = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
-        self.buffer.add(origin, placed, message.header.stamp.nanoseconds)
+        costmap_points = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
+        self.buffer.add(origin, costmap_points, message.header.stamp.nanoseconds)
 
-    def _of_scan(self, message: Any) -> NDArray[np.float64]:
-        scan = scan_of(message)
+    def _points_from_scan(self, message: Any) -> NDArray[np.float64]:
+        scan = to_scan(message)
         if self._inf_is_valid:
-            scan.ranges[np.isposinf(scan.ranges)] = scan.range_max - _LITTLE
-        return points_of_scan(scan)[0].astype(np.float64)
+            scan.ranges[np.isposinf(scan.ranges)] = scan.range_max - _RANGE_MARGIN
+        return points_from_scan(scan)[0].astype(np.float64)
 
 
 class RangeTopic(SensorTopic):
@@ -172,21 +174,23 @@ class RangeTopic(SensorTopic):
         return True
 
     def _observe(self, message: Any, pose: Transform) -> None:
-        least, most, distance = message.min_range, message.max_range, message.range
-        free = self._layer.settings.clear_on_max_reading
-        if least == most:  # A sensor with equal limits only detects presence: -inf is an object, inf is none.
-            if not np.isinf(distance) or (distance > 0.0 and not free):
+        min_range, max_range, distance = message.min_range, message.max_range, message.range
+        is_free = self._layer.settings.clear_on_max_reading
+        if min_range == max_range:  # A sensor with equal limits only detects presence: -inf is an object, inf is none.
+            if not np.isinf(distance) or (distance > 0.0 and not is_free):
                 return
-            free, distance = distance > 0.0, least
-        elif not least <= distance <= most:
+            is_free, distance = distance > 0.0, min_range
+        elif not min_range <= distance <= max_range:
             return
         else:
-            free = free and distance >= most
-        ahead = rotation_matrix(pose[3:])[:, 0]
-        yaw = float(np.arctan2(ahead[1], ahead[0]))
-        flat = float(np.hypot(ahead[0], ahead[1]))
+            is_free = is_free and distance >= max_range
+        direction = rotation_matrix(pose[3:])[:, 0]
+        yaw = float(np.arctan2(direction[1], direction[0]))
+        horizontal_share = float(np.hypot(direction[0], direction[1]))
         stamp_ns = message.header.stamp.nanoseconds
-        self._layer.add(Reading(pose[0], pose[1], yaw, distance * flat, message.field_of_view, free, stamp_ns))
+        self._layer.add(
+            Reading(pose[0], pose[1], yaw, distance * horizontal_share, message.field_of_view, is_free, stamp_ns)
+        )
 
 
 class MapTopic:
@@ -218,7 +222,7 @@ class MapTopic:
         self._subscriptions = [node.create_subscription(message, topic, self._receive, qos)]
         if updates:
             message = get_message("map_msgs/msg/OccupancyGridUpdate")
-            self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._receive_part, 10))
+            self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._on_update, 10))
 
     def destroy(self) -> None:
         """Remove the subscriptions."""
@@ -227,7 +231,7 @@ class MapTopic:
 
     def _receive(self, message: Any) -> None:
         try:
-            grid = grid_of(message)
+            grid = grid_from_message(message)
         except BadGridError as error:
             self._node.get_logger().error(f"Received map message is malformed. Rejecting: {error}")
             return
@@ -235,7 +239,7 @@ class MapTopic:
         self._layer.set_map(grid)
         self._on_map(grid, message.header.frame_id)
 
-    def _receive_part(self, message: Any) -> None:
+    def _on_update(self, message: Any) -> None:
         cells = np.frombuffer(message.data, np.uint8)
         if cells.size != message.width * message.height or not self._layer.update_map(
             message.y, message.x, cells.reshape(message.height, message.width)

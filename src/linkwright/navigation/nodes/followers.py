@@ -1,7 +1,7 @@
-"""Plugins of nav2's controller_server: Linkwright's classes with nav2's names and parameters.
+"""The plugins of nav2's controller_server: Linkwright's classes with nav2's names and parameters.
 
-Deliberate differences: one sampling follower replaces DWB and MPPI. It uses the limits and times among the parameters
-of both, and logs which other parameters were set.
+A deliberate difference: one sampling follower replaces DWB and MPPI. It uses their parameters for limits and times, and
+logs which other parameters are set.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ DWB, MPPI = "dwb_core/DWBLocalPlanner", "nav2_mppi_controller/MPPIController"
 PURE_PURSUIT = "nav2_regulated_pure_pursuit_controller/RegulatedPurePursuitController"
 ROTATION_SHIM = "nav2_rotation_shim_controller/RotationShimController"
 
-USUAL_FOLLOWERS = {"FollowPath": DWB}
-USUAL_GOAL_CHECKERS = {"goal_checker": "nav2_controller/SimpleGoalChecker"}
-USUAL_PROGRESS_CHECKERS = {"progress_checker": "nav2_controller/SimpleProgressChecker"}
+DEFAULT_FOLLOWERS = {"FollowPath": DWB}
+DEFAULT_GOAL_CHECKERS = {"goal_checker": "nav2_controller/SimpleGoalChecker"}
+DEFAULT_PROGRESS_CHECKERS = {"progress_checker": "nav2_controller/SimpleProgressChecker"}
 
 
 def make_follower(node: Node, plugin: str) -> Follower:
@@ -43,50 +43,50 @@ def make_follower(node: Node, plugin: str) -> Follower:
     Raises:
         LinkwrightError: NODE431, the plugin's type is not set; GRAPH201, a parameter has the wrong type.
     """
-    kind = type_of(node, plugin, USUAL_FOLLOWERS)
+    kind = type_of(node, plugin, DEFAULT_FOLLOWERS)
     logger = node.get_logger()
     logger.info(f"Created controller : {plugin} of type {kind.replace('/', '::')}")
     if kind == ROTATION_SHIM:
-        return _with_shim(node, plugin)
-    follower = _made(node, plugin, kind)
-    unread = declare_unused(node, plugin)
+        return _make_rotation_shim(node, plugin)
+    follower = _make_basic_follower(node, plugin, kind)
+    unused_parameters = declare_unused(node, plugin)
     if kind in (DWB, MPPI):
-        ignored = f"; without effect here: {', '.join(unread)}" if unread else ""
-        logger.info(f"{plugin}: Linkwright's velocity-sampling follower replaces {kind}{ignored}")
+        note = f"; without effect here: {', '.join(unused_parameters)}" if unused_parameters else ""
+        logger.info(f"{plugin}: Linkwright's velocity-sampling follower replaces {kind}{note}")
     elif kind != PURE_PURSUIT:
         logger.warning(f"{plugin}: {kind} is not supported; regulated pure pursuit replaces it")
-    elif unread:
-        logger.info(f"{plugin}: without effect here: {', '.join(unread)}")
+    elif unused_parameters:
+        logger.info(f"{plugin}: without effect here: {', '.join(unused_parameters)}")
     return follower
 
 
-def _with_shim(node: Node, plugin: str) -> Follower:
+def _make_rotation_shim(node: Node, plugin: str) -> Follower:
     parameters = declared(node, RotationShimParameters, plugin)
     primary = str(value_of(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
-    follower = RotationShim(_made(node, plugin, primary), parameters)
-    unread = declare_unused(node, plugin)
-    if unread:
-        node.get_logger().info(f"{plugin}: without effect here: {', '.join(unread)}")
+    follower = RotationShim(_make_basic_follower(node, plugin, primary), parameters)
+    unused_parameters = declare_unused(node, plugin)
+    if unused_parameters:
+        node.get_logger().info(f"{plugin}: without effect here: {', '.join(unused_parameters)}")
     return follower
 
 
-def _made(node: Node, plugin: str, kind: str) -> Follower:
+def _make_basic_follower(node: Node, plugin: str, kind: str) -> Follower:
     if kind == DWB:
-        return SamplingFollower(_dwb(node, plugin))
+        return SamplingFollower(_dwb_parameters(node, plugin))
     if kind == MPPI:
-        return SamplingFollower(_mppi(node, plugin))
+        return SamplingFollower(_mppi_parameters(node, plugin))
     return RegulatedPurePursuit(declared(node, PurePursuitParameters, plugin))
 
 
-def _dwb(node: Node, plugin: str) -> SamplingParameters:
+def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
     """Return the sampling settings with DWB's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
 
     limits = Limits(
-        least=Velocity(value("min_vel_x", 0.0), value("min_vel_y", 0.0), -value("max_vel_theta", 0.0)),
-        most=Velocity(value("max_vel_x", 0.0), value("max_vel_y", 0.0), value("max_vel_theta", 0.0)),
+        min_velocity=Velocity(value("min_vel_x", 0.0), value("min_vel_y", 0.0), -value("max_vel_theta", 0.0)),
+        max_velocity=Velocity(value("max_vel_x", 0.0), value("max_vel_y", 0.0), value("max_vel_theta", 0.0)),
         acceleration=Velocity(value("acc_lim_x", 0.0), value("acc_lim_y", 0.0), value("acc_lim_theta", 0.0)),
         deceleration=Velocity(
             abs(value("decel_lim_x", 0.0)), abs(value("decel_lim_y", 0.0)), abs(value("decel_lim_theta", 0.0))
@@ -95,51 +95,51 @@ def _dwb(node: Node, plugin: str) -> SamplingParameters:
     return SamplingParameters(limits=limits, seconds=value("sim_time", 1.7))
 
 
-def _mppi(node: Node, plugin: str) -> SamplingParameters:
+def _mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
     """Return the sampling settings with MPPI's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
 
-    is_sideways = value_of(node, f"{plugin}.motion_model", "DiffDrive") == "Omni"
-    sideways = value("vy_max", 0.5) if is_sideways else 0.0
+    is_omnidirectional = value_of(node, f"{plugin}.motion_model", "DiffDrive") == "Omni"
+    max_sideways = value("vy_max", 0.5) if is_omnidirectional else 0.0
     limits = Limits(
-        least=Velocity(max(value("vx_min", -0.35), 0.0), -sideways, -value("wz_max", 1.9)),
-        most=Velocity(value("vx_max", 0.5), sideways, value("wz_max", 1.9)),
+        min_velocity=Velocity(max(value("vx_min", -0.35), 0.0), -max_sideways, -value("wz_max", 1.9)),
+        max_velocity=Velocity(value("vx_max", 0.5), max_sideways, value("wz_max", 1.9)),
         acceleration=Velocity(value("ax_max", 3.0), value("ay_max", 3.0), value("az_max", 3.5)),
         deceleration=Velocity(abs(value("ax_min", -3.0)), abs(value("ay_min", -3.0)), value("az_max", 3.5)),
     )
     steps, step = int(value_of(node, f"{plugin}.time_steps", 56)), value("model_dt", 0.05)
-    return SamplingParameters(limits=limits, seconds=min(steps * step, _LONGEST))
+    return SamplingParameters(limits=limits, seconds=min(steps * step, _MAX_SECONDS))
 
 
 def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
     """Create the goal checker of a plugin; see `make_follower`."""
-    kind = type_of(node, plugin, USUAL_GOAL_CHECKERS)
+    kind = type_of(node, plugin, DEFAULT_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
         "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, SimpleGoalParameters, plugin)),
         "nav2_controller/StoppedGoalChecker": lambda: StoppedGoalChecker(declared(node, StoppedGoalParameters, plugin)),
     }
-    checker: GoalChecker = _checker(node, plugin, kind, checkers)
+    checker: GoalChecker = _make_checker(node, plugin, kind, checkers)
     return checker
 
 
 def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
     """Create the progress checker of a plugin; see `make_follower`."""
-    kind = type_of(node, plugin, USUAL_PROGRESS_CHECKERS)
+    kind = type_of(node, plugin, DEFAULT_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
         "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, ProgressParameters, plugin)),
         "nav2_controller/PoseProgressChecker": lambda: ProgressChecker(declared(node, PoseProgressParameters, plugin)),
     }
-    checker: ProgressChecker = _checker(node, plugin, kind, checkers)
+    checker: ProgressChecker = _make_checker(node, plugin, kind, checkers)
     return checker
 
 
-def _checker(node: Node, plugin: str, kind: str, known: dict[str, Callable[[], Any]]) -> Any:
-    if kind not in known:
-        raise bad_value(f"{plugin}.plugin", kind, node.get_name(), list(known))
-    return known[kind]()
+def _make_checker(node: Node, plugin: str, kind: str, factories: dict[str, Callable[[], Any]]) -> Any:
+    if kind not in factories:
+        raise bad_value(f"{plugin}.plugin", kind, node.get_name(), list(factories))
+    return factories[kind]()
 
 
-_LONGEST = 2.0
-"""Seconds for which a motion is simulated at the most."""
+_MAX_SECONDS = 2.0
+"""The maximum time for which a motion is simulated, in seconds."""

@@ -1,4 +1,4 @@
-"""Action servers with one goal at a time; a new goal replaces the previous one, as in nav2's servers."""
+"""Action servers that execute one goal at a time; a new goal replaces the previous one, as in nav2's servers."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class GoalServer:
         node: the node that offers the action.
         kind: the type of the action.
         name: the name of the action.
-        begin: called with each accepted goal, after the previous one was aborted.
+        begin: called with each accepted goal, after the previous goal was aborted.
         may_begin: returns whether to accept a goal; by default every goal is accepted.
 
     Attributes:
@@ -51,15 +51,15 @@ class GoalServer:
         self.current: ServerGoalHandle | None = None
         self._type = get_action(kind)
         self._begin = begin
-        self._may_begin = may_begin
+        self._accepts = may_begin
         self._node = node
         self._server = ActionServer(
             node,
             self._type,
             name,
             _do_not_execute,
-            goal_callback=self._judge,
-            handle_accepted_callback=self._accepted,
+            goal_callback=self._on_goal,
+            handle_accepted_callback=self._on_accepted,
             cancel_callback=lambda _goal: CancelResponse.ACCEPT,
         )
 
@@ -75,7 +75,10 @@ class GoalServer:
         return self.current is not None and self.current.is_cancel_requested
 
     def feedback(self, **fields: Any) -> None:
-        """Publish feedback with the given fields for the active goal; do nothing if there is none."""
+        """Publish feedback for the active goal; do nothing if there is none.
+
+        The arguments are the fields of the feedback.
+        """
         if self.current is not None:
             message = self._type.Feedback()
             for name, value in fields.items():
@@ -83,24 +86,24 @@ class GoalServer:
             self.current.publish_feedback(message)
 
     def succeed(self, **fields: Any) -> None:
-        """End the active goal with the status succeeded and the given fields of the result."""
-        if (goal := self._leave()) is not None:
+        """End the active goal with the status succeeded; the arguments are the fields of the result."""
+        if (goal := self._take_active_goal()) is not None:
             goal.succeed(self._result("", "", fields))
 
     def abort(self, code: str, reason: str, **fields: Any) -> None:
         """End the active goal with the status aborted.
 
         Args:
-            code: the name of the error code, for results that have one (Jazzy).
+            code: the name of the error code, for results that have an error code (Jazzy).
             reason: the error message.
             fields: the fields of the result.
         """
-        if (goal := self._leave()) is not None:
+        if (goal := self._take_active_goal()) is not None:
             goal.abort(self._result(code, reason, fields))
 
     def canceled(self, **fields: Any) -> None:
         """End the active goal with the status canceled, or aborted if no cancellation was requested."""
-        if (goal := self._leave()) is not None:
+        if (goal := self._take_active_goal()) is not None:
             if goal.is_cancel_requested:
                 goal.canceled(self._result("", "", fields))
             else:
@@ -111,18 +114,18 @@ class GoalServer:
         self.abort("UNKNOWN", "the server ends")
         self._server.destroy()
 
-    def _leave(self) -> ServerGoalHandle | None:
+    def _take_active_goal(self) -> ServerGoalHandle | None:
         goal, self.current = self.current, None
         return goal if goal is not None and goal.is_active else None
 
-    def _judge(self, goal: Any) -> GoalResponse:
+    def _on_goal(self, goal: Any) -> GoalResponse:
         if not self._node.is_active:
             self._node.get_logger().warning("Action server is inactive. Rejecting the goal.")
             return GoalResponse.REJECT
-        accepts = self._may_begin is None or self._may_begin(goal)
-        return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
+        is_accepted = self._accepts is None or self._accepts(goal)
+        return GoalResponse.ACCEPT if is_accepted else GoalResponse.REJECT
 
-    def _accepted(self, goal: ServerGoalHandle) -> None:
+    def _on_accepted(self, goal: ServerGoalHandle) -> None:
         self.abort("UNKNOWN", "another goal took its place")
         goal.update(GoalEvent.EXECUTE)
         self.current = goal

@@ -1,8 +1,8 @@
 """nav2's lifecycle_manager, which configures and activates managed nodes in order, and resets them if one dies.
 
-Services, parameters, order and log lines are those of nav2. Deliberate differences: the manager waits for an answer as
-long as the node exists, with a log line each ``service_timeout``, so that a slow machine does not cause a failure; and
-when a node dies, the others are brought down without waiting for it.
+The node has nav2's services, parameters, order and log lines. Deliberate differences: the manager waits for a response
+as long as the node exists, with a log line every ``service_timeout`` seconds, so that a slow machine does not cause a
+failure. When a node dies, the others are brought down without waiting for it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, log_unknown
 
-_ONE_SECOND = 1.0
+_CHECK_PERIOD = 1.0
 
 
 class _Step(Enum):
@@ -34,8 +34,8 @@ class _Step(Enum):
     DEACTIVATE = (4, "Deactivating", INACTIVE)
     SHUTDOWN = (5, "Shutting down", FINALIZED)
 
-    def __init__(self, number: int, line: str, goal: LifecycleState) -> None:
-        self.number, self.line, self.goal = number, line, goal
+    def __init__(self, transition_id: int, line: str, goal: LifecycleState) -> None:
+        self.number, self.line, self.goal = transition_id, line, goal
 
 
 class _State(Enum):
@@ -55,7 +55,7 @@ _HEALTH = {
     _State.FINALIZED: Health(Level.WARN, "Managed nodes have been shut down"),
     _State.UNKNOWN: Health(Level.ERROR, "An error has occurred during a node state transition"),
 }
-"""The diagnostics of states, in the words of Jazzy; Humble has active and inactive only."""
+"""The diagnostics of the states, with Jazzy's texts; Humble reports only active and inactive."""
 
 
 class _ManagedNodeClient:
@@ -70,50 +70,53 @@ class _ManagedNodeClient:
         self.name = name
         self.bond: Bond | None = None
         self._node = node
-        self._change, self._get = (
+        self._change_type, self._get = (
             get_service("lifecycle_msgs/srv/ChangeState"),
             get_service("lifecycle_msgs/srv/GetState"),
         )
-        self._changing = node.create_client(self._change, f"{name}/change_state")
-        self._asking = node.create_client(self._get, f"{name}/get_state")
+        self._change_client = node.create_client(self._change_type, f"{name}/change_state")
+        self._get_client = node.create_client(self._get, f"{name}/get_state")
 
     def is_there(self) -> bool:
         """Return whether the lifecycle services of the managed node are available."""
-        return bool(self._changing.service_is_ready() and self._asking.service_is_ready())
+        return bool(self._change_client.service_is_ready() and self._get_client.service_is_ready())
 
-    async def wait(self, look_again: float) -> None:
+    async def wait(self, log_period: float) -> None:
         """Wait until the lifecycle services of the managed node are available.
 
-        A line is logged every `look_again` seconds.
+        A line is logged every `log_period` seconds.
         """
-        for client in (self._changing, self._asking):
-            while not await wait_for_service(self._node, client, look_again):
+        for client in (self._change_client, self._get_client):
+            while not await wait_for_service(self._node, client, log_period):
                 self._node.get_logger().info(f"Waiting for service {client.service_name}...")
 
-    async def change(self, step: _Step, word_each: float) -> bool:
+    async def change(self, step: _Step, log_period: float) -> bool:
         """Run a transition, and return whether the node reached the resulting state.
 
-        The transition fails if the node disappears meanwhile. A line is logged every `word_each` seconds.
+        The transition fails if the node disappears before it responds. A line is logged every `log_period` seconds.
         """
-        request = self._change.Request()
+        request = self._change_type.Request()
         request.transition.id = step.number
-        answer = await self._answer(self._changing, request, word_each)
-        return bool(answer is not None and answer.success) and await self.state(word_each) == step.goal.state_id
+        response = await self._call(self._change_client, request, log_period)
+        return bool(response is not None and response.success) and await self.state(log_period) == step.goal.state_id
 
-    async def state(self, word_each: float) -> int | None:
-        """Return the ID of the node's lifecycle state, or None if the node is missing."""
-        answer = await self._answer(self._asking, self._get.Request(), word_each)
-        return None if answer is None else int(answer.current_state.id)
+    async def state(self, log_period: float) -> int | None:
+        """Return the ID of the node's lifecycle state, or None if the node is not available.
+
+        A line is logged every `log_period` seconds.
+        """
+        response = await self._call(self._get_client, self._get.Request(), log_period)
+        return None if response is None else int(response.current_state.id)
 
     async def answers(self, seconds: float) -> bool:
         """Return whether the node reports within `seconds` that it is unconfigured."""
         if not self.is_there():
             return False
-        future = self._asking.call_async(self._get.Request())
+        future = self._get_client.call_async(self._get.Request())
         if await wait_for_future(self._node, future, seconds):
-            answer: Any = future.result()
-            return bool(answer.current_state.id == UNCONFIGURED.state_id)
-        self._asking.remove_pending_request(future)
+            response: Any = future.result()
+            return bool(response.current_state.id == UNCONFIGURED.state_id)
+        self._get_client.remove_pending_request(future)
         return False
 
     def end_bond(self) -> None:
@@ -122,15 +125,15 @@ class _ManagedNodeClient:
             self.bond.end()
             self.bond = None
 
-    async def _answer(self, client: Any, request: Any, word_each: float) -> Any:
+    async def _call(self, client: Any, request: Any, log_period: float) -> Any:
         if not client.service_is_ready():
             return None
         future = client.call_async(request)
-        while not await wait_for_future(self._node, future, word_each):
+        while not await wait_for_future(self._node, future, log_period):
             if not client.service_is_ready():
                 client.remove_pending_request(future)
                 return None
-            self._node.get_logger().warning(f"{client.service_name} has not answered for {word_each:g} s more")
+            self._node.get_logger().warning(f"{client.service_name} has not answered for {log_period:g} s more")
         return future.result()
 
 
@@ -148,20 +151,20 @@ class LifecycleManager(SingleNode):
         self._logger = self._node.get_logger()
         self._logger.info("Creating")
         with starting(self._node):
-            self._declare()
+            self._declare_parameters()
             log_unknown(self._node)
         self._state = _State.UNCONFIGURED
-        self._busy = asyncio.Lock()
+        self._command_lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._logger.info("Creating and initializing lifecycle service clients")
-        self._managed = [_ManagedNodeClient(self._node, name) for name in self._names]
-        group = ReentrantCallbackGroup()  # ``is_active`` must be answered while a long command runs.
+        self._managed_nodes = [_ManagedNodeClient(self._node, name) for name in self._names]
+        group = ReentrantCallbackGroup()  # ``is_active`` must respond while a long command runs.
         name = self._node.get_name()
-        for kind, service, answer in (
+        for kind, service, callback in (
             ("nav2_msgs/srv/ManageLifecycleNodes", "manage_nodes", self._on_manage),
             ("std_srvs/srv/Trigger", "is_active", self._on_is_active),
         ):
-            self._node.create_service(get_service(kind), f"{name}/{service}", answer, callback_group=group)
+            self._node.create_service(get_service(kind), f"{name}/{service}", callback, callback_group=group)
         DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
         if self._autostart:
             self._begin(self._run_exclusively(self._startup))
@@ -170,24 +173,24 @@ class LifecycleManager(SingleNode):
         """Close the manager; the managed nodes keep their states."""
         for task in self._tasks:
             task.cancel()
-        for managed in self._managed:
+        for managed in self._managed_nodes:
             managed.end_bond()
         super().close()
 
-    def _declare(self) -> None:
+    def _declare_parameters(self) -> None:
         node = self._node
         node.declare_parameter("node_names", ParameterType.STRING_ARRAY)
         names = node.get_parameter_or("node_names", Parameter("node_names")).value
         self._names: list[str] = list(names or [])
-        twice = [name for name in self._names if self._names.count(name) > 1]
-        if not self._names or twice or "" in self._names:
+        duplicates = [name for name in self._names if self._names.count(name) > 1]
+        if not self._names or duplicates or "" in self._names:
             raise bad_value("node_names", self._names, node.get_name())
         declare = node.declare_parameter
         self._autostart: bool = declare("autostart", False).value
         self._bond_timeout: float = declare("bond_timeout", TIMEOUT).value
-        self._word_each: float = declare("service_timeout", 5.0).value
-        self._respawn_most: float = declare("bond_respawn_max_duration", 10.0).value
-        self._respawns: bool = declare("attempt_respawn_reconnection", True).value
+        self._log_period: float = declare("service_timeout", 5.0).value
+        self._max_respawn_seconds: float = declare("bond_respawn_max_duration", 10.0).value
+        self._reconnects: bool = declare("attempt_respawn_reconnection", True).value
 
     # --- commands ----------------------------------------------------------------------------------------------------
 
@@ -213,65 +216,65 @@ class LifecycleManager(SingleNode):
 
     async def _run_exclusively(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
         """Run a command after all earlier commands have finished."""
-        async with self._busy:
+        async with self._command_lock:
             return await command()
 
     async def _startup(self) -> bool:
         self._logger.info("Starting managed nodes bringup...")
         if not await self._transition_all(_Step.CONFIGURE) or not await self._transition_all(_Step.ACTIVATE):
             return self._failed("Failed to bring up all requested nodes. Aborting bringup.")
-        return self._reached(_State.ACTIVE, "Managed nodes are active")
+        return self._set_state(_State.ACTIVE, "Managed nodes are active")
 
     async def _configure(self) -> bool:
         self._logger.info("Configuring managed nodes...")
         if not await self._transition_all(_Step.CONFIGURE):
             return self._failed("Failed to configure all requested nodes. Aborting bringup.")
-        return self._reached(_State.INACTIVE, "Managed nodes are now configured")
+        return self._set_state(_State.INACTIVE, "Managed nodes are now configured")
 
     async def _cleanup(self) -> bool:
         self._logger.info("Cleaning up managed nodes...")
         if not await self._transition_all(_Step.CLEANUP):
             return self._failed("Failed to cleanup all requested nodes. Aborting cleanup.")
-        return self._reached(_State.UNCONFIGURED, "Managed nodes have been cleaned up")
+        return self._set_state(_State.UNCONFIGURED, "Managed nodes have been cleaned up")
 
     async def _pause(self) -> bool:
         self._logger.info("Pausing managed nodes...")
         if not await self._transition_all(_Step.DEACTIVATE):
             return self._failed("Failed to pause nodes: aborting pause")
-        return self._reached(_State.INACTIVE, "Managed nodes have been paused")
+        return self._set_state(_State.INACTIVE, "Managed nodes have been paused")
 
     async def _resume(self) -> bool:
         self._logger.info("Resuming managed nodes...")
         if not await self._transition_all(_Step.ACTIVATE):
             return self._failed("Failed to resume nodes: aborting resume")
-        return self._reached(_State.ACTIVE, "Managed nodes are active")
+        return self._set_state(_State.ACTIVE, "Managed nodes are active")
 
     async def _reset(self) -> bool:
         self._logger.info("Resetting managed nodes...")
         if not await self._transition_all(_Step.DEACTIVATE) or not await self._transition_all(_Step.CLEANUP):
             return self._failed("Failed to reset nodes: aborting reset")
-        return self._reached(_State.UNCONFIGURED, "Managed nodes have been reset")
+        return self._set_state(_State.UNCONFIGURED, "Managed nodes have been reset")
 
     async def _shutdown(self) -> bool:
         self._logger.info("Shutting down managed nodes...")
         self._logger.info("Deactivate, cleanup, and shutdown nodes")
         self._state = _State.FINALIZED
         for step in (_Step.DEACTIVATE, _Step.CLEANUP, _Step.SHUTDOWN):
-            await self._transition_all(step, whatever_happens=True)
-        return self._reached(_State.FINALIZED, "Managed nodes have been shut down")
+            await self._transition_all(step, ignore_failures=True)
+        return self._set_state(_State.FINALIZED, "Managed nodes have been shut down")
 
     def _failed(self, line: str) -> bool:
         self._logger.error(line)
         self._state = _State.UNKNOWN
         return False
 
-    def _reached(self, state: _State, line: str) -> bool:
+    def _set_state(self, state: _State, line: str) -> bool:
         self._logger.info(line)
         self._state = state
         return True
 
     async def _transition_all(
-        self, step: _Step, *, whatever_happens: bool = False, without: _ManagedNodeClient | None = None
+        self, step: _Step, *, ignore_failures: bool = False, skipped: _ManagedNodeClient | None = None
     ) -> bool:
         """Run a transition of all nodes, and return whether all succeeded.
 
@@ -279,22 +282,26 @@ class LifecycleManager(SingleNode):
 
         Args:
             step: the transition.
-            whatever_happens: whether to continue after a failure.
-            without: a node that is skipped.
+            ignore_failures: whether to continue after a failure.
+            skipped: a node that is left out; None for no node.
         """
-        upwards = step in (_Step.CONFIGURE, _Step.ACTIVATE)
-        for managed in self._managed if upwards else reversed(self._managed):
-            if managed is not without and not await self._one(managed, step, wait=upwards) and not whatever_happens:
+        is_bringup = step in (_Step.CONFIGURE, _Step.ACTIVATE)
+        for managed in self._managed_nodes if is_bringup else reversed(self._managed_nodes):
+            if (
+                managed is not skipped
+                and not await self._transition(managed, step, wait=is_bringup)
+                and not ignore_failures
+            ):
                 return False
         return True
 
-    async def _one(self, managed: _ManagedNodeClient, step: _Step, *, wait: bool) -> bool:
+    async def _transition(self, managed: _ManagedNodeClient, step: _Step, *, wait: bool) -> bool:
         self._logger.info(f"{step.line} {managed.name}")
         if wait:
-            await managed.wait(self._word_each)
+            await managed.wait(self._log_period)
         if step is not _Step.ACTIVATE:
             managed.end_bond()  # End the bond before the node leaves it; otherwise that would count as a failure.
-        if not await managed.change(step, self._word_each):
+        if not await managed.change(step, self._log_period):
             self._logger.error(f"Failed to change state for node: {managed.name}")
             return False
         return step is not _Step.ACTIVATE or await self._bind(managed)
@@ -310,7 +317,7 @@ class LifecycleManager(SingleNode):
             self._node,
             managed.name,
             timeout=self._bond_timeout,
-            on_formed=lambda: _finish(formed),
+            on_formed=lambda: _resolve(formed),
             on_broken=lambda: self._on_bond_broken(managed),
         )
         if not await wait_for_future(self._node, formed, self._bond_timeout):
@@ -328,9 +335,9 @@ class LifecycleManager(SingleNode):
         self._begin(self._run_exclusively(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
-        """Reset the other nodes after one died, and start to wait for its return."""
+        """Reset the other nodes after one died, and start to wait until it is available again."""
         if dead.bond is None:
-            return True  # The node was taken down with another one, or by a command.
+            return True  # The node was taken down with another node, or by a command.
         if self._state not in (_State.ACTIVE, _State.UNKNOWN):
             return True
         self._logger.info(f"Have not received a heartbeat from {dead.name}.")
@@ -341,9 +348,9 @@ class LifecycleManager(SingleNode):
         self._logger.info("Resetting managed nodes...")
         dead.end_bond()
         for step in (_Step.DEACTIVATE, _Step.CLEANUP):
-            await self._transition_all(step, whatever_happens=True, without=dead)
-        self._reached(_State.UNCONFIGURED, "Managed nodes have been reset")
-        if self._respawns:
+            await self._transition_all(step, ignore_failures=True, skipped=dead)
+        self._set_state(_State.UNCONFIGURED, "Managed nodes have been reset")
+        if self._reconnects:
             self._begin(self._reconnect())
         return True
 
@@ -352,12 +359,14 @@ class LifecycleManager(SingleNode):
 
         The wait ends after ``bond_respawn_max_duration``, or when a command changes the nodes.
         """
-        waited = 0.0
-        while waited < self._respawn_most and self._is_still_down():
-            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _ONE_SECOND)
-            waited += _ONE_SECOND
-            async with self._busy:
-                if self._is_still_down() and all([await managed.answers(_ONE_SECOND) for managed in self._managed]):
+        waited_seconds = 0.0
+        while waited_seconds < self._max_respawn_seconds and self._is_still_down():
+            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _CHECK_PERIOD)
+            waited_seconds += _CHECK_PERIOD
+            async with self._command_lock:
+                if self._is_still_down() and all(
+                    [await managed.answers(_CHECK_PERIOD) for managed in self._managed_nodes]
+                ):
                     self._logger.info("Successfully re-established connections from server respawns, starting back up.")
                     await self._startup()
                     return
@@ -374,6 +383,6 @@ class LifecycleManager(SingleNode):
         task.add_done_callback(self._tasks.discard)
 
 
-def _finish(future: asyncio.Future[None]) -> None:
+def _resolve(future: asyncio.Future[None]) -> None:
     if not future.done():
         future.set_result(None)

@@ -10,7 +10,7 @@ from linkwright.graph import Graph, Node, Timer
 from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
 from linkwright.navigation.nodes.bond import PERIOD, Bond
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node_of, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node_with_class, starting
 from linkwright.nodes.settings import log_unknown
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
@@ -27,20 +27,20 @@ class ManagedNode(LifecycleNodeMixin, Node):
     """A server of nav2 as a managed node.
 
     Derived classes declare their parameters in `declare` and do their work in `configure`, `activate`, `deactivate`
-    and `cleanup`. A `LinkwrightError` raised in `configure` or `activate` is logged, and the transition fails. Parts
+    and `cleanup`. A `LinkwrightError` raised in `configure` or `activate` is logged, and the transition fails. Objects
     passed to `register` are destroyed when the node is cleaned up.
     """
 
-    def __init__(self, *arguments: Any, **named: Any) -> None:
-        Node.__init__(self, *arguments, **named)
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:
+        Node.__init__(self, *arguments, **keywords)
         LifecycleNodeMixin.__init__(self)
-        self._parts: list[_Destroyable] = []
+        self._registered: list[_Destroyable] = []
         self._bond: Bond | None = None
         self._timer: Timer | None = None
-        self._has_logged = False
+        self._has_logged_unknown = False
         self.get_logger().info("Creating")
         self._beats: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
-        self._starts_itself: bool = self.declare_parameter("autostart_node", False).value
+        self._is_autostarted: bool = self.declare_parameter("autostart_node", False).value
         self.declare()
 
     def declare(self) -> None:
@@ -50,18 +50,18 @@ class ManagedNode(LifecycleNodeMixin, Node):
         """Read the parameters, and create the topics."""
 
     def activate(self) -> None:
-        """Start to work."""
+        """Start the node's work."""
 
     def deactivate(self) -> None:
-        """Stop working."""
+        """Stop the node's work."""
 
     def cleanup(self) -> None:
-        """Drop the parts that are not registered; `configure` may have failed halfway."""
+        """Drop the objects that are not registered; `configure` may have failed halfway."""
 
-    def register(self, part: P) -> P:
-        """Register a part that is destroyed when the node is cleaned up, and return it."""
-        self._parts.append(part)
-        return part
+    def register(self, resource: P) -> P:
+        """Register an object that is destroyed when the node is cleaned up, and return the object."""
+        self._registered.append(resource)
+        return resource
 
     @property
     def is_active(self) -> bool:
@@ -74,14 +74,11 @@ class ManagedNode(LifecycleNodeMixin, Node):
 
     @property
     def is_cycling(self) -> bool:
-        """Whether cycles are running: `begin_cycles` was called, and `end_cycles` was not called since."""
+        """Whether cycles are running, that is, `begin_cycles` was called and `end_cycles` was not called since."""
         return self._timer is not None
 
     def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:
-        """Call a function every `period` seconds of the node's clock.
-
-        Earlier calls are stopped.
-        """
+        """Call a function every `period` seconds of the node's clock; it replaces an earlier function."""
         self.end_cycles()
         self._timer = self.create_timer(period, cycle)
 
@@ -91,29 +88,29 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self._timer.destroy()
             self._timer = None
 
-    def start_itself(self) -> None:
+    def autostart(self) -> None:
         """Configure and activate the node if ``autostart_node`` is set."""
-        if self._starts_itself and self.trigger_configure() == _SUCCESS:
+        if self._is_autostarted and self.trigger_configure() == _SUCCESS:
             self.trigger_activate()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `configure`; the first success logs unknown parameters."""
+        """Run `configure`; after the first success, log parameters that are not known."""
         self.get_logger().info("Configuring")
         try:
             self.configure()
         except LinkwrightError as error:
             self.log_error(error)
-            self._let_go()
+            self._release()
             return TransitionCallbackReturn.FAILURE
-        if not self._has_logged:
-            self._has_logged = True
+        if not self._has_logged_unknown:
+            self._has_logged_unknown = True
             log_unknown(self)
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run `activate` and form the bond."""
         self.get_logger().info("Activating")
-        verdict = super().on_activate(state)
+        result = super().on_activate(state)
         try:
             self.activate()
         except LinkwrightError as error:
@@ -123,7 +120,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         if self._beats > 0.0:
             self.get_logger().info(f"Creating bond ({self.get_name()}) to lifecycle manager.")
             self._bond = Bond(self, self.get_name(), period=self._beats)
-        return verdict
+        return result
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run `deactivate` and break the bond."""
@@ -135,7 +132,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run `cleanup` and destroy the registered parts."""
         self.get_logger().info("Cleaning up")
-        self._let_go()
+        self._release()
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -144,13 +141,13 @@ class ManagedNode(LifecycleNodeMixin, Node):
         if state == ACTIVE:
             self.deactivate()
         self._end_bond()
-        self._let_go()
+        self._release()
         return super().on_shutdown(state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Clean up after an error in a transition, so that the node can be configured again."""
         self._end_bond()
-        self._let_go()
+        self._release()
         return super().on_error(state)
 
     def leave(self) -> None:
@@ -158,13 +155,13 @@ class ManagedNode(LifecycleNodeMixin, Node):
         if self.is_active:
             self.deactivate()
         self._end_bond()
-        self._let_go()
+        self._release()
 
-    def _let_go(self) -> None:
+    def _release(self) -> None:
         self.cleanup()
-        for part in self._parts:
-            part.destroy()
-        self._parts.clear()
+        for resource in self._registered:
+            resource.destroy()
+        self._registered.clear()
 
     def _end_bond(self) -> None:
         if self._bond is not None:
@@ -187,11 +184,11 @@ class ManagedServer(SingleNode):
     NODE: ClassVar[type[ManagedNode]]
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        node, _ = create_node_of(self.NODE, graph, options, self.DEFAULT_NAME)
+        node, _ = create_node_with_class(self.NODE, graph, options, self.DEFAULT_NAME)
         self._node: ManagedNode = node
         with starting(node):
             self.prepare(graph, options)
-            node.start_itself()
+            node.autostart()
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
         """Prepare the node before it starts; does nothing by default."""

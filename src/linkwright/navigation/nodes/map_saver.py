@@ -13,7 +13,7 @@ from linkwright.graph import LATCHED_QOS, Graph, Logger, Node, QoSProfile
 from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
-from linkwright.navigation.grids.occupancy import BadGridError, grid_of
+from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message
 from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, MapSaveSettings, save_map
 from linkwright.navigation.maps.map_yaml import MapMode
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
@@ -36,23 +36,23 @@ Arguments:
 
 NOTE: --ros-args should be passed at the end of command line"""
 _OPTIONS = ("-t", "-f", "--occ", "--free", "--fmt", "--mode")
-_INVALID = 255
+_INVALID_ARGUMENT_STATUS = 255
 """The exit status of nav2's ``return -1``."""
 
 
 class _MapSaving:
-    """The code shared by both programs, which receives a map and saves it."""
+    """A receiver that saves a map; both programs use it."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         declare = node.declare_parameter
         self._timeout: float = declare("save_map_timeout", 2.0).value
-        self._free: float = declare("free_thresh_default", FREE_THRESH).value
-        self._occupied: float = declare("occupied_thresh_default", OCCUPIED_THRESH).value
-        self._latched: bool = declare("map_subscribe_transient_local", True).value
+        self._default_free: float = declare("free_thresh_default", FREE_THRESH).value
+        self._default_occupied: float = declare("occupied_thresh_default", OCCUPIED_THRESH).value
+        self._is_latched: bool = declare("map_subscribe_transient_local", True).value
 
     def mode(self, text: str) -> MapMode:
-        """Return the mode with a name, or ``trinary`` with a warning if the name is unknown."""
+        """Return the mode with a name, or log a warning and return ``trinary`` if there is no such mode."""
         try:
             return MapMode(text or MapMode.TRINARY.value)
         except ValueError:
@@ -72,33 +72,33 @@ class _MapSaving:
             topic = "map"
             logger.warning(f"Map topic unspecified. Map messages will be read from '{topic}' topic")
         if not free:
-            free = self._free
+            free = self._default_free
             logger.warning(f"Free threshold unspecified. Setting it to default value: {free:f}")
         if not occupied:
-            occupied = self._occupied
+            occupied = self._default_occupied
             logger.warning(f"Occupied threshold unspecified. Setting it to default value: {occupied:f}")
         message = await self._receive_map(topic)
         if message is None:
             return False
-        io = self._node.graph.get_logger("map_io")
+        io_logger = self._node.graph.get_logger("map_io")
         if not name:
             name = f"map_{self._node.get_clock().now().nanoseconds // NANOSECONDS_PER_SECOND}"
-            io.warning(f"Map file unspecified. Map will be saved to {name} file")
-        saved = MapSaveSettings(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
-        problem = self._write(message, saved, io)
+            io_logger.warning(f"Map file unspecified. Map will be saved to {name} file")
+        settings = MapSaveSettings(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
+        problem = self._write(message, settings, io_logger)
         if problem is not None:
             logger.error(f"Failed to save the map: {problem}")
             return False
         logger.info("Map saved successfully")
         return True
 
-    def _write(self, message: Any, saved: MapSaveSettings, io: Logger) -> str | None:
-        """Save the map of a message, and return None, or the reason for a failure."""
+    def _write(self, message: Any, settings: MapSaveSettings, io_logger: Logger) -> str | None:
+        """Save the map of a message, and return the reason for a failure, or None after success."""
         try:
-            grid = grid_of(message)
-            io.info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/pix")
-            for path in save_map(grid, saved, io.warning):
-                io.info(f"Wrote {path}")
+            grid = grid_from_message(message)
+            io_logger.info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/pix")
+            for path in save_map(grid, settings, io_logger.warning):
+                io_logger.info(f"Wrote {path}")
         except BadGridError as error:
             return f"the message is not a map: {error}"
         except LinkwrightError as error:
@@ -106,31 +106,31 @@ class _MapSaving:
         return None
 
     async def _receive_map(self, topic: str) -> Any:
-        """Return the next message of a topic, or None with a log line if none arrives in time."""
+        """Return the next message of a topic; log an error and return None if none arrives in time."""
         node = self._node
-        come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        received: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
         def receive(message: Any) -> None:
-            if not come.done():
-                come.set_result(message)
+            if not received.done():
+                received.set_result(message)
 
-        qos = LATCHED_QOS if self._latched else QoSProfile(depth=10)
-        group = ReentrantCallbackGroup()  # The waiting service callback occupies the node's own group.
+        qos = LATCHED_QOS if self._is_latched else QoSProfile(depth=10)
+        group = ReentrantCallbackGroup()  # The service callback that waits occupies the node's default group.
         kind = get_message("nav_msgs/msg/OccupancyGrid")
         subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
         try:
-            if not await wait_for_future(node, come, self._timeout):
-                senders = node.count_publishers(topic)
-                why = (
+            if not await wait_for_future(node, received, self._timeout):
+                publisher_count = node.count_publishers(topic)
+                reason = (
                     f"no node publishes on '{subscription.name}'"
-                    if not senders
-                    else f"{senders} publish on '{subscription.name}', but no map with a compatible QoS arrived"
+                    if not publisher_count
+                    else f"{publisher_count} publish on '{subscription.name}', but no map with a compatible QoS arrived"
                 )
                 node.get_logger().error(
-                    f"Failed to spin map subscription: no map arrived within {self._timeout:g} s; {why}"
+                    f"Failed to spin map subscription: no map arrived within {self._timeout:g} s; {reason}"
                 )
                 return None
-            return come.result()
+            return received.result()
         finally:
             subscription.destroy()
 
@@ -145,10 +145,10 @@ class MapSaver(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        words = remove_ros_arguments(options.arguments)
+        program_arguments = remove_ros_arguments(options.arguments)
         self._task: asyncio.Task[None] | None = None
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        if "-h" in words or "--help" in words:
+        if "-h" in program_arguments or "--help" in program_arguments:
             options.output(_USAGE)
             self.finished.set_result(0)
             return
@@ -156,12 +156,12 @@ class MapSaver(SingleNode):
             saving = _MapSaving(self._node)
             log_unknown(self._node)
         try:
-            arguments = _parsed(words)
+            option_values = _parse_options(program_arguments)
         except ValueError as error:
             self._node.get_logger().error(str(error))
-            self.finished.set_result(_INVALID)
+            self.finished.set_result(_INVALID_ARGUMENT_STATUS)
             return
-        self._task = asyncio.get_running_loop().create_task(self._run(saving, arguments))
+        self._task = asyncio.get_running_loop().create_task(self._run(saving, option_values))
 
     def close(self) -> None:
         """Cancel a running save, and close the node."""
@@ -172,34 +172,34 @@ class MapSaver(SingleNode):
     async def _run(self, saving: _MapSaving, arguments: dict[str, str]) -> None:
         free, occupied = (float(arguments.get(option, 0.0)) for option in ("--free", "--occ"))
         mode = saving.mode(arguments.get("--mode", ""))
-        saved = await saving.save(
+        is_saved = await saving.save(
             arguments.get("-t", "map"), arguments.get("-f", ""), arguments.get("--fmt", ""), mode, free, occupied
         )
         if not self.finished.done():
-            self.finished.set_result(0 if saved else 1)
+            self.finished.set_result(0 if is_saved else 1)
 
 
-def _parsed(words: list[str]) -> dict[str, str]:
+def _parse_options(words: list[str]) -> dict[str, str]:
     """Parse the command-line options, and return their values by option.
 
     Raises:
-        ValueError: an option is unknown, has no value, or has a value that is not a number where one is required.
+        ValueError: an option does not exist, has no value, or needs a number and has another value.
     """
-    arguments = {}
-    rest = iter(words)
-    for word in rest:
-        if word not in _OPTIONS:
-            raise ValueError(f"Wrong argument: {word}")
-        value = next(rest, None)
+    option_values = {}
+    remaining = iter(words)
+    for argument in remaining:
+        if argument not in _OPTIONS:
+            raise ValueError(f"Wrong argument: {argument}")
+        value = next(remaining, None)
         if value is None:
-            raise ValueError(f"Wrong argument: {word} should be followed by a value.")
-        if word in ("--occ", "--free"):
+            raise ValueError(f"Wrong argument: {argument} should be followed by a value.")
+        if argument in ("--occ", "--free"):
             try:
                 float(value)
             except ValueError:
-                raise ValueError(f"Wrong argument: {word} should be followed by a number, not '{value}'") from None
-        arguments[word] = value
-    return arguments
+                raise ValueError(f"Wrong argument: {argument} should be followed by a number, not '{value}'") from None
+        option_values[argument] = value
+    return option_values
 
 
 class MapSaverNode(ManagedNode):

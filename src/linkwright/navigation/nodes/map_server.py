@@ -1,7 +1,7 @@
-"""nav2's map_server, which publishes a map loaded from files, and returns it by a service.
+"""nav2's map_server, which publishes a map loaded from files, and returns it in a service.
 
-One difference from nav2's Humble: without ``yaml_filename`` the node can still be configured (as in Jazzy), and serves
-a map once one is loaded.
+A difference from nav2 in Humble: as in Jazzy, the node can be configured without ``yaml_filename``, and serves a map
+once one is loaded.
 """
 
 from __future__ import annotations
@@ -77,14 +77,14 @@ class MapServerNode(ManagedNode):
             self._load(request.map_url)
         except LinkwrightError as error:
             self.log_error(error)
-            response.result = _result(error, response)
+            response.result = _result_code(error, response)
             return response
         self._publisher.publish(self._map)
         response.map, response.result = self._map, response.RESULT_SUCCESS
         return response
 
 
-def _result(error: LinkwrightError, response: Any) -> int:
+def _result_code(error: LinkwrightError, response: Any) -> int:
     """Return nav2's result code for an error."""
     results: dict[str, int] = {
         "NAV201": response.RESULT_MAP_DOES_NOT_EXIST,

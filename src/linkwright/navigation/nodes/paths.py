@@ -25,7 +25,7 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
     return path
 
 
-def poses_of(stamped: Any) -> NDArray[np.float64]:
+def poses_from_messages(stamped: Any) -> NDArray[np.float64]:
     """Convert a list of geometry_msgs/PoseStamped to planar poses, of shape (n, 3).
 
     Poses are x, y (metres) and yaw (radians).
@@ -35,7 +35,7 @@ def poses_of(stamped: Any) -> NDArray[np.float64]:
 
 def pose_of(stamped: Any) -> tuple[float, float, float]:
     """Convert a geometry_msgs/PoseStamped to x, y (metres) and yaw (radians)."""
-    position, turn = stamped.pose.position, stamped.pose.orientation
-    quaternion = (turn.x, turn.y, turn.z, turn.w)
+    position, orientation = stamped.pose.position, stamped.pose.orientation
+    quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
     yaw = rpy_from_quaternion(quaternion)[2] if any(quaternion) else 0.0
     return position.x, position.y, yaw

@@ -1,8 +1,8 @@
 """nav2's planner_server, which plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
-Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are accepted, but they
-share one method (`linkwright.navigation.planning.planner`); a line is logged for types that have another method in
-nav2. A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
+The node has nav2's parameters, topics, texts and results, for Humble and Jazzy. All types of planners are accepted, but
+they share one method (`linkwright.navigation.planning.planner`); a warning is logged for types that have another method
+in nav2. A deliberate difference: a goal in an obstacle is rejected, however large the tolerance is.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.paths import path_message, pose_of, poses_of
+from linkwright.navigation.nodes.paths import path_message, pose_of, poses_from_messages
 from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
@@ -33,14 +33,14 @@ from linkwright.nodes.parameter_tables import declared
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _NAVFN: Final = "nav2_navfn_planner/NavfnPlanner"
-_USUAL: Final = {"GridBased": _NAVFN}
-_OTHERS: Final = {
+_DEFAULT_TYPES: Final = {"GridBased": _NAVFN}
+_REPLACED_TYPES: Final = {
     "nav2_theta_star_planner/ThetaStarPlanner": Settings(),
     "nav2_smac_planner/SmacPlanner2D": Settings(tolerance=0.125),
     "nav2_smac_planner/SmacPlannerHybrid": Settings(tolerance=0.25),
     "nav2_smac_planner/SmacPlannerLattice": Settings(tolerance=0.25),
 }
-"""The types whose work NavFn's method does, with their default parameters."""
+"""The planner types that NavFn's method replaces, with their default parameters."""
 
 Poses = NDArray[np.float64]
 Work = Generator[str | None, None, Any]
@@ -69,14 +69,16 @@ class PlannerNode(ManagedNode):
         Raises:
             LinkwrightError: NODE431, a planner has no type.
         """
-        self._planners = {name: self._planner(name) for name in string_list(self, "planner_plugins", ["GridBased"])}
+        self._planners = {
+            name: self._create_planner(name) for name in string_list(self, "planner_plugins", ["GridBased"])
+        }
         self.get_logger().info(f"Planner Server has {' '.join(self._planners)}  planners available.")
         if self.get_parameter("expected_planner_frequency").value <= 0.0:
             self.get_logger().warning(
                 "The expected planner frequency parameter is 0 Hz or less: slow plans cause no warning"
             )
         self.costmap.trigger_configure()
-        self._plans = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
+        self._path_publisher = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
         self._offer("ComputePathToPose", "compute_path_to_pose", self._plan_to_pose)
         self._offer("ComputePathThroughPoses", "compute_path_through_poses", self._plan_through_poses)
         kind = get_service("nav2_msgs/srv/IsPathValid")
@@ -100,9 +102,9 @@ class PlannerNode(ManagedNode):
 
     # --- planners -----------------------------------------------------------------------------------------------------
 
-    def _planner(self, name: str) -> Settings:
-        kind = type_of(self, name, _USUAL)
-        settings = declared(self, Settings, name, _OTHERS.get(kind))
+    def _create_planner(self, name: str) -> Settings:
+        kind = type_of(self, name, _DEFAULT_TYPES)
+        settings = declared(self, Settings, name, _REPLACED_TYPES.get(kind))
         if kind != _NAVFN:
             declare_unused(self, name)
             self.get_logger().warning(
@@ -112,21 +114,21 @@ class PlannerNode(ManagedNode):
         self.get_logger().info(f"Created global planner plugin {name} of type {kind}")
         return settings
 
-    def _chosen(self, name: str) -> tuple[str, Settings]:
+    def _choose_planner(self, name: str) -> tuple[str, Settings]:
         if not name and len(self._planners) == 1:
             name = next(iter(self._planners))
         if name not in self._planners:
-            known = " ".join(self._planners)
-            self.get_logger().error(f"planner {name} is not a valid planner. Planner names are: {known}")
+            planner_names = " ".join(self._planners)
+            self.get_logger().error(f"planner {name} is not a valid planner. Planner names are: {planner_names}")
             raise GoalError("INVALID_PLANNER", f"Planner id {name} is invalid")
         names = [field.name for field in fields(Settings)]
-        now = {parameter: self.get_parameter(f"{name}.{parameter}").value for parameter in names}
-        return name, replace(self._planners[name], **now)
+        current_values = {parameter: self.get_parameter(f"{name}.{parameter}").value for parameter in names}
+        return name, replace(self._planners[name], **current_values)
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
-        """Offer an action whose paths are computed by the generator that `work` returns."""
+        """Create an action server; `work` returns the generator that computes the path for a request."""
 
         def begin(goal: ServerGoalHandle) -> None:
             self._stop(name)
@@ -151,10 +153,10 @@ class PlannerNode(ManagedNode):
             server.canceled()
         else:
             path = path_message(poses, self.costmap.global_frame, self.get_clock().now().to_msg())
-            self._plans.publish(path)
-            took_ns = self.now_ns() - began_ns
-            self._warn_if_slow(took_ns / NANOSECONDS_PER_SECOND)
-            server.succeed(path=path, planning_time=Duration(nanoseconds=took_ns).to_msg())
+            self._path_publisher.publish(path)
+            duration_ns = self.now_ns() - began_ns
+            self._warn_if_slow(duration_ns / NANOSECONDS_PER_SECOND)
+            server.succeed(path=path, planning_time=Duration(nanoseconds=duration_ns).to_msg())
 
     def _warn_if_slow(self, seconds: float) -> None:
         frequency = self.get_parameter("expected_planner_frequency").value
@@ -165,7 +167,7 @@ class PlannerNode(ManagedNode):
             )
 
     def _stop(self, *names: str) -> None:
-        """Stop planning for the named actions, or for all actions if no name is given."""
+        """Stop planning for the named actions, or for all actions without a name."""
         for name in names or tuple(self._work):
             work = self._work.pop(name, None)
             if work is not None:
@@ -175,7 +177,7 @@ class PlannerNode(ManagedNode):
 
     def _plan_to_pose(self, request: Any) -> Work:
         yield from self._wait_until_current()
-        start, goal = self._start_of(request), self._placed(request.goal)
+        start, goal = self._start_pose(request), self._pose_in_costmap(request.goal)
         return (yield from self._planned(start, goal, request.planner_id))
 
     def _plan_through_poses(self, request: Any) -> Work:
@@ -183,13 +185,13 @@ class PlannerNode(ManagedNode):
         goals = getattr(request.goals, "poses", request.goals)
         if not len(goals):
             raise GoalError("NO_VIAPOINTS_GIVEN", "No viapoints given")
-        start = self._start_of(request)
-        parts = []
+        start = self._start_pose(request)
+        paths = []
         for goal in goals:
-            part = yield from self._planned(start, self._placed(goal), request.planner_id)
-            parts.append(part)
-            start = (float(part[-1, 0]), float(part[-1, 1]), float(part[-1, 2]))
-        return np.concatenate(parts)
+            path = yield from self._planned(start, self._pose_in_costmap(goal), request.planner_id)
+            paths.append(path)
+            start = (float(path[-1, 0]), float(path[-1, 1]), float(path[-1, 2]))
+        return np.concatenate(paths)
 
     def _wait_until_current(self) -> Work:
         timeout_ns = self.get_parameter("costmap_update_timeout").value * NANOSECONDS_PER_SECOND
@@ -200,7 +202,7 @@ class PlannerNode(ManagedNode):
             yield WAIT
 
     def _planned(self, start: Pose, goal: Pose, planner: str) -> Work:
-        name, settings = self._chosen(planner)
+        name, settings = self._choose_planner(planner)
         try:
             return (yield from plan(self.costmap.costmap.copy(), start, goal, settings))
         except PlanError as error:
@@ -210,15 +212,15 @@ class PlannerNode(ManagedNode):
             )
             raise GoalError(error.problem.value, str(error)) from None
 
-    def _start_of(self, request: Any) -> Pose:
+    def _start_pose(self, request: Any) -> Pose:
         if request.use_start:
-            return self._placed(request.start)
+            return self._pose_in_costmap(request.start)
         pose = self.costmap.robot_pose()
         if pose is None:
             raise GoalError("TF_ERROR", "Unable to get start pose")
         return pose
 
-    def _placed(self, stamped: Any) -> Pose:
+    def _pose_in_costmap(self, stamped: Any) -> Pose:
         pose = self.costmap.pose_of(pose_of(stamped), stamped.header.frame_id)
         if pose is None:
             raise GoalError("TF_ERROR", "Unable to transform poses to global frame")
@@ -228,20 +230,20 @@ class PlannerNode(ManagedNode):
 
     def _on_is_path_valid(self, request: Any, response: Any) -> Any:
         """Report whether a path is collision-free from the robot's position onward."""
-        poses = poses_of(request.path.poses)
-        here = self.costmap.robot_pose() if self.is_active else None
+        poses = poses_from_messages(request.path.poses)
+        robot_pose = self.costmap.robot_pose() if self.is_active else None
         response.is_valid = bool(len(poses))
-        if not len(poses) or here is None:
+        if not len(poses) or robot_pose is None:
             return response
-        first = int(np.argmin(np.hypot(poses[:, 0] - here[0], poses[:, 1] - here[1])))
-        ahead = poses[first:]
+        first_index = int(np.argmin(np.hypot(poses[:, 0] - robot_pose[0], poses[:, 1] - robot_pose[1])))
+        poses_ahead = poses[first_index:]
         if self.costmap.uses_radius:
-            costs = self.costmap.costmap.cost_at(ahead[:, :2], outside=LETHAL)
-            bad = (costs == LETHAL) | (costs == INSCRIBED)
+            costs = self.costmap.costmap.cost_at(poses_ahead[:, :2], outside=LETHAL)
+            is_invalid = (costs == LETHAL) | (costs == INSCRIBED)
         else:
-            bad = self.costmap.costmap.footprint_cost(ahead, self.costmap.footprint) == LETHAL
-        response.invalid_pose_indices = [first + int(index) for index in np.flatnonzero(bad)]
-        response.is_valid = not bad.any()
+            is_invalid = self.costmap.costmap.footprint_cost(poses_ahead, self.costmap.footprint) == LETHAL
+        response.invalid_pose_indices = [first_index + int(index) for index in np.flatnonzero(is_invalid)]
+        response.is_valid = not is_invalid.any()
         return response
 
 

@@ -1,4 +1,4 @@
-"""Types and parameters of plugins of nav2's servers, such as ``FollowPath.plugin``."""
+"""Types and parameters of the plugins of nav2's servers, such as ``FollowPath.plugin``."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ def string_list(node: Node, name: str, default: Sequence[str]) -> list[str]:
     return [str(text) for text in node.get_parameter(name).value or ()]
 
 
-def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
+def type_of(node: Node, plugin: str, defaults: Mapping[str, str]) -> str:
     """Return the type of a plugin from ``PLUGIN.plugin``, with ``::`` replaced by ``/``.
 
     Args:
         node: the node that has the parameter.
         plugin: the name of the plugin.
-        usual: the default types of plugins, by plugin name.
+        defaults: the default types of plugins, by plugin name.
 
     Raises:
         LinkwrightError: NODE431, the type is not set.
     """
     name = f"{plugin}.plugin"
-    given = value_of(node, name, usual.get(plugin, ParameterType.STRING))
-    if not given:
+    type_name = value_of(node, name, defaults.get(plugin, ParameterType.STRING))
+    if not type_name:
         raise LinkwrightError(
             Diagnostic(
                 "NODE431",
@@ -47,7 +47,7 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
                 hint=phrase("it is the type of the plugin '{plugin}'", plugin=plugin),
             )
         )
-    return str(given).replace("::", "/")
+    return str(type_name).replace("::", "/")
 
 
 def declare_unused(node: Node, plugin: str) -> list[str]:

@@ -9,11 +9,11 @@ from typing import Any
 
 from linkwright.graph import Node
 
-SECONDS_A_SLICE = 0.008
-_SECONDS_TO_WAIT = 0.02
+SLICE_SECONDS = 0.008
+_WAIT_SECONDS = 0.02
 
 WAIT = "wait"
-"""Yielded by work that has to wait for an event."""
+"""Yielded by a computation that has to wait for an event."""
 
 
 class SlicedWork:
@@ -21,10 +21,10 @@ class SlicedWork:
 
     Args:
         node: the node whose clock times the waits.
-        work: yields None to let other callbacks run, and `WAIT` to be resumed a little later.
+        work: the generator; it yields None to let other callbacks run, and `WAIT` to be resumed a little later.
         is_wanted: returns whether to continue; called before each slice.
-        done: called at the end with the result and None, or with None and the exception; with None twice if `is_wanted`
-            returned False.
+        done: called at the end with the result and None, or with None and the exception; called with None and None if
+            `is_wanted` returned False.
     """
 
     def __init__(
@@ -36,18 +36,18 @@ class SlicedWork:
     ) -> None:
         self._node, self._work, self._is_wanted, self._done = node, work, is_wanted, done
         self._timer: Any = None
-        self._turn: asyncio.Handle | None = None
-        self._later()
+        self._handle: asyncio.Handle | None = None
+        self._schedule()
 
     def stop(self) -> None:
         """Stop the work without calling `done`."""
         self._work.close()
-        if self._turn is not None:
-            self._turn.cancel()
+        if self._handle is not None:
+            self._handle.cancel()
         self._end_timer()
 
-    def _later(self) -> None:
-        self._turn = asyncio.get_running_loop().call_soon(self._resume)
+    def _schedule(self) -> None:
+        self._handle = asyncio.get_running_loop().call_soon(self._resume)
 
     def _resume(self) -> None:
         self._end_timer()
@@ -55,18 +55,18 @@ class SlicedWork:
             self._work.close()
             self._done(None, None)
             return
-        until = perf_counter() + SECONDS_A_SLICE
+        deadline = perf_counter() + SLICE_SECONDS
         try:
-            while perf_counter() < until:
+            while perf_counter() < deadline:
                 if next(self._work) == WAIT:
-                    self._timer = self._node.create_timer(_SECONDS_TO_WAIT, self._resume)
+                    self._timer = self._node.create_timer(_WAIT_SECONDS, self._resume)
                     return
         except StopIteration as end:
             self._done(end.value, None)
         except Exception as error:  # noqa: BLE001  # passed to the caller of the work
             self._done(None, error)
         else:
-            self._later()
+            self._schedule()
 
     def _end_timer(self) -> None:
         if self._timer is not None:

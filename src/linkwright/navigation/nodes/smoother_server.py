@@ -1,7 +1,7 @@
 """nav2's smoother_server, which smooths paths for the action ``smooth_path``.
 
-Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are accepted, but they share
-the method of nav2's simple smoother; a line is logged for types that have another method in nav2.
+The node has nav2's parameters, topics and results, for Humble and Jazzy. All types of smoothers are accepted, but they
+share the method of nav2's simple smoother; a warning is logged for types that have another method in nav2.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message
 from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.nodes.costmap_reading import costmap_of
+from linkwright.navigation.nodes.costmap_reading import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.paths import path_message, poses_of
+from linkwright.navigation.nodes.paths import path_message, poses_from_messages
 from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
 from linkwright.navigation.planning.smoothing import Smoothing, directions, smoothed
 from linkwright.nodes.parameter_tables import declared
 
 _SIMPLE: Final = "nav2_smoother/SimpleSmoother"
-_USUAL: Final = {"simple_smoother": _SIMPLE}
+_DEFAULT_TYPES: Final = {"simple_smoother": _SIMPLE}
 
 
 class SmootherNode(ManagedNode):
@@ -60,7 +60,7 @@ class SmootherNode(ManagedNode):
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
 
     def _make(self, name: str) -> None:
-        kind = type_of(self, name, _USUAL)
+        kind = type_of(self, name, _DEFAULT_TYPES)
         declared(self, Smoothing, name)
         declare_unused(self, name)
         if kind != _SIMPLE:
@@ -68,7 +68,7 @@ class SmootherNode(ManagedNode):
         self.get_logger().info(f"Created smoother : {name} of type {kind}")
 
     def _on_costmap(self, message: Any) -> None:
-        self._costmap = costmap_of(message)
+        self._costmap = costmap_from_message(message)
 
     def _smooth(self, goal: ServerGoalHandle) -> None:
         request, began_ns = goal.request, self.get_clock().now().nanoseconds
@@ -82,24 +82,24 @@ class SmootherNode(ManagedNode):
             self._fail("FAILED_TO_SMOOTH_PATH", "Costmap is not available")
         else:
             values = {field.name: self.get_parameter(f"{name}.{field.name}").value for field in fields(Smoothing)}
-            poses = poses_of(request.path.poses)
+            poses = poses_from_messages(request.path.poses)
             points, _ = smoothed(poses[:, :2], Smoothing(**values), self._costmap)
             poses = np.column_stack((points, directions(points, poses[-1, 2])))
             path = path_message(poses, request.path.header.frame_id, request.path.header.stamp)
             self._output.publish(path)
-            self._hand_over(request, path, poses, began_ns)
+            self._finish(request, path, poses, began_ns)
 
-    def _hand_over(self, request: Any, path: Any, poses: Any, began_ns: int) -> None:
+    def _finish(self, request: Any, path: Any, poses: Any, began_ns: int) -> None:
         assert self._costmap is not None, "a path is smoothed on a costmap"
-        took = Duration(nanoseconds=self.get_clock().now().nanoseconds - began_ns).to_msg()
+        duration = Duration(nanoseconds=self.get_clock().now().nanoseconds - began_ns).to_msg()
         if request.check_for_collisions:
             costs = self._costmap.cost_at(poses[:, :2], outside=LETHAL)
-            touching = np.flatnonzero((costs == LETHAL) | (costs == INSCRIBED))
-            if len(touching):
-                x, y, yaw = poses[touching[0]]
+            collision_indices = np.flatnonzero((costs == LETHAL) | (costs == INSCRIBED))
+            if len(collision_indices):
+                x, y, yaw = poses[collision_indices[0]]
                 self._fail("SMOOTHED_PATH_IN_COLLISION", f"Smoothed Path collided at X: {x:f} Y: {y:f} Theta: {yaw:f}")
                 return
-        self._goals.succeed(path=path, smoothing_duration=took, was_completed=True)
+        self._goals.succeed(path=path, smoothing_duration=duration, was_completed=True)
 
     def _fail(self, code: str, reason: str) -> None:
         self.get_logger().error(reason)

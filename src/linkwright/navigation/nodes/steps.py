@@ -1,8 +1,7 @@
-"""Managed nodes that execute goals in steps, most of which are goals of other servers.
+"""Managed nodes that execute a goal in steps; most steps are goals of other servers.
 
-The work on a goal is a generator that is resumed once each cycle: ``yield`` waits for the next cycle. The generator
-returns when the goal is reached, raises `StepError` when the goal cannot be reached, and is closed when the goal is
-canceled.
+A generator executes the goal. It is resumed once each cycle, so ``yield`` waits for the next cycle. It returns when the
+goal is reached, raises `StepError` when the goal cannot be reached, and is closed when the goal is canceled.
 """
 
 from __future__ import annotations
@@ -19,8 +18,8 @@ Step = Generator[None, None, Any]
 """A generator of work in steps, one each cycle."""
 
 _PERIOD = 0.05
-_SERVER_SECONDS = 5.0
-"""Seconds to wait for a response of another server."""
+_SERVER_TIMEOUT = 5.0
+"""The maximum time to wait for a response of another server, in seconds."""
 
 
 class StepError(GoalError):
@@ -42,7 +41,7 @@ class StepNode(ManagedNode):
     _server: GoalServer | None = None
 
     def work_on(self, server: GoalServer, work: Step) -> None:
-        """Start executing the goal of a server; work on an earlier goal ends."""
+        """Start executing the goal of a server, and abort an earlier goal of another server."""
         self._stop()
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal took its place")
@@ -57,48 +56,48 @@ class StepNode(ManagedNode):
         return {}
 
     def deactivate(self) -> None:
-        """Stop working, and abort the active goal."""
+        """Stop the execution, and abort the active goal."""
         self._stop()
         if self._server is not None:
             self._server.abort("UNKNOWN", "the server was deactivated", **self.result())
 
     def cleanup(self) -> None:
-        """Stop working."""
+        """Stop the execution."""
         self._stop()
         self._server = None
 
-    def run_remote_goal(self, client: ActionClient, goal: Any, complaint: str) -> Step:
+    def run_remote_goal(self, client: ActionClient, goal: Any, summary: str) -> Step:
         """Send a goal to another server, wait for the result, and return it.
 
         The goal is canceled when this generator is closed.
 
         Raises:
-            StepError: there is no such server, or the server did not reach the goal.
+            StepError: the server is not available, or it did not reach the goal.
         """
         if not client.server_is_ready():
-            raise StepError("UNKNOWN", f"{complaint}: there is no action {client.action_name}")
-        sent = SentGoal(client, goal)
+            raise StepError("UNKNOWN", f"{summary}: there is no action {client.action_name}")
+        sent_goal = SentGoal(client, goal)
         try:
-            while not sent.is_over:
+            while not sent_goal.is_over:
                 yield
         finally:
-            sent.cancel()
-        if sent.has_failed:
-            raise StepError("UNKNOWN", sent.reason(complaint))
-        return sent.result
+            sent_goal.cancel()
+        if sent_goal.has_failed:
+            raise StepError("UNKNOWN", sent_goal.reason(summary))
+        return sent_goal.result
 
-    def until(self, is_done: Callable[[], bool], what: str) -> Step:
+    def until(self, is_done: Callable[[], bool], server_name: str) -> Step:
         """Wait until a condition holds.
 
-        `what` names the server in the error.
+        `server_name` names the server in the error.
 
         Raises:
             StepError: the condition does not hold in time.
         """
-        limit_ns = self.now_ns() + round(_SERVER_SECONDS * 1e9)
+        deadline_ns = self.now_ns() + round(_SERVER_TIMEOUT * 1e9)
         while not is_done():
-            if self.now_ns() > limit_ns:
-                raise StepError("UNKNOWN", f"{what} does not answer")
+            if self.now_ns() > deadline_ns:
+                raise StepError("UNKNOWN", f"{server_name} does not answer")
             yield
 
     def _cycle(self) -> None:
@@ -138,50 +137,50 @@ class SentGoal:
 
     def __init__(self, client: ActionClient, goal: Any) -> None:
         self._handle: Any = None
-        self._answer: Any = None
-        self._dropped = False
+        self._response: Any = None
+        self._is_cancel_requested = False
         self.result: Any = None
-        client.send_goal_async(goal).add_done_callback(self._accepted)
+        client.send_goal_async(goal).add_done_callback(self._on_accepted)
 
-    def _accepted(self, future: Any) -> None:
+    def _on_accepted(self, future: Any) -> None:
         self._handle = future.result()
         if not self._handle.accepted:
             return
-        if self._dropped:
+        if self._is_cancel_requested:
             self._handle.cancel_goal_async()
             return
-        self._handle.get_result_async().add_done_callback(self._ended)
+        self._handle.get_result_async().add_done_callback(self._on_result)
 
-    def _ended(self, future: Any) -> None:
-        self._answer = future.result()
-        self.result = self._answer.result
+    def _on_result(self, future: Any) -> None:
+        self._response = future.result()
+        self.result = self._response.result
 
     @property
     def is_over(self) -> bool:
         """Whether the goal was rejected or has ended."""
-        return self._answer is not None or (self._handle is not None and not self._handle.accepted)
+        return self._response is not None or (self._handle is not None and not self._handle.accepted)
 
     @property
     def has_succeeded(self) -> bool:
         """Whether the goal succeeded."""
-        return self._answer is not None and self._answer.status == GoalStatus.SUCCEEDED
+        return self._response is not None and self._response.status == GoalStatus.SUCCEEDED
 
     @property
     def has_failed(self) -> bool:
         """Whether the goal has ended without success."""
         return self.is_over and not self.has_succeeded
 
-    def reason(self, usual: str) -> str:
-        """Return a failure message: `usual`, and the server's error message, if any (Jazzy)."""
+    def reason(self, summary: str) -> str:
+        """Return a failure message: `summary`, followed by the server's error message if there is one (Jazzy)."""
         message = getattr(self.result, "error_msg", "")
-        return f"{usual}: {message}" if message else usual
+        return f"{summary}: {message}" if message else summary
 
     def cancel(self) -> None:
         """Cancel the goal, unless it has ended.
 
-        A goal that is not accepted yet is canceled once it is.
+        A goal that is not accepted yet is canceled when it is accepted.
         """
         if not self.is_over:
-            self._dropped = True
+            self._is_cancel_requested = True
             if self._handle is not None:
                 self._handle.cancel_goal_async()

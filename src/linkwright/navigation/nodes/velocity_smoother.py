@@ -2,7 +2,7 @@
 
 The node is managed; parameters, defaults and rules are those of nav2. Deliberate differences: unless
 ``enable_stamped_cmd_vel`` is set, the node accepts Twist and TwistStamped, and publishes the type that subscribers
-expect; and it stops the robot, with a log line, when it is deactivated or the publisher of commands is lost.
+expect; and it stops the robot when it is deactivated or the publisher of commands disappears.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class _ManagedSmoother(ManagedNode):
         """Declare nav2's parameters."""
         self._output: VelocityTopic | None = None
         self._command: list[float] | None = None
-        self._commanded_ns = 0
-        self._last = [0.0] * len(_AXES)
-        self._stopped = False
-        self._measured: deque[tuple[int, list[float]]] = deque()
+        self._last_command_ns = 0
+        self._last_velocities = [0.0] * len(_AXES)
+        self._is_stopped = False
+        self._measured_velocities: deque[tuple[int, list[float]]] = deque()
         self.declare_parameter("smoothing_frequency", 20.0)
         self.declare_parameter("feedback", "OPEN_LOOP")
         self.declare_parameter("scale_velocities", False)
@@ -57,13 +57,13 @@ class _ManagedSmoother(ManagedNode):
         self.declare_parameter("odom_duration", 0.1)
         self.declare_parameter("velocity_timeout", 1.0)
         self.declare_parameter("use_realtime_priority", False)
-        self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._is_stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Configure the node, unless a parameter has an invalid value."""
-        problem = self._problem({})
+        problem = self._parameter_error({})
         if problem is not None:
             self.get_logger().error(str(problem))
             return TransitionCallbackReturn.FAILURE
@@ -72,14 +72,14 @@ class _ManagedSmoother(ManagedNode):
     def configure(self) -> None:
         """Read the parameters and create the topics."""
         self._read()
-        stamped = self._stamped
-        self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
+        is_stamped = self._is_stamped
+        self._output = VelocityTopic(self, "cmd_vel_smoothed", is_stamped)
         commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
-        for kind in velocity_types(self, "cmd_vel", stamped):
-            heard: Subscription[Any] = self.create_subscription(
+        for kind in velocity_types(self, "cmd_vel", is_stamped):
+            subscription: Subscription[Any] = self.create_subscription(
                 kind, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
             )
-            commander.watch(self.register(heard))
+            commander.watch(self.register(subscription))
         if self._value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
             self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
@@ -91,9 +91,9 @@ class _ManagedSmoother(ManagedNode):
     def deactivate(self) -> None:
         """Stop the robot, and stop publishing."""
         self.end_cycles()
-        if self._output is not None and any(self._last):
+        if self._output is not None and any(self._last_velocities):
             self._output.stop()
-        self._last, self._command = [0.0] * len(_AXES), None
+        self._last_velocities, self._command = [0.0] * len(_AXES), None
 
     def cleanup(self) -> None:
         """Stop publishing, and close the output topic."""
@@ -107,29 +107,32 @@ class _ManagedSmoother(ManagedNode):
 
     def _read(self) -> None:
         self._frequency: float = self._value("smoothing_frequency")
-        self._scaled: bool = self._value("scale_velocities")
+        self._keeps_direction: bool = self._value("scale_velocities")
         self._closed: bool = self._value("feedback") == "CLOSED_LOOP"
         self._timeout: float = self._value("velocity_timeout")
-        self._duration: float = self._value("odom_duration")
+        self._odometry_window: float = self._value("odom_duration")
         columns = [list(self._value(name)) for name in _LIMITS]
-        if len(columns[0]) == len(_PLANAR):  # The limits are for x, y and yaw only.
-            columns = [_spread(column) for column in columns]
-        self._limits = [Limits(least, most, *rest) for most, least, *rest in zip(*columns, strict=True)]
+        if len(columns[0]) == len(_PLANAR):  # Three entries are limits for x, y and yaw.
+            columns = [_expand_to_axes(column) for column in columns]
+        self._limits = [
+            Limits(min_velocity, max_velocity, *other_limits)
+            for max_velocity, min_velocity, *other_limits in zip(*columns, strict=True)
+        ]
 
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
-        problem = self._problem({parameter.name: parameter.value for parameter in parameters})
+        problem = self._parameter_error({parameter.name: parameter.value for parameter in parameters})
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _follow(self) -> None:
         """Apply changed parameters to the configured node; the topics stay the same."""
         if self._output is not None:
-            before = self._frequency
+            old_frequency = self._frequency
             self._read()
-            if self.is_cycling and before != self._frequency:
+            if self.is_cycling and old_frequency != self._frequency:
                 self.begin_cycles(1.0 / self._frequency, self._smooth)
 
-    def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
-        """Return an error message if a parameter would be invalid after a change, else None."""
+    def _parameter_error(self, changed: Mapping[str, Any]) -> Phrase | None:
+        """Return an error message if a change would make a parameter invalid, and None otherwise."""
 
         def value(name: str) -> Any:
             return changed.get(name, self._value(name))
@@ -142,7 +145,9 @@ class _ManagedSmoother(ManagedNode):
             )
         lengths = {len(value(name)) for name in _LIMITS}
         if lengths not in ({len(_PLANAR)}, {len(_AXES)}):
-            return phrase("{names} must all have 3 entries (x, y, yaw) or all 6", names=joined(list(_LIMITS)))
+            return phrase(
+                ("{names} must all have 3 entries (x, y, yaw), or must all have 6 entries"), names=joined(list(_LIMITS))
+            )
         for name, sign in (("max_velocity", 1), ("min_velocity", -1), ("max_accel", 1), ("max_decel", -1)):
             if any(item * sign < 0.0 for item in value(name)):
                 return (
@@ -153,18 +158,18 @@ class _ManagedSmoother(ManagedNode):
         return None
 
     def _receive(self, message: Any) -> None:
-        stamped = hasattr(message, "twist")
-        twist = message.twist if stamped else message
+        is_stamped = hasattr(message, "twist")
+        twist = message.twist if is_stamped else message
         values = _values(twist)
         if not all(map(isfinite, values)):
             self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
             return
         assert self._output is not None, "it is configured"
-        if not any(self._last):
+        if not any(self._last_velocities):
             self._output.review()
-        self._output.frame_id = message.header.frame_id if stamped else ""
+        self._output.frame_id = message.header.frame_id if is_stamped else ""
         self._command = values
-        self._commanded_ns = self.get_clock().now().nanoseconds
+        self._last_command_ns = self.get_clock().now().nanoseconds
 
     def _on_timeout(self) -> None:
         """Start to decelerate to zero because commands have timed out."""
@@ -172,60 +177,59 @@ class _ManagedSmoother(ManagedNode):
             self._command = [0.0] * len(_AXES)
             self.get_logger().info(
                 phrase(
-                    "no command for {seconds:g} s (velocity_timeout), and the last one was not a stop: the "
-                    "robot is stopped",
+                    "no command was received for {seconds:g} s (velocity_timeout), and the last one was not a stop, so "
+                    "the robot is stopped",
                     seconds=self._timeout,
                 )
             )
 
     def _on_publisher_lost(self, publisher: EndpointInfo) -> None:
-        """Start to decelerate to zero because the publisher of commands was lost."""
+        """Start to decelerate to zero because the publisher of commands disappeared."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
-            self.get_logger().warning(phrase("{who}: the robot is stopped", who=describe_lost_publisher(publisher)))
+            self.get_logger().warning(phrase("{who}; the robot is stopped", who=describe_lost_publisher(publisher)))
 
     def _on_odometry(self, message: Any) -> None:
-        now = self.get_clock().now().nanoseconds
-        self._measured.append((now, _values(message.twist.twist)))
-        while now - self._measured[0][0] > self._duration * NANOSECONDS_PER_SECOND:
-            self._measured.popleft()
+        now_ns = self.get_clock().now().nanoseconds
+        self._measured_velocities.append((now_ns, _values(message.twist.twist)))
+        while now_ns - self._measured_velocities[0][0] > self._odometry_window * NANOSECONDS_PER_SECOND:
+            self._measured_velocities.popleft()
 
     def _smooth(self) -> None:
         if self._command is None:
             return
-        if (self.get_clock().now().nanoseconds - self._commanded_ns) / NANOSECONDS_PER_SECOND > self._timeout:
-            if self._stopped or not any(self._last):
-                self._stopped = True
+        if (self.get_clock().now().nanoseconds - self._last_command_ns) / NANOSECONDS_PER_SECOND > self._timeout:
+            if self._is_stopped or not any(self._last_velocities):
+                self._is_stopped = True
                 return
             self._on_timeout()
-        self._stopped = False
-        now = self._last
+        self._is_stopped = False
+        current = self._last_velocities
         if self._closed:
-            seen = [values for _, values in self._measured] or [[0.0] * len(_AXES)]
-            now = [sum(column) / len(seen) for column in zip(*seen, strict=True)]
-        self._last = smooth_velocities(self._limits, now, self._command, 1.0 / self._frequency, scaled=self._scaled)
-        quiet = [axis.apply_deadband(speed) for axis, speed in zip(self._limits, self._last, strict=True)]
+            measured = [values for _, values in self._measured_velocities] or [[0.0] * len(_AXES)]
+            current = [sum(column) / len(measured) for column in zip(*measured, strict=True)]
+        self._last_velocities = smooth_velocities(
+            self._limits, current, self._command, 1.0 / self._frequency, keep_direction=self._keeps_direction
+        )
+        output = [axis.apply_deadband(speed) for axis, speed in zip(self._limits, self._last_velocities, strict=True)]
         assert self._output is not None, "it is configured"
-        self._output.publish(quiet[:3], quiet[3:])
+        self._output.publish(output[:3], output[3:])
 
 
 class VelocitySmoother(ManagedServer):
-    """The running velocity_smoother node.
-
-    If ``autostart_node`` is set, the node configures and activates itself.
-    """
+    """The running velocity_smoother node, which becomes active at the start if ``autostart_node`` is set."""
 
     NODE = _ManagedSmoother
     DEFAULT_NAME = "velocity_smoother"
 
 
 def _values(twist: Any) -> list[float]:
-    return [float(getattr(getattr(twist, part), axis)) for part, axis in _AXES]
+    return [float(getattr(getattr(twist, vector), axis)) for vector, axis in _AXES]
 
 
-def _spread(column: Sequence[float]) -> list[float]:
+def _expand_to_axes(column: Sequence[float]) -> list[float]:
     """Expand limits of x, y and yaw to all six axes, with 0 for the other three."""
-    spread = [0.0] * len(_AXES)
+    expanded = [0.0] * len(_AXES)
     for axis, value in zip(_PLANAR, column, strict=True):
-        spread[axis] = value
-    return spread
+        expanded[axis] = value
+    return expanded

@@ -11,31 +11,31 @@ class Limits:
     """The limits of one axis, in m/s and m/s2, or rad/s and rad/s2.
 
     Attributes:
-        least: the minimum velocity, 0 or less.
-        most: the maximum velocity, 0 or more.
+        min_velocity: the minimum velocity, 0 or less.
+        max_velocity: the maximum velocity, 0 or more.
         acceleration: the maximum acceleration, 0 or more.
         deceleration: the negated maximum deceleration, 0 or less.
         deadband: velocities with a smaller magnitude become 0.
     """
 
-    least: float
-    most: float
+    min_velocity: float
+    max_velocity: float
     acceleration: float
     deceleration: float
     deadband: float = 0.0
 
     def clamped(self, velocity: float) -> float:
         """Return a velocity clamped to the minimum and maximum velocity."""
-        return min(max(velocity, self.least), self.most)
+        return min(max(velocity, self.min_velocity), self.max_velocity)
 
-    def change(self, now: float, wanted: float, seconds: float) -> float:
+    def change(self, current: float, requested: float, seconds: float) -> float:
         """Return the maximum magnitude of the velocity change in a cycle of some seconds.
 
-        The acceleration limit applies when the speed increases without changing direction, otherwise the deceleration
-        limit.
+        The acceleration limit applies if the speed increases or stays equal in the same direction; otherwise the
+        deceleration limit applies.
         """
-        faster = abs(wanted) >= abs(now) and now * wanted >= 0.0
-        return (self.acceleration if faster else -self.deceleration) * seconds
+        is_acceleration = abs(requested) >= abs(current) and current * requested >= 0.0
+        return (self.acceleration if is_acceleration else -self.deceleration) * seconds
 
     def apply_deadband(self, velocity: float) -> float:
         """Return a velocity, or 0 if it is within the deadband."""
@@ -43,24 +43,41 @@ class Limits:
 
 
 def smooth_velocities(
-    limits: Sequence[Limits], now: Sequence[float], wanted: Sequence[float], seconds: float, *, scaled: bool
+    limits: Sequence[Limits],
+    current: Sequence[float],
+    requested: Sequence[float],
+    seconds: float,
+    *,
+    keep_direction: bool,
 ) -> list[float]:
     """Return the velocities of the next cycle, before deadbands are applied.
 
     Args:
         limits: the limits of each axis.
-        now: the current velocities.
-        wanted: the requested velocities.
+        current: the current velocities.
+        requested: the requested velocities.
         seconds: the period of the cycle.
-        scaled: whether all changes are reduced by the factor of the most limited axis, to keep the direction.
+        keep_direction: whether all changes are reduced by the factor of the most limited axis.
     """
-    goals = [axis.clamped(velocity) for axis, velocity in zip(limits, wanted, strict=True)]
-    ways = [goal - velocity for goal, velocity in zip(goals, now, strict=True)]
-    changes = [axis.change(velocity, goal, seconds) for axis, velocity, goal in zip(limits, now, goals, strict=True)]
-    part = 1.0
-    if scaled:
-        # Ignore an axis whose velocity may not change; otherwise no axis could change.
-        part = min([1.0, *(most / abs(way) for way, most in zip(ways, changes, strict=True) if abs(way) > most > 0.0)])
+    targets = [axis.clamped(velocity) for axis, velocity in zip(limits, requested, strict=True)]
+    differences = [goal - velocity for goal, velocity in zip(targets, current, strict=True)]
+    max_changes = [
+        axis.change(velocity, goal, seconds) for axis, velocity, goal in zip(limits, current, targets, strict=True)
+    ]
+    factor = 1.0
+    if keep_direction:
+        # An axis with a limit of 0 is ignored; otherwise no axis could change.
+        factor = min(
+            [
+                1.0,
+                *(
+                    max_change / abs(difference)
+                    for difference, max_change in zip(differences, max_changes, strict=True)
+                    if abs(difference) > max_change > 0.0
+                ),
+            ]
+        )
     return [
-        velocity + min(max(part * way, -most), most) for velocity, way, most in zip(now, ways, changes, strict=True)
+        velocity + min(max(factor * way, -most), most)
+        for velocity, way, most in zip(current, differences, max_changes, strict=True)
     ]

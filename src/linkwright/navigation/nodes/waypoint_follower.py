@@ -1,6 +1,6 @@
-"""nav2's waypoint_follower, which navigates to poses in turn and waits at each (``follow_waypoints``).
+"""nav2's waypoint_follower, which navigates to poses in turn and waits at each pose (``follow_waypoints``).
 
-A deliberate difference: waiting is the only supported task at waypoints; others are skipped with a log line.
+A deliberate difference: waiting is the only supported task at waypoints; other tasks are skipped with a log line.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from linkwright.navigation.nodes.managed import ManagedServer
 from linkwright.navigation.nodes.plugins import type_of, value_of
 from linkwright.navigation.nodes.steps import Step, StepError, StepNode
 
-_WAITING = "nav2_waypoint_follower/WaitAtWaypoint"
+_WAIT_TASK = "nav2_waypoint_follower/WaitAtWaypoint"
 
 
 class WaypointNode(StepNode):
@@ -28,7 +28,7 @@ class WaypointNode(StepNode):
         self.declare_parameter("global_frame_id", "map")
         self.declare_parameter("action_server_result_timeout", 900.0)
         self.declare_parameter("waypoint_task_executor_plugin", "wait_at_waypoint")
-        self._missed: list[Any] = []
+        self._missed_waypoints: list[Any] = []
         self._index = 0
 
     def configure(self) -> None:
@@ -38,16 +38,20 @@ class WaypointNode(StepNode):
             LinkwrightError: a parameter has the wrong type.
         """
         task = str(self.get_parameter("waypoint_task_executor_plugin").value)
-        kind = type_of(self, task, {"wait_at_waypoint": _WAITING})
-        self._pause = 0.0
-        if kind == _WAITING:
-            is_on = bool(value_of(self, f"{task}.enabled", True))
-            self._pause = int(value_of(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_on else 0.0
+        kind = type_of(self, task, {"wait_at_waypoint": _WAIT_TASK})
+        self._pause_seconds = 0.0
+        if kind == _WAIT_TASK:
+            is_enabled = bool(value_of(self, f"{task}.enabled", True))
+            self._pause_seconds = (
+                int(value_of(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_enabled else 0.0
+            )
         else:
             self.get_logger().warning(f"{task}: {kind} is not supported; no task runs at waypoints")
-        self._navigation = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
+        self._navigation_client = self.register(
+            ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose")
+        )
         kind = "nav2_msgs/action/FollowWaypoints"
-        self._waypoints = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
+        self._waypoint_server = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish the index of the current waypoint as feedback for the goal."""
@@ -55,19 +59,19 @@ class WaypointNode(StepNode):
 
     def result(self) -> dict[str, Any]:
         """Return the result field with the missed waypoints."""
-        return {"missed_waypoints": self._missed}
+        return {"missed_waypoints": self._missed_waypoints}
 
     def _start(self, goal: ServerGoalHandle) -> None:
-        self._missed, self._index = [], 0
+        self._missed_waypoints, self._index = [], 0
         self.get_logger().info(f"Received follow waypoint request with {len(goal.request.poses)} waypoints.")
-        self.work_on(self._waypoints, self._follow(goal.request))
+        self.work_on(self._waypoint_server, self._follow(goal.request))
 
     def _follow(self, goal: Any) -> Step:
         if not goal.poses:
             raise StepError("UNKNOWN", "there are no waypoints")
-        first = getattr(goal, "goal_index", 0)
-        for turn in range(getattr(goal, "number_of_loops", 0) + 1):
-            for index in range(first if turn == 0 else 0, len(goal.poses)):
+        first_index = getattr(goal, "goal_index", 0)
+        for loop in range(getattr(goal, "number_of_loops", 0) + 1):
+            for index in range(first_index if loop == 0 else 0, len(goal.poses)):
                 self._index = index
                 yield from self._go_to(goal.poses[index])
         self.get_logger().info(f"Completed all {len(goal.poses)} waypoints requested.")
@@ -75,19 +79,19 @@ class WaypointNode(StepNode):
     def _go_to(self, pose: Any) -> Step:
         goal = get_action("nav2_msgs/action/NavigateToPose").Goal(pose=pose)
         try:
-            yield from self.run_remote_goal(self._navigation, goal, f"waypoint {self._index} was not reached")
+            yield from self.run_remote_goal(self._navigation_client, goal, f"waypoint {self._index} was not reached")
         except StepError as failure:
-            self._missed.append(self._missed_waypoint(pose, str(failure)))
+            self._missed_waypoints.append(self._missed_waypoint(pose, str(failure)))
             if self.get_parameter("stop_on_failure").value:
                 raise
             self.get_logger().warning(f"{failure}; moving to next")
             return
-        until_ns = self.now_ns() + round(self._pause * 1e9)
-        while self.now_ns() < until_ns:
+        deadline_ns = self.now_ns() + round(self._pause_seconds * 1e9)
+        while self.now_ns() < deadline_ns:
             yield
 
     def _missed_waypoint(self, pose: Any, reason: str) -> Any:
-        """Return the result's item for the current waypoint: an index in Humble, else a message."""
+        """Return the result's item for the current waypoint: an index in Humble, and a message since Iron."""
         if is_before_iron():
             return self._index
         return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)

@@ -1,6 +1,6 @@
 """The server side of nav2's panel (nav2_rviz_plugins, "Navigation 2"): states, goal progress and commands.
 
-The names of services and topics and the functions of the buttons are those of nav2's panel.
+The names of services and topics and the functions of the buttons are the same as in nav2's panel.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.graph import ACTION_STATUS_QOS, Client
 from linkwright.messages import get_message, get_service
-from linkwright.navigation.page.goal_outcome import accepted_at
+from linkwright.navigation.page.goal_outcome import acceptance_time
 from linkwright.nodes.answers import wait_for_future
 from linkwright.page.audience import Page
 from linkwright.page.protocol.navigation import (
@@ -30,7 +30,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.context import ViewerContext
 
 _PERIOD = 1.0
-"""Seconds between two requests to a lifecycle manager."""
+"""The period of the requests to the lifecycle managers, in seconds."""
 
 _ACTION = "navigate_to_pose/_action"
 _MANAGERS = ("navigation", "localization")
@@ -40,9 +40,9 @@ _COMMANDS: dict[NavigationCommand, tuple[int, tuple[str, ...]]] = {
     "resume": (2, ("localization", "navigation")),
     "reset": (3, ("navigation", "localization")),
 }
-"""The numbers of nav2_msgs/srv/ManageLifecycleNodes, and the order of the managers."""
+"""For each button, its number in nav2_msgs/srv/ManageLifecycleNodes, and the order of the managers."""
 
-_GOALS: dict[int, GoalState] = {
+_GOAL_STATES: dict[int, GoalState] = {
     1: "active",
     2: "active",
     3: "canceling",
@@ -50,7 +50,7 @@ _GOALS: dict[int, GoalState] = {
     5: "canceled",
     6: "aborted",
 }
-"""By the numbers of action_msgs/msg/GoalStatus."""
+"""The state of a goal for each status number of action_msgs/msg/GoalStatus."""
 
 
 class NavigationFeature(PageFeature):
@@ -102,29 +102,31 @@ class _Watch:
         self._node = context.node
         self._publish = publish
         self.state = NavigationState("unknown", "unknown", "none", None, None, None, None, busy=False, problem="")
-        self._active = {name: self._client("std_srvs/srv/Trigger", name, "is_active") for name in _MANAGERS}
-        self._manage = {
-            name: self._client("nav2_msgs/srv/ManageLifecycleNodes", name, "manage_nodes") for name in _MANAGERS
+        self._active = {name: self._create_client("std_srvs/srv/Trigger", name, "is_active") for name in _MANAGERS}
+        self._manage_clients = {
+            name: self._create_client("nav2_msgs/srv/ManageLifecycleNodes", name, "manage_nodes") for name in _MANAGERS
         }
-        self._cancel = self._node.create_client(get_service("action_msgs/srv/CancelGoal"), f"{_ACTION}/cancel_goal")
-        self._asked: set[str] = set()
-        self._goal = b""
+        self._cancel_client = self._node.create_client(
+            get_service("action_msgs/srv/CancelGoal"), f"{_ACTION}/cancel_goal"
+        )
+        self._pending_managers: set[str] = set()
+        self._goal_id = b""
         feedback = get_message("nav2_msgs/action/NavigateToPose_FeedbackMessage")
         self._subscriptions = [
             self._node.create_subscription(feedback, f"{_ACTION}/feedback", self._on_feedback, 10),
             self._node.create_subscription(
-                "action_msgs/msg/GoalStatusArray", f"{_ACTION}/status", self._goals_changed, ACTION_STATUS_QOS
+                "action_msgs/msg/GoalStatusArray", f"{_ACTION}/status", self._on_status, ACTION_STATUS_QOS
             ),
         ]
         self._work: asyncio.Task[None] | None = None
         self._next: asyncio.TimerHandle | None = None
-        self._ask()
+        self._request_states()
 
     def command(self, command: NavigationCommand) -> None:
         """Start executing the command of a button, unless another command is running."""
         if self._work is None or self._work.done():
-            self._change(busy=True, problem="")
-            self._work = asyncio.get_running_loop().create_task(self._do(command))
+            self._update_state(busy=True, problem="")
+            self._work = asyncio.get_running_loop().create_task(self._execute(command))
 
     def close(self) -> None:
         """Stop monitoring."""
@@ -133,58 +135,58 @@ class _Watch:
         if self._work is not None:
             self._work.cancel()
         with suppress(ValueError):  # The node may have been destroyed already.
-            for client in (*self._active.values(), *self._manage.values(), self._cancel):
+            for client in (*self._active.values(), *self._manage_clients.values(), self._cancel_client):
                 self._node.destroy_client(client)
             for subscription in self._subscriptions:
                 self._node.destroy_subscription(subscription)
 
-    def _client(self, kind: str, manager: str, service: str) -> Client[Any, Any]:
+    def _create_client(self, kind: str, manager: str, service: str) -> Client[Any, Any]:
         return self._node.create_client(get_service(kind), f"lifecycle_manager_{manager}/{service}")
 
-    def _change(self, **fields: Any) -> None:
-        known = {name: getattr(self.state, name) for name in NavigationState.__struct_fields__}
-        changed = NavigationState(**{**known, **fields})
-        if changed != self.state:
-            self.state = changed
-            self._publish(changed)
+    def _update_state(self, **fields: Any) -> None:
+        old_fields = {name: getattr(self.state, name) for name in NavigationState.__struct_fields__}
+        new_state = NavigationState(**{**old_fields, **fields})
+        if new_state != self.state:
+            self.state = new_state
+            self._publish(new_state)
 
     # --- states ------------------------------------------------------------------------------------------------
 
-    def _ask(self) -> None:
-        self._next = asyncio.get_running_loop().call_later(_PERIOD, self._ask)
+    def _request_states(self) -> None:
+        self._next = asyncio.get_running_loop().call_later(_PERIOD, self._request_states)
         for name, client in self._active.items():
             if not client.service_is_ready():
-                self._asked.discard(name)
-                self._change(**{name: "unknown"})
-            elif name not in self._asked:
-                self._asked.add(name)
+                self._pending_managers.discard(name)
+                self._update_state(**{name: "unknown"})
+            elif name not in self._pending_managers:
+                self._pending_managers.add(name)
                 future = client.call_async(client.srv_type.Request())
-                future.add_done_callback(partial(self._answered, name))
+                future.add_done_callback(partial(self._on_state_response, name))
 
-    def _answered(self, name: str, future: Any) -> None:
-        self._asked.discard(name)
+    def _on_state_response(self, name: str, future: Any) -> None:
+        self._pending_managers.discard(name)
         if future.cancelled() or future.exception() is not None:
             return
         state: ManagerState = "active" if future.result().success else "inactive"
-        self._change(**{name: state})
+        self._update_state(**{name: state})
 
     # --- the goal ----------------------------------------------------------------------------------------------
 
-    def _goals_changed(self, message: Any) -> None:
+    def _on_status(self, message: Any) -> None:
         if not message.status_list:
             return
-        last = max(message.status_list, key=accepted_at)
-        goal = bytes(last.goal_info.goal_id.uuid)
-        fields: dict[str, Any] = {"goal": _GOALS.get(last.status, "none")}
-        if goal != self._goal:
-            self._goal = goal
+        latest = max(message.status_list, key=acceptance_time)
+        goal_id = bytes(latest.goal_info.goal_id.uuid)
+        fields: dict[str, Any] = {"goal": _GOAL_STATES.get(latest.status, "none")}
+        if goal_id != self._goal_id:
+            self._goal_id = goal_id
             fields.update(eta=None, distance=None, taken=None, recoveries=None)
-        self._change(**fields)
+        self._update_state(**fields)
 
     def _on_feedback(self, message: Any) -> None:
         feedback = message.feedback
         distance = float(feedback.distance_remaining)
-        self._change(
+        self._update_state(
             eta=_seconds(feedback.estimated_time_remaining),
             taken=_seconds(feedback.navigation_time),
             distance=round(distance, 2) if math.isfinite(distance) else None,
@@ -193,27 +195,27 @@ class _Watch:
 
     # --- commands ----------------------------------------------------------------------------------------------
 
-    async def _do(self, command: NavigationCommand) -> None:
+    async def _execute(self, command: NavigationCommand) -> None:
         problem: Phrase | None = None
         if command in ("cancel", "reset"):
             problem = await self._cancel_goals() if self.state.goal == "active" else None
         if command != "cancel":
             number, managers = _COMMANDS[command]
-            there = [name for name in managers if self._manage[name].service_is_ready()]
-            if not there:
-                problem = phrase("no lifecycle manager of nav2 is running")
-            for name in there:
-                client = self._manage[name]
-                answer = await self._call(client, command=number)
-                if answer is None or not answer.success:
+            available = [name for name in managers if self._manage_clients[name].service_is_ready()]
+            if not available:
+                problem = phrase("no lifecycle manager of nav2 is running; start nav2 first")
+            for name in available:
+                client = self._manage_clients[name]
+                response = await self._call(client, command=number)
+                if response is None or not response.success:
                     problem = phrase(
-                        "lifecycle_manager_{name} could not do this; see its log for the reason", name=name
+                        "lifecycle_manager_{name} could not execute the command; see its log for the reason", name=name
                     )
                     break
-        self._change(busy=False, problem="" if problem is None else str(problem))
+        self._update_state(busy=False, problem="" if problem is None else str(problem))
 
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
-        """Return the response of a service, or None if the server disappears meanwhile."""
+        """Return the response of a service, or None if the server disappears before it responds."""
         future = client.call_async(client.srv_type.Request(**fields))
         while not await wait_for_future(self._node, future, _PERIOD):
             if not client.service_is_ready():
@@ -222,17 +224,19 @@ class _Watch:
         return future.result()
 
     async def _cancel_goals(self) -> Phrase | None:
-        """Cancel all goals, and return an error message or None.
+        """Cancel all goals, and return an error message, or None after success.
 
         A request with an empty id and time cancels all goals.
         """
-        if not self._cancel.service_is_ready():
-            return phrase("there is no action '{name}'", name="navigate_to_pose")
-        answer = await self._call(self._cancel)
-        if answer is None:
+        if not self._cancel_client.service_is_ready():
+            return phrase(
+                ("the goal could not be cancelled: no node provides the action '{name}'"), name="navigate_to_pose"
+            )
+        response = await self._call(self._cancel_client)
+        if response is None:
             return phrase("the goal could not be cancelled: the server does not respond")
-        if answer.return_code != 0:
-            return phrase("the goal could not be cancelled: code {code}", code=answer.return_code)
+        if response.return_code != 0:
+            return phrase("the goal could not be cancelled: code {code}", code=response.return_code)
         return None
 
 

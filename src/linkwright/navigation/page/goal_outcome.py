@@ -14,13 +14,13 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 STATUS_TOPIC = "/navigate_to_pose/_action/status"
 _ACTIVE, _ABORTED = (1, 2, 3), 6
-"""Numbers of action_msgs/msg/GoalStatus."""
-_STATES = 10
-"""Messages that may wait: a goal may fail at once, and its active state must not be missed."""
-_ERROR = 40
+"""The status numbers of active and aborted goals in action_msgs/msg/GoalStatus."""
+_STATUS_DEPTH = 10
+"""The queue depth, so that the active state of a goal that fails immediately is not lost."""
+_ERROR_LEVEL = 40
 """The level of errors in rcl_interfaces/msg/Log."""
 _LOG_DELAY = 0.3
-"""Seconds by which the reason may arrive later than the state: they are on two topics."""
+"""The seconds to wait for the logged reason after a goal is aborted, because it arrives on another topic."""
 
 
 class GoalOutcomeFeature(PageFeature):
@@ -33,21 +33,21 @@ class GoalOutcomeFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._subscriptions: list[Any] = []
-        self._goal = b""
+        self._goal_id = b""
         self._active = False
         self._reasons: dict[str, str] = {}
-        self._sent: GoalOutcome = NO_GOAL_FAILED
+        self._outcome: GoalOutcome = NO_GOAL_FAILED
         self._due: asyncio.TimerHandle | None = None
 
     def opening(self) -> list[ServerMessage]:
         """Subscribe for the first page, and return the outcome of the last goal."""
         if not self._subscriptions:
-            lasting = QoSProfile(depth=_STATES, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            latched = QoSProfile(depth=_STATUS_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
             self._subscriptions = [
-                self._listen("action_msgs/msg/GoalStatusArray", STATUS_TOPIC, self._goals_changed, lasting),
-                self._listen("rcl_interfaces/msg/Log", "/rosout", self._logged, ROSOUT_QOS),
+                self._subscribe("action_msgs/msg/GoalStatusArray", STATUS_TOPIC, self._on_status, latched),
+                self._subscribe("rcl_interfaces/msg/Log", "/rosout", self._logged, ROSOUT_QOS),
             ]
-        return [self._sent]
+        return [self._outcome]
 
     def page_closed(self, page: Page) -> None:
         """Unsubscribe after the last page is closed."""
@@ -63,32 +63,32 @@ class GoalOutcomeFeature(PageFeature):
             self.context.node.destroy_subscription(subscription)
         self._subscriptions.clear()
 
-    def _listen(self, kind: str, topic: str, take: Callable[[Any], None], qos: QoSProfile) -> Any:
-        return self.context.node.create_subscription(kind, topic, take, qos)
+    def _subscribe(self, kind: str, topic: str, callback: Callable[[Any], None], qos: QoSProfile) -> Any:
+        return self.context.node.create_subscription(kind, topic, callback, qos)
 
-    def _goals_changed(self, message: Any) -> None:
+    def _on_status(self, message: Any) -> None:
         if not message.status_list:
             return
-        last = max(message.status_list, key=accepted_at)
-        goal = bytes(last.goal_info.goal_id.uuid)
-        if goal != self._goal:
-            self._goal, self._active = goal, False
+        latest = max(message.status_list, key=acceptance_time)
+        goal_id = bytes(latest.goal_info.goal_id.uuid)
+        if goal_id != self._goal_id:
+            self._goal_id, self._active = goal_id, False
             self._reasons.clear()
             self._publish(NO_GOAL_FAILED)
-        if last.status in _ACTIVE:
+        if latest.status in _ACTIVE:
             self._active = True
         elif self._active:
             self._active = False
-            if last.status == _ABORTED:
-                self._due = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal)
+            if latest.status == _ABORTED:
+                self._due = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal_id)
 
     def _logged(self, record: Any) -> None:
-        if record.level >= _ERROR:
+        if record.level >= _ERROR_LEVEL:
             self._reasons[record.name] = record.msg
 
     def _publish_failure(self, goal: bytes) -> None:
         self._due = None
-        if goal != self._goal:
+        if goal != self._goal_id:
             return
         servers = {
             endpoint.node.name
@@ -99,12 +99,12 @@ class GoalOutcomeFeature(PageFeature):
         self._publish(GoalOutcome(reasons[-1] if reasons else "", failed=True))
 
     def _publish(self, outcome: GoalOutcome) -> None:
-        if outcome != self._sent:
-            self._sent = outcome
+        if outcome != self._outcome:
+            self._outcome = outcome
             self.context.pages.publish(outcome)
 
 
-def accepted_at(status: Any) -> tuple[int, int]:
+def acceptance_time(status: Any) -> tuple[int, int]:
     """Return the time at which the goal of a GoalStatus was accepted, as (seconds, nanoseconds)."""
     stamp = status.goal_info.stamp
     return stamp.sec, stamp.nanosec

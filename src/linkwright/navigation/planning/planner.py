@@ -1,7 +1,7 @@
-"""Planning of the cheapest path over a costmap between two poses.
+"""A planner that finds the cheapest path over a costmap between two poses.
 
 Source: nav2_navfn_planner (costs, tolerance, error messages). Deliberate differences: the tolerance does not reach
-through obstacles, so a goal within a wall is refused; and a robot that is too close to an obstacle may leave by the
+through obstacles, so a goal inside a wall is rejected; and a robot that is too close to an obstacle may leave by the
 shortest path.
 """
 
@@ -23,13 +23,13 @@ from linkwright.navigation.planning.descent import descend
 from linkwright.navigation.planning.potential import Cell, Floats, crossing_prices, potential
 
 _ESCAPE_PRICE: Final = 2530.0
-"""The cost of a cell too near to an obstacle, for a robot that starts in one: it leaves by the shortest path."""
-_ESCAPE_REACH: Final = 1.0
-"""The radius in metres that must contain a cell where the robot fits."""
+"""The price of crossing a cell that is too near to an obstacle, if the robot starts in such a cell."""
+_MAX_ESCAPE_DISTANCE: Final = 1.0
+"""The maximum distance from such a start to a cell where the robot fits, in metres."""
 
 
-_NO_WAY: Final = 1e-9
-"""Points that are nearer to each other, in metres, are one."""
+_MIN_POINT_DISTANCE: Final = 1e-9
+"""The minimum distance between successive points of a path, in metres."""
 
 
 class Problem(Enum):
@@ -72,9 +72,9 @@ class Settings:
 
 
 def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Generator[None, None, NDArray[np.float64]]:
-    """Plan a path, yielding regularly so that other callbacks can run.
+    """Plan a path; yields regularly so that other callbacks can run.
 
-    The costmap must not change meanwhile.
+    The costmap must not change before the generator ends.
 
     Args:
         costmap: the costs of cells.
@@ -83,128 +83,130 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
         settings: the settings of the planner.
 
     Returns:
-        Poses from the start to the goal, or to the nearest position within the tolerance, of shape (n, 3), about a cell
-        apart.
+        Poses, of shape (n, 3), about a cell apart, from the start to the goal or to the nearest position within the
+        tolerance.
 
     Raises:
         PlanError: there is no path.
     """
-    from_cell = _cell(costmap, start, Problem.START_OUTSIDE_MAP, "Start")
-    to_cell = _cell(costmap, goal, Problem.GOAL_OUTSIDE_MAP, "Goal")
+    from_cell = _cell_in_grid(costmap, start, Problem.START_OUTSIDE_MAP, "Start")
+    to_cell = _cell_in_grid(costmap, goal, Problem.GOAL_OUTSIDE_MAP, "Goal")
     costs = costmap.grid.cells
     if costs[from_cell] == LETHAL:
-        raise _occupied(Problem.START_OCCUPIED, "Start", start)
+        raise _occupied_error(Problem.START_OCCUPIED, "Start", start)
     if costs[to_cell] == LETHAL:
-        raise _occupied(Problem.GOAL_OCCUPIED, "Goal", goal)
-    price = crossing_prices(costs, allow_unknown=settings.allow_unknown)
+        raise _occupied_error(Problem.GOAL_OCCUPIED, "Goal", goal)
+    prices = crossing_prices(costs, allow_unknown=settings.allow_unknown)
     if costs[from_cell] == INSCRIBED and from_cell != to_cell:
-        _open_escape(price, costmap, from_cell, start)
+        _open_escape(prices, costmap, from_cell, start)
     end = to_cell
-    if price[to_cell] < np.inf:
-        least = yield from potential(price, from_cell, to_cell, heuristic=settings.use_astar)
-    if not price[to_cell] < np.inf or not least[to_cell] < np.inf:
-        least = yield from potential(price, from_cell)
-        end = _nearest(least, costmap, goal, to_cell, settings)
-    reached = end == to_cell
+    if prices[to_cell] < np.inf:
+        costs_to_start = yield from potential(prices, from_cell, to_cell, heuristic=settings.use_astar)
+    if not prices[to_cell] < np.inf or not costs_to_start[to_cell] < np.inf:
+        costs_to_start = yield from potential(prices, from_cell)
+        end = _nearest_reachable_cell(costs_to_start, costmap, goal, to_cell, settings)
+    is_reached = end == to_cell
     centre = costmap.grid.centres_of(np.array(end))
-    last = goal if reached else (float(centre[0]), float(centre[1]), goal[2])
+    end_pose = goal if is_reached else (float(centre[0]), float(centre[1]), goal[2])
     grid = costmap.grid
-    begin = ((last[1] - grid.y) / grid.resolution, (last[0] - grid.x) / grid.resolution)
-    way = yield from descend(least, from_cell, begin)
-    return _poses(_thin_path(way[::-1], price), costmap, start, last, settings)
+    end_position = ((end_pose[1] - grid.y) / grid.resolution, (end_pose[0] - grid.x) / grid.resolution)
+    path_cells = yield from descend(costs_to_start, from_cell, end_position)
+    return _poses(_thin_path(path_cells[::-1], prices), costmap, start, end_pose, settings)
 
 
 def run(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
     """Run a generator to its end, and return its result."""
-    found: list[NDArray[np.float64]] = []
+    results: list[NDArray[np.float64]] = []
 
     def work() -> Generator[None, None, None]:
-        found.append((yield from steps))
+        results.append((yield from steps))
 
     for _ in work():
         pass
-    return found[0]
+    return results[0]
 
 
-def _cell(costmap: Costmap, pose: Pose, problem: Problem, what: str) -> Cell:
+def _cell_in_grid(costmap: Costmap, pose: Pose, problem: Problem, subject: str) -> Cell:
     indices = costmap.grid.cells_of(np.array(pose[:2]))
     if not costmap.grid.has(indices):
-        raise PlanError(problem, f"{what} Coordinates of({pose[0]:f}, {pose[1]:f}) was outside bounds")
+        raise PlanError(problem, f"{subject} Coordinates of({pose[0]:f}, {pose[1]:f}) was outside bounds")
     return int(indices[0]), int(indices[1])
 
 
-def _occupied(problem: Problem, what: str, pose: Pose) -> PlanError:
-    return PlanError(problem, f"{what} Coordinates of({pose[0]:f}, {pose[1]:f}) was in lethal cost")
+def _occupied_error(problem: Problem, subject: str, pose: Pose) -> PlanError:
+    return PlanError(problem, f"{subject} Coordinates of({pose[0]:f}, {pose[1]:f}) was in lethal cost")
 
 
-def _open_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
-    """Make the cells passable that lead from a start near an obstacle to the nearest free cell.
+def _open_escape(prices: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
+    """Make the cells between a start near an obstacle and the nearest free cell passable.
 
     Raises:
         PlanError: there is no free cell nearby.
     """
     costs = costmap.grid.cells
-    reach = ceil(_ESCAPE_REACH / costmap.grid.resolution)
-    top, left = max(0, cell[0] - reach), max(0, cell[1] - reach)
-    part = costs[top : cell[0] + reach + 1, left : cell[1] + reach + 1]
-    rows, columns = np.ogrid[: part.shape[0], : part.shape[1]]
+    reach_in_cells = ceil(_MAX_ESCAPE_DISTANCE / costmap.grid.resolution)
+    top, left = max(0, cell[0] - reach_in_cells), max(0, cell[1] - reach_in_cells)
+    nearby_costs = costs[top : cell[0] + reach_in_cells + 1, left : cell[1] + reach_in_cells + 1]
+    rows, columns = np.ogrid[: nearby_costs.shape[0], : nearby_costs.shape[1]]
     distances = np.hypot(rows + top - cell[0], columns + left - cell[1])
-    free = np.isfinite(price[top : top + part.shape[0], left : left + part.shape[1]])
-    if not free.any():
-        raise _occupied(Problem.START_OCCUPIED, "Start", start)
-    near = (part == INSCRIBED) & (distances <= distances[free].min() + 1.0)
-    price[top : top + part.shape[0], left : left + part.shape[1]][near] = _ESCAPE_PRICE
+    is_free = np.isfinite(prices[top : top + nearby_costs.shape[0], left : left + nearby_costs.shape[1]])
+    if not is_free.any():
+        raise _occupied_error(Problem.START_OCCUPIED, "Start", start)
+    is_opened = (nearby_costs == INSCRIBED) & (distances <= distances[is_free].min() + 1.0)
+    prices[top : top + nearby_costs.shape[0], left : left + nearby_costs.shape[1]][is_opened] = _ESCAPE_PRICE
 
 
-def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings) -> Cell:
+def _nearest_reachable_cell(
+    costs_to_start: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings
+) -> Cell:
     """Return the reachable cell nearest to a goal, within the tolerance and on the same side of obstacles.
 
     Raises:
         PlanError: there is no such cell.
     """
     costs = costmap.grid.cells
-    reach = int(settings.tolerance / costmap.grid.resolution)
-    if reach > 0:
-        top, left = max(0, cell[0] - reach), max(0, cell[1] - reach)
-        part = least[top : cell[0] + reach + 1, left : cell[1] + reach + 1]
-        candidates = np.argwhere(np.isfinite(part)) + np.array((top, left))
+    reach_in_cells = int(settings.tolerance / costmap.grid.resolution)
+    if reach_in_cells > 0:
+        top, left = max(0, cell[0] - reach_in_cells), max(0, cell[1] - reach_in_cells)
+        nearby_costs = costs_to_start[top : cell[0] + reach_in_cells + 1, left : cell[1] + reach_in_cells + 1]
+        candidates = np.argwhere(np.isfinite(nearby_costs)) + np.array((top, left))
         distances = np.hypot(*(candidates - cell).T)
-        order = np.lexsort((least[candidates[:, 0], candidates[:, 1]], distances))
+        order = np.lexsort((costs_to_start[candidates[:, 0], candidates[:, 1]], distances))
         candidates = candidates[order[distances[order] * costmap.grid.resolution <= settings.tolerance]]
         if len(candidates):
-            cells, line = cells_on_lines(np.array(cell), candidates)
-            hidden = np.zeros(len(candidates), np.bool_)
-            hidden[line[costs[cells[:, 0], cells[:, 1]] == LETHAL]] = True
-            if not hidden.all():
-                row, column = candidates[int(np.argmin(hidden))]
+            cells, line_indices = cells_on_lines(np.array(cell), candidates)
+            is_hidden = np.zeros(len(candidates), np.bool_)
+            is_hidden[line_indices[costs[cells[:, 0], cells[:, 1]] == LETHAL]] = True
+            if not is_hidden.all():
+                row, column = candidates[int(np.argmin(is_hidden))]
                 return int(row), int(column)
     if MAX_PASSABLE < costs[cell] < UNKNOWN:
-        raise _occupied(Problem.GOAL_OCCUPIED, "Goal", goal)
+        raise _occupied_error(Problem.GOAL_OCCUPIED, "Goal", goal)
     raise PlanError(Problem.NO_VALID_PATH, f"Failed to create plan with tolerance of: {settings.tolerance:f}")
 
 
-def _thin_path(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
-    """Drop every second point of a path where the straight line avoids unreachable cells."""
-    cells = np.floor(way).astype(np.int64)
-    between = np.arange(1, len(way) - 1, 2)
-    before, after = cells[between - 1], cells[between + 1]
-    clear = np.abs(after - before).max(axis=1, initial=0) <= 1
-    corners = price[before[:, 0], after[:, 1]] + price[after[:, 0], before[:, 1]]
-    return np.delete(way, between[clear & np.isfinite(corners)], axis=0)
+def _thin_path(path_cells: NDArray[np.float64], prices: Floats) -> NDArray[np.float64]:
+    """Drop every second point of a path if the straight line between its neighbours avoids unreachable cells."""
+    cells = np.floor(path_cells).astype(np.int64)
+    dropped = np.arange(1, len(path_cells) - 1, 2)
+    previous, following = cells[dropped - 1], cells[dropped + 1]
+    is_adjacent = np.abs(following - previous).max(axis=1, initial=0) <= 1
+    corner_prices = prices[previous[:, 0], following[:, 1]] + prices[following[:, 0], previous[:, 1]]
+    return np.delete(path_cells, dropped[is_adjacent & np.isfinite(corner_prices)], axis=0)
 
 
 def _poses(
-    way: NDArray[np.float64], costmap: Costmap, start: Pose, last: Pose, settings: Settings
+    path_cells: NDArray[np.float64], costmap: Costmap, start: Pose, end_pose: Pose, settings: Settings
 ) -> NDArray[np.float64]:
     """Convert rows and columns to poses, of shape (n, 3), from the exact start to the exact end."""
     grid = costmap.grid
-    points = way[:, ::-1] * grid.resolution + (grid.x, grid.y)
-    points[0], points[-1] = start[:2], last[:2]
-    ahead = np.diff(points, axis=0)
-    moved = np.hypot(ahead[:, 0], ahead[:, 1]) > _NO_WAY
-    points = np.concatenate((points[:-1][moved], points[-1:]))
-    ahead = ahead[moved]
-    yaws = np.append(np.arctan2(ahead[:, 1], ahead[:, 0]), last[2])
+    points = path_cells[:, ::-1] * grid.resolution + (grid.x, grid.y)
+    points[0], points[-1] = start[:2], end_pose[:2]
+    steps = np.diff(points, axis=0)
+    is_distinct = np.hypot(steps[:, 0], steps[:, 1]) > _MIN_POINT_DISTANCE
+    points = np.concatenate((points[:-1][is_distinct], points[-1:]))
+    steps = steps[is_distinct]
+    yaws = np.append(np.arctan2(steps[:, 1], steps[:, 0]), end_pose[2])
     if settings.use_final_approach_orientation and len(yaws) > 1:
         yaws[-1] = yaws[-2]
     return np.column_stack((points, yaws))

@@ -1,9 +1,9 @@
 """Potentials: the cost of the cheapest path from one cell to each other cell of a costmap.
 
-A potential is computed as a wavefront. The wave solves the eikonal equation on a grid, as NavFn does: paths have all
-directions, not only along rows, columns and diagonals. All cells of the front are updated in the same step, and cells
-whose neighbours became cheaper are updated again, until nothing changes. The wave continues from expensive cells only
-when it has reached the same cost in cheap ones, because most expensive cells have a cheaper path around them.
+A potential is computed as a wavefront. The wave solves the eikonal equation on a grid, as NavFn does, so paths can have
+any direction, not only along rows, columns and diagonals. All cells of the front are updated in the same step. A cell
+is updated again if a neighbour became cheaper, until nothing changes. The wave continues from an expensive cell only
+when it has reached the same cost in cheap cells, because there is usually a cheaper path around expensive cells.
 
 Source: Brock and Khatib, High-speed navigation using the global dynamic window approach, ICRA 1999; nav2_navfn_planner
 (the cost of a cell).
@@ -25,13 +25,13 @@ Cell = tuple[int, int]
 """Row and column."""
 
 NEUTRAL: Final = 50.0
-"""The price of crossing a cell that costs nothing."""
-_FACTOR: Final = 0.8
-_MOST: Final = 253.0
-"""The cost of crossing an unknown cell."""
-_ROUNDS_HELD: Final = 4
-"""The number of steps of the wave between two checks for expensive cells that are due."""
-_SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
+"""The price of crossing a cell of cost 0."""
+_COST_FACTOR: Final = 0.8
+_MAX_COST: Final = 253.0
+"""The maximum price of a cell, which is also the price of an unknown cell."""
+_STEPS_BETWEEN_CHECKS: Final = 4
+"""The number of steps of the wave between two checks of the cells that were held back."""
+_MIN_GAIN: Final = 1e-3 * NEUTRAL
 
 
 def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
@@ -44,12 +44,12 @@ def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> 
     Returns:
         Prices, of the shape of the costs.
     """
-    table = np.minimum(NEUTRAL + _FACTOR * np.arange(256.0), _MOST)
+    table = np.minimum(NEUTRAL + _COST_FACTOR * np.arange(256.0), _MAX_COST)
     table[MAX_PASSABLE + 1 :] = np.inf
     if allow_unknown:
-        table[UNKNOWN] = _MOST
-    crossed: Floats = table[costs]
-    return crossed
+        table[UNKNOWN] = _MAX_COST
+    prices: Floats = table[costs]
+    return prices
 
 
 def potential(
@@ -60,7 +60,7 @@ def potential(
     The generator yields after each step of the wave, so that other callbacks can run.
 
     Args:
-        price: the cost of crossing cells, of shape (rows, columns); infinite for obstacles.
+        price: the price of crossing each cell, of shape (rows, columns); infinite for obstacles.
         source: the start of the paths; it may have any price.
         target: the goal of the requested path; cells that cost more are skipped. None for all cells.
         heuristic: whether to add the minimum cost to the target when cells are skipped (A*).
@@ -72,59 +72,65 @@ def potential(
     width = columns + 2
     padded = np.full((rows + 2, width), np.inf)
     padded[1:-1, 1:-1] = price
-    step = padded.ravel()
-    least = np.full(step.size, np.inf)
-    gain = np.where(step < np.inf, np.inf, -np.inf)  # Like `least`, except that obstacles can never become cheaper.
-    mark = np.zeros(step.size, np.intp)
+    prices = padded.ravel()
+    costs = np.full(prices.size, np.inf)
+    update_bounds = np.where(
+        prices < np.inf, np.inf, -np.inf
+    )  # Like `least`, except that obstacles can never become cheaper.
+    last_positions = np.zeros(prices.size, np.intp)
     offsets = np.array([[-1], [1], [-width], [width]])
-    begin = (source[0] + 1) * width + source[1] + 1
-    end = None if target is None else (target[0] + 1) * width + target[1] + 1
-    ahead = _min_cost_to_target(price, target) if heuristic and target is not None else None
-    least[begin], gain[begin] = 0.0, -np.inf
-    least_step = float(step.min()) / sqrt(2.0)  # The smallest increase, if the path enters from both axes.
-    front: NDArray[Any] = begin + offsets[:, 0]
-    front = front[step[front] < np.inf]
-    cheapest = float(step.min())
-    held: NDArray[Any] = np.empty(0, np.intp)
-    bound, rounds = 0.0, 0
-    while front.size or held.size:
+    start_index = (source[0] + 1) * width + source[1] + 1
+    target_index = None if target is None else (target[0] + 1) * width + target[1] + 1
+    remaining_bounds = _min_cost_to_target(price, target) if heuristic and target is not None else None
+    costs[start_index], update_bounds[start_index] = 0.0, -np.inf
+    min_increase = float(prices.min()) / sqrt(2.0)  # The smallest increase, if the path enters from both axes.
+    front: NDArray[Any] = start_index + offsets[:, 0]
+    front = front[prices[front] < np.inf]
+    min_price = float(prices.min())
+    held_cells: NDArray[Any] = np.empty(0, np.intp)
+    bound, step_count = 0.0, 0
+    while front.size or held_cells.size:
         yield
-        sides = least.take(front + offsets)
-        value = _potential_after_crossing(
-            np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]), step.take(front)
+        neighbour_costs = costs.take(front + offsets)
+        new_costs = _potential_after_crossing(
+            np.minimum(neighbour_costs[0], neighbour_costs[1]),
+            np.minimum(neighbour_costs[2], neighbour_costs[3]),
+            prices.take(front),
         )
-        better = np.flatnonzero(value < gain.take(front) - _SMALLEST_GAIN)
-        front, value = front.take(better), value.take(better)
-        least[front] = value
-        gain[front] = value
-        rounds += 1
-        bound += cheapest
-        late = value > bound
-        if late.any():
-            held = np.concatenate((held, front[late]))
-            front = front[~late]
-        if held.size and (not front.size or not rounds % _ROUNDS_HELD):
-            waiting = least.take(held)
-            bound = max(bound, float(waiting.min()))
-            due = waiting <= bound + _ROUNDS_HELD * cheapest
-            front, held = np.concatenate((front, held[due])), held[~due]
-        value = least.take(front)
-        if end is not None and least[end] < np.inf:
-            near = (value if ahead is None else value + ahead.take(front)) < least[end]
-            front, value = front[near], value[near]
-        around = front + offsets
-        around = around[gain.take(around) > value + least_step]
-        mark[around] = order = np.arange(around.size)
-        front = around[mark.take(around) == order]
-    result: Floats = least.reshape(rows + 2, width)[1:-1, 1:-1]
+        improved = np.flatnonzero(new_costs < update_bounds.take(front) - _MIN_GAIN)
+        front, new_costs = front.take(improved), new_costs.take(improved)
+        costs[front] = new_costs
+        update_bounds[front] = new_costs
+        step_count += 1
+        bound += min_price
+        is_late = new_costs > bound
+        if is_late.any():
+            held_cells = np.concatenate((held_cells, front[is_late]))
+            front = front[~is_late]
+        if held_cells.size and (not front.size or not step_count % _STEPS_BETWEEN_CHECKS):
+            held_costs = costs.take(held_cells)
+            bound = max(bound, float(held_costs.min()))
+            is_due = held_costs <= bound + _STEPS_BETWEEN_CHECKS * min_price
+            front, held_cells = np.concatenate((front, held_cells[is_due])), held_cells[~is_due]
+        new_costs = costs.take(front)
+        if target_index is not None and costs[target_index] < np.inf:
+            is_promising = (
+                new_costs if remaining_bounds is None else new_costs + remaining_bounds.take(front)
+            ) < costs[target_index]
+            front, new_costs = front[is_promising], new_costs[is_promising]
+        neighbours = front + offsets
+        neighbours = neighbours[update_bounds.take(neighbours) > new_costs + min_increase]
+        last_positions[neighbours] = order = np.arange(neighbours.size)
+        front = neighbours[last_positions.take(neighbours) == order]
+    result: Floats = costs.reshape(rows + 2, width)[1:-1, 1:-1]
     return result
 
 
-def _potential_after_crossing(a: Floats, b: Floats, price: Floats) -> Floats:
+def _potential_after_crossing(row_neighbour: Floats, column_neighbour: Floats, price: Floats) -> Floats:
     """Return the potential of cells from their prices and the cheaper neighbour on each axis."""
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    apart = np.minimum(high - low, price)  # Beyond the price, the path enters from one side only.
-    value: Floats = low + 0.5 * (apart + np.sqrt(2.0 * price * price - apart * apart))
+    low, high = np.minimum(row_neighbour, column_neighbour), np.maximum(row_neighbour, column_neighbour)
+    difference = np.minimum(high - low, price)  # A larger difference means that only one axis counts.
+    value: Floats = low + 0.5 * (difference + np.sqrt(2.0 * price * price - difference * difference))
     return value
 
 
@@ -135,5 +141,5 @@ def _min_cost_to_target(price: Floats, target: Cell) -> Floats:
     """
     rows, columns = price.shape
     y, x = np.arange(-1.0, rows + 1) - target[0], np.arange(-1.0, columns + 1) - target[1]
-    ahead: Floats = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()
-    return ahead
+    bounds: Floats = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()
+    return bounds

@@ -19,7 +19,7 @@ from linkwright.navigation.grids.library import load_scipy
 
 Points = NDArray[np.float64]
 
-_LEAST_POINTS: Final = 3
+_MIN_POINTS: Final = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,79 +50,79 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
         costmap: the costmap whose obstacles are avoided; None for no obstacles.
 
     Returns:
-        The smoothed points, of the same shape, with the same first and last one; and whether no point was held back by
-        an obstacle.
+        The smoothed points, of the same shape, with the same first and last point; and whether obstacles prevented no
+        point from moving.
     """
-    found, complete = points, True
-    rounds = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)
-    fixed = _fixed(points, smoothing)
-    for _ in range(rounds):
-        found, all_moved = _once(found, fixed, smoothing, costmap)
+    result, complete = points, True
+    pass_count = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)
+    is_fixed = _fixed_points(points, smoothing)
+    for _ in range(pass_count):
+        result, all_moved = _once(result, is_fixed, smoothing, costmap)
         complete &= all_moved
-    return found, complete
+    return result, complete
 
 
-def directions(points: Points, last: float) -> NDArray[np.float64]:
+def directions(points: Points, last_yaw: float) -> NDArray[np.float64]:
     """Return the yaw from each point of a path to the next one, in radians, of shape (n,).
 
-    The yaw of the last point is `last`.
+    The yaw of the last point is `last_yaw`.
     """
-    ahead = np.diff(points, axis=0)
-    return np.append(np.arctan2(ahead[:, 1], ahead[:, 0]), last)
+    steps = np.diff(points, axis=0)
+    return np.append(np.arctan2(steps[:, 1], steps[:, 0]), last_yaw)
 
 
-def _fixed(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
+def _fixed_points(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
     """Return a mask of the fixed points: the ends, and reversals if they are enforced."""
-    fixed = np.zeros(len(points), np.bool_)
-    fixed[[0, -1]] = True
-    if smoothing.enforce_path_inversion and len(points) >= _LEAST_POINTS:
-        ahead = np.diff(points, axis=0)
-        fixed[1:-1] |= (ahead[:-1] * ahead[1:]).sum(axis=1) < 0.0
-    return fixed
+    is_fixed = np.zeros(len(points), np.bool_)
+    is_fixed[[0, -1]] = True
+    if smoothing.enforce_path_inversion and len(points) >= _MIN_POINTS:
+        steps = np.diff(points, axis=0)
+        is_fixed[1:-1] |= (steps[:-1] * steps[1:]).sum(axis=1) < 0.0
+    return is_fixed
 
 
 def _once(
-    points: Points, fixed: NDArray[np.bool_], smoothing: Smoothing, costmap: Costmap | None
+    points: Points, is_fixed: NDArray[np.bool_], smoothing: Smoothing, costmap: Costmap | None
 ) -> tuple[Points, bool]:
-    if len(points) < _LEAST_POINTS:
+    if len(points) < _MIN_POINTS:
         return points, True
-    stays = fixed.copy()
+    is_kept = is_fixed.copy()
     while True:
-        found = _solve_equilibrium(points, stays, smoothing)
+        result = _solve_equilibrium(points, is_kept, smoothing)
         if costmap is None:
-            return found, True
-        bad = _blocked(found, costmap) & ~stays
-        if not bad.any():
-            return found, not (stays & ~fixed).any()
-        stays |= bad
+            return result, True
+        is_blocked = _blocked_points(result, costmap) & ~is_kept
+        if not is_blocked.any():
+            return result, not (is_kept & ~is_fixed).any()
+        is_kept |= is_blocked
 
 
-def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
+def _blocked_points(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
     """Return a mask of the points that collide, or have a colliding midpoint to a neighbour."""
     middles = (points + np.roll(points, -1, axis=0)) / 2.0
     middles[-1] = points[-1]
 
-    def barred(places: Points) -> NDArray[np.bool_]:
-        costs = costmap.cost_at(places)
+    def barred(positions: Points) -> NDArray[np.bool_]:
+        costs = costmap.cost_at(positions)
         return np.asarray((costs > MAX_PASSABLE) & (costs != UNKNOWN))
 
-    blocked = barred(points)
-    between = barred(middles)
-    blocked |= between
-    blocked[1:] |= between[:-1]
-    return blocked
+    is_blocked = barred(points)
+    is_gap_blocked = barred(middles)
+    is_blocked |= is_gap_blocked
+    is_blocked[1:] |= is_gap_blocked[:-1]
+    return is_blocked
 
 
-def _solve_equilibrium(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
+def _solve_equilibrium(points: Points, is_kept: NDArray[np.bool_], smoothing: Smoothing) -> Points:
     """Return the points y that solve w_data (y - x) = w_smooth (previous + next - 2 y).
 
-    Points in the mask `stays` keep their positions x.
+    Points in the mask `is_kept` keep their positions x.
     """
-    beside = np.where(stays, 0.0, -smoothing.w_smooth)
+    neighbour_weights = np.where(is_kept, 0.0, -smoothing.w_smooth)
     bands = np.zeros((3, len(points)))
-    bands[0, 1:] = beside[:-1]
-    bands[1] = np.where(stays, 1.0, smoothing.w_data + 2.0 * smoothing.w_smooth)
-    bands[2, :-1] = beside[1:]
-    wanted: Any = np.where(stays, 1.0, smoothing.w_data)[:, None] * points
-    found: Points = load_scipy("linalg").solve_banded((1, 1), bands, wanted)
-    return found
+    bands[0, 1:] = neighbour_weights[:-1]
+    bands[1] = np.where(is_kept, 1.0, smoothing.w_data + 2.0 * smoothing.w_smooth)
+    bands[2, :-1] = neighbour_weights[1:]
+    right_side: Any = np.where(is_kept, 1.0, smoothing.w_data)[:, None] * points
+    solution: Points = load_scipy("linalg").solve_banded((1, 1), bands, right_side)
+    return solution

@@ -1,1 +1,1 @@
-"""Mapping, in which scans are matched to each other and loops are closed in a pose graph."""
+"""Mapping by matching scans to each other and closing loops in a pose graph."""

@@ -1,4 +1,4 @@
-"""Detection of contradicting poses of two scans: rays of one cannot pass through hits of the other."""
+"""Detection of contradictory poses of two scans, in which rays of a scan pass through points of the other."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from linkwright.navigation.slam.poses import Floats, relative_pose, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
-_APART = 0.03
-"""Rays whose directions differ by more than this are not neighbours, radians."""
-_BEHIND = 0.3
-"""The least distance in metres behind a point of the other scan for a contradiction."""
-_FEWEST = 20
+_MAX_RAY_ANGLE = 0.03
+"""The maximum angle between a point and its neighbouring rays, in radians."""
+_MIN_DEPTH = 0.3
+"""The minimum distance by which a ray must pass a point of the other scan for a contradiction, in metres."""
+_MIN_POINTS = 20
 
 
 def contradiction_share(first: PlanarScan, first_pose: Floats, second: PlanarScan, second_pose: Floats) -> float:
@@ -38,18 +38,20 @@ def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -
 
     `pose` is the pose of the other scan in the viewer's frame.
     """
-    seen = viewer.points - viewer.origin
+    ray_ends = viewer.points - viewer.origin
     points = transform_points(pose, other.points) - viewer.origin
-    if len(seen) < _FEWEST or len(points) < _FEWEST:
+    if len(ray_ends) < _MIN_POINTS or len(points) < _MIN_POINTS:
         return 0.0
-    bearings = np.arctan2(seen[:, 1], seen[:, 0])
+    bearings = np.arctan2(ray_ends[:, 1], ray_ends[:, 0])
     order = np.argsort(bearings)
-    bearings, ranges = bearings[order], np.hypot(seen[:, 0], seen[:, 1])[order]
+    bearings, ranges = bearings[order], np.hypot(ray_ends[:, 0], ray_ends[:, 1])[order]
     bearings = np.concatenate(([bearings[-1] - 2 * pi], bearings, [bearings[0] + 2 * pi]))
     ranges = np.concatenate((ranges[-1:], ranges, ranges[:1]))
-    wanted = np.arctan2(points[:, 1], points[:, 0])
-    after = np.clip(np.searchsorted(bearings, wanted), 1, len(bearings) - 1)
-    # Require both neighbouring rays to be longer: next to an edge, only one of them is longer.
-    close = (bearings[after] - wanted < _APART) & (wanted - bearings[after - 1] < _APART)
-    further = np.minimum(ranges[after], ranges[after - 1]) > np.hypot(points[:, 0], points[:, 1]) + _BEHIND
-    return float((close & further).sum() / max(int(close.sum()), _FEWEST))
+    point_bearings = np.arctan2(points[:, 1], points[:, 0])
+    next_rays = np.clip(np.searchsorted(bearings, point_bearings), 1, len(bearings) - 1)
+    # Both neighbouring rays must be longer, because next to an edge one of them may be longer without a contradiction.
+    has_neighbours = (bearings[next_rays] - point_bearings < _MAX_RAY_ANGLE) & (
+        point_bearings - bearings[next_rays - 1] < _MAX_RAY_ANGLE
+    )
+    is_passed = np.minimum(ranges[next_rays], ranges[next_rays - 1]) > np.hypot(points[:, 0], points[:, 1]) + _MIN_DEPTH
+    return float((has_neighbours & is_passed).sum() / max(int(has_neighbours.sum()), _MIN_POINTS))

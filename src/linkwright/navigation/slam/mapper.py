@@ -1,7 +1,7 @@
-"""The map and the robot's pose in it, from laser scans and odometry, as in slam_toolbox (Karto).
+"""A mapper that computes the map and the robot's pose from laser scans and odometry, as in slam_toolbox (Karto).
 
-As in Karto, some scans become nodes of a pose graph: each is matched against the latest ones, linked to nearby scans of
-earlier passes, and matched against scans further away to close a loop.
+As in Karto, some scans become nodes of a pose graph. Each new node is matched against the latest scans, linked to
+nearby scans of earlier passes, and matched against scans farther away to close a loop.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.navigation.slam.steps import Steps
 
-_TOLERANCE = 0.8
-"""A scan is taken a little before the minimum travel distance is reached, for odometry may be wrong."""
-_FEWEST_ON_WALLS = 0.25
-_LEAST_INLIERS = 0.4
-"""The least shares of points on known walls, for any match and for one with an earlier pass."""
-_MOST_CONTRADICTION = 0.15
-_WELL_KNOWN = 0.01
-"""The variance of a position below which a link with an earlier pass leaves no loop open, metres squared."""
-_LOOPS_TRIED = 3
-_REDRAWN = 0.2
-"""A scan is redrawn if its pose, or its points at 5 m, moved by more than this share of a cell."""
+_TRAVEL_SHARE = 0.8
+"""The share of the minimum travel distance after which a scan is processed, because odometry may be wrong."""
+_MIN_INLIERS = 0.25
+_MIN_LINK_INLIERS = 0.4
+"""The minimum shares of points on known walls, for any match and for a match with an earlier pass."""
+_MAX_CONTRADICTION = 0.15
+_MAX_LINK_VARIANCE = 0.01
+"""A link to an earlier pass closes the loop if the variance of its position is below this, in square metres."""
+_MAX_LOOP_CANDIDATES = 3
+_REDRAW_SHARE = 0.2
+"""A scan is redrawn if its points at `_FAR_POINT` moved by at least this share of a cell."""
 _FAR_POINT = 5.0
-_NOTHING = 1e-3
-"""The information in unmeasured directions, so that an inverse exists."""
+_MIN_INFORMATION = 1e-3
+"""Information added in all directions, so that the matrix can be inverted."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,24 +79,24 @@ class Mapper:
         self.graph = PoseGraph()
         self.scans: list[PlanarScan] = []
         self.odometry: list[Floats] = []
-        self._last: tuple[Floats, int] | None = None
-        self._in_map: Floats | None = None
+        self._last_processed: tuple[Floats, int] | None = None
+        self._map_pose: Floats | None = None
         self._session = 0
 
     @property
     def latest_ns(self) -> int:
         """The time of the last processed scan in nanoseconds; 0 before the first scan."""
-        return 0 if self._last is None else self._last[1]
+        return 0 if self._last_processed is None else self._last_processed[1]
 
     def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
-        """Replace the graph, and erase the old scans from the map; the new ones are not drawn yet."""
+        """Replace the graph, and erase the old scans from the map; the new scans are not drawn yet."""
         for number in range(len(self.scans)):
             self.occupancy.erase(number)
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
     def begin_session(self, pose: Floats | None) -> None:
-        """Start a session in the graph, whose first scan is matched around a pose.
+        """Start a new session; its first scan is matched around a pose.
 
         Scans of earlier sessions no longer count as the latest scans.
 
@@ -104,12 +104,12 @@ class Mapper:
             pose: the expected pose, of shape (3,); None for the pose of the graph's first scan.
         """
         self._session = len(self.scans)
-        self._last = None
-        self._in_map = None
+        self._last_processed = None
+        self._map_pose = None
         if pose is not None:
-            self._in_map = pose.copy()
+            self._map_pose = pose.copy()
         elif len(self.graph.poses):
-            self._in_map = self.graph.poses[0].copy()
+            self._map_pose = self.graph.poses[0].copy()
 
     def should_process(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
         """Return whether enough time has passed and the robot moved far enough since the last scan.
@@ -117,26 +117,30 @@ class Mapper:
         Args:
             odometry: the odometry pose at the scan, of shape (3,).
             stamp_ns: the time of the scan.
-            since: the odometry pose and time of a queued scan that counts as the last one; None for the last processed
-                scan.
+            since: the odometry pose and time of a queued scan that counts as the last scan; None for the last
+                processed scan.
         """
-        last = since or self._last
-        if last is None:
+        reference = since or self._last_processed
+        if reference is None:
             return True
-        pose, before_ns = last
-        if stamp_ns - before_ns < self.settings.minimum_time_interval * 1e9:
+        pose, previous_ns = reference
+        if stamp_ns - previous_ns < self.settings.minimum_time_interval * 1e9:
             return False
-        moved = relative_pose(pose, odometry)
+        motion = relative_pose(pose, odometry)
         return bool(
-            np.hypot(moved[0], moved[1]) >= _TOLERANCE * self.settings.minimum_travel_distance
-            or abs(moved[2]) >= self.settings.minimum_travel_heading
+            np.hypot(motion[0], motion[1]) >= _TRAVEL_SHARE * self.settings.minimum_travel_distance
+            or abs(motion[2]) >= self.settings.minimum_travel_heading
         )
 
     def expected(self, odometry: Floats) -> Floats:
         """Return the pose in the map, of shape (3,), predicted by odometry since the last scan."""
-        if self._in_map is None:
+        if self._map_pose is None:
             return odometry
-        return self._in_map if self._last is None else compose(self._in_map, relative_pose(self._last[0], odometry))
+        return (
+            self._map_pose
+            if self._last_processed is None
+            else compose(self._map_pose, relative_pose(self._last_processed[0], odometry))
+        )
 
     def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
         """Add a scan to the graph and draw the changes of the map, in steps.
@@ -145,57 +149,57 @@ class Mapper:
             scan: the scan.
             odometry: the odometry pose of the robot, of shape (3,).
         """
-        searched = self._last is None and self._in_map is not None
-        guess, moved = self.expected(odometry), None
-        if self._last is not None:
-            moved = relative_pose(self._last[0], odometry)
-        self._last = odometry, scan.stamp_ns
-        if searched and self.scans:
+        is_first_of_session = self._last_processed is None and self._map_pose is not None
+        guess, motion = self.expected(odometry), None
+        if self._last_processed is not None:
+            motion = relative_pose(self._last_processed[0], odometry)
+        self._last_processed = odometry, scan.stamp_ns
+        if is_first_of_session and self.scans:
             return (yield from self._match_first_scan(scan, guess, odometry))
-        uncertain = _odometric_information(moved if moved is not None else np.zeros(3))
-        found = None
-        buffer = self._buffer(guess)
-        if moved is not None and buffer and self.settings.use_scan_matching:
-            found = yield from self._match(buffer, scan, guess, self.settings.matching)
-        pose = guess if found is None else found.pose
+        odometric_information = _odometric_information(motion if motion is not None else np.zeros(3))
+        best_match = None
+        latest_scans = self._buffer(guess)
+        if motion is not None and latest_scans and self.settings.use_scan_matching:
+            best_match = yield from self._match(latest_scans, scan, guess, self.settings.matching)
+        pose = guess if best_match is None else best_match.pose
         number = self._add(scan, odometry, pose)
-        information = uncertain if found is None else uncertain + found.information
-        if moved is not None:
+        information = odometric_information if best_match is None else odometric_information + best_match.information
+        if motion is not None:
             self.graph.add_edge(number - 1, number, relative_pose(self.graph.poses[number - 1], pose), information)
         links = loops = 0
-        if self.settings.use_scan_matching and moved is not None:
+        if self.settings.use_scan_matching and motion is not None:
             links, loops = yield from self._link(number)
         if links or loops:
             yield from self.graph.solve()
-        self._in_map = self.graph.poses[number].copy()
+        self._map_pose = self.graph.poses[number].copy()
         yield from self.redraw()
-        return _outcome(self._in_map, information, found, links, loops)
+        return _outcome(self._map_pose, information, best_match, links, loops)
 
     def localize(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
         """Localize a scan, in steps, without changing the graph.
 
-        The arguments are those of `process`.
+        The arguments are the same as for `process`.
         """
-        searched = self._last is None
+        is_first = self._last_processed is None
         guess = self.expected(odometry)
-        moved = np.zeros(3) if self._last is None else relative_pose(self._last[0], odometry)
-        self._last = odometry, scan.stamp_ns
-        window = self.settings.loop if searched else self.settings.matching
-        found = yield from self._match(self._nearest_scans(guess), scan, guess, window)
-        self._in_map = guess if found is None else found.pose
-        information = _odometric_information(moved)
-        if found is not None:
-            information = information + found.information
-        return _outcome(self._in_map, information, found)
+        motion = np.zeros(3) if self._last_processed is None else relative_pose(self._last_processed[0], odometry)
+        self._last_processed = odometry, scan.stamp_ns
+        window = self.settings.loop if is_first else self.settings.matching
+        best_match = yield from self._match(self._nearest_scans(guess), scan, guess, window)
+        self._map_pose = guess if best_match is None else best_match.pose
+        information = _odometric_information(motion)
+        if best_match is not None:
+            information = information + best_match.information
+        return _outcome(self._map_pose, information, best_match)
 
     def redraw(self) -> Steps[None]:
         """Draw the scans that are missing in the map or whose poses changed; each scan is a step."""
-        tolerance = _REDRAWN * self.occupancy.resolution
+        tolerance = _REDRAW_SHARE * self.occupancy.resolution
         for number, scan in enumerate(self.scans):
-            pose, drawn = self.graph.poses[number], self.occupancy.drawn_at(number)
-            if drawn is not None:
-                away = relative_pose(drawn, pose)
-                if np.hypot(away[0], away[1]) + _FAR_POINT * abs(away[2]) < tolerance:
+            pose, drawn_pose = self.graph.poses[number], self.occupancy.drawn_at(number)
+            if drawn_pose is not None:
+                change = relative_pose(drawn_pose, pose)
+                if np.hypot(change[0], change[1]) + _FAR_POINT * abs(change[2]) < tolerance:
                     continue
             self.occupancy.draw(number, scan, pose)
             yield
@@ -208,23 +212,23 @@ class Mapper:
     def _match_first_scan(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
         """Add the first scan of a session, matched against scans of earlier sessions."""
         nodes = self._nearest_scans(guess)
-        found = yield from self._match(nodes, scan, guess, self.settings.loop)
-        pose = guess if found is None else found.pose
+        best_match = yield from self._match(nodes, scan, guess, self.settings.loop)
+        pose = guess if best_match is None else best_match.pose
         number = self._add(scan, odometry, pose)
         information = _odometric_information(np.zeros(3))
-        if found is not None:
-            information = information + found.information
-        nearest = self._nearest(nodes, pose) if nodes else number - 1
+        if best_match is not None:
+            information = information + best_match.information
+        nearest = self._nearest_node(nodes, pose) if nodes else number - 1
         self.graph.add_edge(nearest, number, relative_pose(self.graph.poses[nearest], pose), information)
-        self._in_map = pose.copy()
+        self._map_pose = pose.copy()
         yield from self.redraw()
-        return _outcome(pose, information, found)
+        return _outcome(pose, information, best_match)
 
     def _buffer(self, pose: Floats) -> list[int]:
         """Return the numbers of the latest scans of this session that are near a pose."""
         begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
-        near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
-        return [number for number in range(begin, len(self.scans)) if near[number]]
+        is_near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
+        return [number for number in range(begin, len(self.scans)) if is_near[number]]
 
     def _nearest_scans(self, pose: Floats) -> list[int]:
         """Return the numbers of the scans nearest to a pose, of all sessions, nearest first."""
@@ -232,25 +236,25 @@ class Mapper:
         return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
 
     def _distances(self, pose: Floats) -> Floats:
-        away = self.graph.poses[:, :2] - pose[:2]
-        result: Floats = np.hypot(away[:, 0], away[:, 1])
+        offsets = self.graph.poses[:, :2] - pose[:2]
+        result: Floats = np.hypot(offsets[:, 0], offsets[:, 1])
         return result
 
-    def _nearest(self, nodes: list[int], pose: Floats) -> int:
+    def _nearest_node(self, nodes: list[int], pose: Floats) -> int:
         return nodes[int(np.argmin(self._distances(pose)[nodes]))]
 
     def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
         """Match a scan against the scans of some nodes.
 
-        Returns None if the match is not good enough or too far from the guess.
+        Returns None if the match is not good enough or is too far from the guess.
         """
         reference = Reference([self.scans[node] for node in nodes], self.graph.poses[nodes])
         yield
-        found = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
-        if found is None or found.response < self.settings.link_match_minimum_response_fine:
+        best_match = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
+        if best_match is None or best_match.response < self.settings.link_match_minimum_response_fine:
             return None
-        away = np.abs(found.pose - guess)[:2].max()
-        return found if found.inliers > _FEWEST_ON_WALLS and away <= search.dimension else None
+        offset = np.abs(best_match.pose - guess)[:2].max()
+        return best_match if best_match.inliers > _MIN_INLIERS and offset <= search.dimension else None
 
     def _link(self, number: int) -> Steps[tuple[int, int]]:
         """Link a new node to nodes of earlier passes, and close loops.
@@ -259,22 +263,24 @@ class Mapper:
             The number of links, and the number of loops.
         """
         settings, links, loops = self.settings, 0, 0
-        linked: set[int] = set()
+        linked_nodes: set[int] = set()
         for chain in self._chains(number, settings.link_scan_maximum_distance):
-            least = settings.link_match_minimum_response_fine
-            found = yield from self._connect(number, chain, settings.matching, least)
-            if found is not None:
+            min_response = settings.link_match_minimum_response_fine
+            best_match = yield from self._connect(number, chain, settings.matching, min_response)
+            if best_match is not None:
                 links += 1
-                if _worst_variance(found) < _WELL_KNOWN:  # Along a corridor, a loop may still be open despite the link.
-                    linked.update(chain)
+                if (
+                    _worst_variance(best_match) < _MAX_LINK_VARIANCE
+                ):  # Along a corridor, a loop may still be open despite the link.
+                    linked_nodes.update(chain)
         if not settings.do_loop_closing:
             return links, 0
         candidates = [
             chain
             for chain in self._chains(number, settings.loop_search_maximum_distance)
-            if len(chain) >= settings.loop_match_minimum_chain_size and linked.isdisjoint(chain)
+            if len(chain) >= settings.loop_match_minimum_chain_size and linked_nodes.isdisjoint(chain)
         ]
-        for chain in candidates[:_LOOPS_TRIED]:
+        for chain in candidates[:_MAX_LOOP_CANDIDATES]:
             if (yield from self._close(number, chain)):
                 loops += 1
         return links, loops
@@ -282,61 +288,63 @@ class Mapper:
     def _chains(self, number: int, distance: float) -> list[list[int]]:
         """Return the chains of consecutive nodes within a distance of a node, nearest first.
 
-        The latest nodes before the given one are left out.
+        The latest nodes before this node are left out.
         """
-        away = self._distances(self.graph.poses[number])
-        last = number - self.settings.scan_buffer_size
+        distances = self._distances(self.graph.poses[number])
+        end = number - self.settings.scan_buffer_size
         chains: list[list[int]] = []
-        for index in np.flatnonzero(away[: max(last, 0)] <= distance).tolist():
+        for index in np.flatnonzero(distances[: max(end, 0)] <= distance).tolist():
             if chains and chains[-1][-1] == index - 1:
                 chains[-1].append(index)
             else:
                 chains.append([index])
-        return sorted(chains, key=lambda chain: (float(away[chain].min()), chain[0]))
+        return sorted(chains, key=lambda chain: (float(distances[chain].min()), chain[0]))
 
     def _close(self, number: int, chain: list[int]) -> Steps[bool]:
         """Try to close a loop with a chain of nodes, and return whether an edge was added."""
         settings = self.settings
         guess = self.graph.poses[number]
-        found = yield from self._match(chain, self.scans[number], guess, settings.loop)
-        if found is None or found.response < settings.loop_match_minimum_response_coarse:
+        best_match = yield from self._match(chain, self.scans[number], guess, settings.loop)
+        if best_match is None or best_match.response < settings.loop_match_minimum_response_coarse:
             return False
-        if _worst_variance(found) > settings.loop_match_maximum_variance_coarse:
+        if _worst_variance(best_match) > settings.loop_match_maximum_variance_coarse:
             return False
-        least = settings.loop_match_minimum_response_fine
-        return (yield from self._connect(number, chain, settings.matching, least, around=found.pose)) is not None
+        min_response = settings.loop_match_minimum_response_fine
+        return (
+            yield from self._connect(number, chain, settings.matching, min_response, around=best_match.pose)
+        ) is not None
 
     def _connect(
-        self, number: int, chain: list[int], search: Search, least: float, *, around: Floats | None = None
+        self, number: int, chain: list[int], search: Search, min_response: float, *, around: Floats | None = None
     ) -> Steps[Match | None]:
         """Match a node against a chain of nodes, add an edge, and return the match.
 
-        Returns None, without adding an edge, if the match is not certain.
+        Returns None and adds no edge if the match is not certain.
         """
         scan = self.scans[number]
         guess = self.graph.poses[number] if around is None else around
         nodes = sorted(chain, key=lambda index: float(self._distances(guess)[index]))[: self.settings.scan_buffer_size]
-        found = yield from self._match(nodes, scan, guess, search)
-        if found is None or found.response < least or found.inliers < _LEAST_INLIERS:
+        best_match = yield from self._match(nodes, scan, guess, search)
+        if best_match is None or best_match.response < min_response or best_match.inliers < _MIN_LINK_INLIERS:
             return None
-        nearest = self._nearest(nodes, found.pose)
+        nearest = self._nearest_node(nodes, best_match.pose)
         pose = self.graph.poses[nearest]
-        if contradiction_share(self.scans[nearest], pose, scan, found.pose) > _MOST_CONTRADICTION:
+        if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTION:
             return None
-        information = found.information + _NOTHING * np.eye(3)
-        self.graph.add_edge(nearest, number, relative_pose(pose, found.pose), information, doubtful=True)
-        return found
+        information = best_match.information + _MIN_INFORMATION * np.eye(3)
+        self.graph.add_edge(nearest, number, relative_pose(pose, best_match.pose), information, doubtful=True)
+        return best_match
 
 
-def _worst_variance(found: Match) -> float:
+def _worst_variance(best_match: Match) -> float:
     """Return the larger of a match's position variances along x and y, in square metres."""
-    return float(np.linalg.inv(found.information + _NOTHING * np.eye(3)).diagonal()[:2].max())
+    return float(np.linalg.inv(best_match.information + _MIN_INFORMATION * np.eye(3)).diagonal()[:2].max())
 
 
-def _outcome(pose: Floats, information: Floats, found: Match | None, links: int = 0, loops: int = 0) -> Outcome:
+def _outcome(pose: Floats, information: Floats, best_match: Match | None, links: int = 0, loops: int = 0) -> Outcome:
     covariance: Floats = np.asarray(np.linalg.inv(information), dtype=np.float64)
-    response = 0.0 if found is None else found.response
-    return Outcome(pose.copy(), covariance, found is not None, response, links, loops)
+    response = 0.0 if best_match is None else best_match.response
+    return Outcome(pose.copy(), covariance, best_match is not None, response, links, loops)
 
 
 def _odometric_information(moved: Floats) -> Floats:
@@ -344,8 +352,8 @@ def _odometric_information(moved: Floats) -> Floats:
 
     The standard deviation is about 10 % of the motion.
     """
-    turned = abs(float(wrapped(moved)[2]))
-    along = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * turned
-    around = 0.02 + 0.1 * turned + 0.05 * float(np.hypot(moved[0], moved[1]))
-    result: Floats = np.diag((along**-2, along**-2, around**-2))
+    rotation = abs(float(wrapped(moved)[2]))
+    position_deviation = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * rotation
+    yaw_deviation = 0.02 + 0.1 * rotation + 0.05 * float(np.hypot(moved[0], moved[1]))
+    result: Floats = np.diag((position_deviation**-2, position_deviation**-2, yaw_deviation**-2))
     return result

@@ -13,22 +13,22 @@ from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search, best_pose
 from linkwright.navigation.slam.steps import Steps
 
-LEAST_POINTS = 12
-"""The least number of points of a scan to be matched."""
+MIN_POINTS = 12
+"""The minimum number of points of a scan for matching."""
 
-_ROUNDS = 15
-_FARTHEST, _NEAREST = 0.30, 0.10
-"""The greatest distance in metres of corresponding points, in the first round and in the last ones."""
+_MAX_ITERATIONS = 15
+_FIRST_MAX_DISTANCE, _LAST_MAX_DISTANCE = 0.30, 0.10
+"""The maximum distance of corresponding points in the first and in the last iterations, in metres."""
 _SCALE = 0.03
-"""Distances beyond this count less and less, in metres."""
-_CONVERGED = 1e-5
-_SINGULAR = 0.02
-"""Directions with less than this share of the greatest possible information, per point, are left as they were."""
-_DEPENDENT = 0.1
-"""Points of one scan share their errors: they count as this share of their number."""
-_LEAST_ERROR = 0.01
+"""The scale of the Cauchy weights, in metres: larger distances have less influence."""
+_CONVERGENCE_STEP = 1e-5
+_MIN_INFORMATION_SHARE = 0.02
+"""The minimum information per point, as a share of the maximum, for a direction to be corrected."""
+_INDEPENDENT_SHARE = 0.1
+"""The share of the points that counts as independent, because the points of one scan have common errors."""
+_MIN_ERROR = 0.01
 _EXPANSIONS = (0.349, 0.698, 1.047)
-"""Angles that are searched besides where nothing fits and use_response_expansion is true, in radians; as in Karto."""
+"""Angles added to the window if nothing fits and ``use_response_expansion`` is set, in radians, as in Karto."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +40,7 @@ class Match:
         response: the response of the search, 0 to 1 (see `linkwright.navigation.slam.search`), reduced by penalties.
         information: the inverse of the pose's covariance, of shape (3, 3), for x, y and yaw in the frame of the robot;
             near 0 in directions without information, as along a corridor.
-        inliers: the share of the points on a wall, 0 to 1.
+        inliers: the share of the points that are on a wall, 0 to 1.
         error: the root mean square of the points' distances from their walls, in metres.
     """
 
@@ -56,7 +56,7 @@ def match(
 ) -> Steps[Match | None]:
     """Match a scan against earlier scans, in steps.
 
-    In directions without information, as along a corridor, the pose is that of the guess.
+    In directions without information, as along a corridor, the pose keeps the value of the guess.
 
     Args:
         reference: the earlier scans.
@@ -68,7 +68,7 @@ def match(
     Returns:
         The match; None if there are too few points.
     """
-    if len(scan.points) < LEAST_POINTS or len(reference) < LEAST_POINTS:
+    if len(scan.points) < MIN_POINTS or len(reference) < MIN_POINTS:
         return None
     likelihood = Likelihood(reference.points, search.cell, search.smear_deviation)
     yield
@@ -76,8 +76,8 @@ def match(
     for offset in _EXPANSIONS if expand else ():
         if response > 0:
             break
-        wider = replace(search, angle_offset=search.angle_offset + offset)
-        pose, response = yield from best_pose(likelihood, scan.points, guess, wider)
+        wider_search = replace(search, angle_offset=search.angle_offset + offset)
+        pose, response = yield from best_pose(likelihood, scan.points, guess, wider_search)
     reference.find_lines()
     yield
     return _refine(reference, scan, guess, pose, response)
@@ -88,29 +88,33 @@ def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats
 
     Source: Censi, "An ICP variant using a point-to-line metric", 2008.
     """
-    reach = max(float(np.sqrt((scan.points**2).sum(axis=1).mean())), 0.1)
-    scale = np.array((1.0, 1.0, 1.0 / reach))  # Scale the rotation to the distance by which it moves an average point.
-    pose, farthest = start.copy(), _FARTHEST
-    system = _normal_equations(reference, scan, pose, farthest, scale)
-    free = _constrained_projection(system[0], len(scan.points))
-    turn = wrapped(start - guess)[2]
-    shift: Floats = np.array((start[0] - guess[0], start[1] - guess[1], turn)) / scale
-    pose = guess + scale * (free @ shift)
-    for _ in range(_ROUNDS):
-        hessian, gradient, _, _ = _normal_equations(reference, scan, pose, farthest, scale)
-        free = _constrained_projection(hessian, len(scan.points))
-        step: Floats = -np.linalg.pinv(free @ hessian @ free, rcond=1e-9, hermitian=True) @ (free @ gradient)
+    mean_radius = max(float(np.sqrt((scan.points**2).sum(axis=1).mean())), 0.1)
+    scale = np.array(
+        (1.0, 1.0, 1.0 / mean_radius)
+    )  # Scale the rotation to the distance by which it moves an average point.
+    pose, max_distance = start.copy(), _FIRST_MAX_DISTANCE
+    system = _normal_equations(reference, scan, pose, max_distance, scale)
+    projection = _constrained_projection(system[0], len(scan.points))
+    yaw_offset = wrapped(start - guess)[2]
+    shift: Floats = np.array((start[0] - guess[0], start[1] - guess[1], yaw_offset)) / scale
+    pose = guess + scale * (projection @ shift)
+    for _ in range(_MAX_ITERATIONS):
+        hessian, gradient, _, _ = _normal_equations(reference, scan, pose, max_distance, scale)
+        projection = _constrained_projection(hessian, len(scan.points))
+        step: Floats = -np.linalg.pinv(projection @ hessian @ projection, rcond=1e-9, hermitian=True) @ (
+            projection @ gradient
+        )
         step *= min(1.0, 0.2 / max(float(np.abs(step).max()), 1e-12))
         pose += scale * step
-        if np.abs(step).max() < _CONVERGED and farthest == _NEAREST:
+        if np.abs(step).max() < _CONVERGENCE_STEP and max_distance == _LAST_MAX_DISTANCE:
             break
-        farthest = max(_NEAREST, 0.7 * farthest)
-    hessian, _, inliers, error = _normal_equations(reference, scan, pose, _NEAREST, scale)
-    free = _constrained_projection(hessian, len(scan.points))
-    unscaled = free @ hessian @ free / np.outer(scale, scale)
+        max_distance = max(_LAST_MAX_DISTANCE, 0.7 * max_distance)
+    hessian, _, inliers, error = _normal_equations(reference, scan, pose, _LAST_MAX_DISTANCE, scale)
+    projection = _constrained_projection(hessian, len(scan.points))
+    unscaled = projection @ hessian @ projection / np.outer(scale, scale)
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     axes = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
-    information: Floats = axes.T @ unscaled @ axes * (_DEPENDENT / max(error, _LEAST_ERROR) ** 2)
+    information: Floats = axes.T @ unscaled @ axes * (_INDEPENDENT_SHARE / max(error, _MIN_ERROR) ** 2)
     pose[2] = (pose[2] + pi) % (2 * pi) - pi
     return Match(pose, response, information, inliers, error)
 
@@ -118,13 +122,13 @@ def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats
 def _constrained_projection(hessian: Floats, points: int) -> Floats:
     """Return the projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
-    kept = vectors[:, values > _SINGULAR * points]
-    result: Floats = kept @ kept.T
+    constrained = vectors[:, values > _MIN_INFORMATION_SHARE * points]
+    result: Floats = constrained @ constrained.T
     return result
 
 
 def _normal_equations(
-    reference: Reference, scan: PlanarScan, pose: Floats, farthest: float, scale: Floats
+    reference: Reference, scan: PlanarScan, pose: Floats, max_distance: float, scale: Floats
 ) -> tuple[Floats, Floats, float, float]:
     """Return the normal equations of point-to-line matching at a pose.
 
@@ -133,19 +137,19 @@ def _normal_equations(
         wall; and the error of the points that were used, in metres.
     """
     points = transform_points(pose, scan.points)
-    distances, _, places, normals, flatness = reference.nearest(points)
-    view = transform_points(pose, scan.origin[None])[0]
-    ahead = np.einsum("ni,ni->n", normals, view - places) > 0  # Ignore the other side of a thin wall.
-    chosen = (distances < farthest) & ahead & (flatness > 0.3)
-    if not chosen.any():
-        return np.zeros((3, 3)), np.zeros(3), 0.0, farthest
-    points, normals = points[chosen], normals[chosen]
-    residuals = np.einsum("ni,ni->n", normals, points - places[chosen])
-    weights = flatness[chosen] / (1 + (residuals / _SCALE) ** 2)
-    arms = points - pose[:2]
-    turned = normals[:, 1] * arms[:, 0] - normals[:, 0] * arms[:, 1]
-    rows = np.column_stack((normals, turned)) * scale
-    weighted = rows * weights[:, None]
-    on_it = int((np.abs(residuals) < _NEAREST).sum())
+    distances, _, wall_points, normals, flatness = reference.nearest(points)
+    sensor = transform_points(pose, scan.origin[None])[0]
+    is_facing = np.einsum("ni,ni->n", normals, sensor - wall_points) > 0  # Ignore the other side of a thin wall.
+    is_used = (distances < max_distance) & is_facing & (flatness > 0.3)
+    if not is_used.any():
+        return np.zeros((3, 3)), np.zeros(3), 0.0, max_distance
+    points, normals = points[is_used], normals[is_used]
+    residuals = np.einsum("ni,ni->n", normals, points - wall_points[is_used])
+    weights = flatness[is_used] / (1 + (residuals / _SCALE) ** 2)
+    lever_arms = points - pose[:2]
+    yaw_derivatives = normals[:, 1] * lever_arms[:, 0] - normals[:, 0] * lever_arms[:, 1]
+    rows = np.column_stack((normals, yaw_derivatives)) * scale
+    weighted_rows = rows * weights[:, None]
+    inlier_count = int((np.abs(residuals) < _LAST_MAX_DISTANCE).sum())
     error = float(np.sqrt((weights * residuals**2).sum() / weights.sum()))
-    return weighted.T @ rows, weighted.T @ residuals, on_it / len(scan.points), error
+    return weighted_rows.T @ rows, weighted_rows.T @ residuals, inlier_count / len(scan.points), error

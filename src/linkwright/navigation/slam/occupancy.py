@@ -15,14 +15,14 @@ from linkwright.navigation.slam.poses import Floats, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _MARGIN = 64
-"""The margin in cells by which the counts grow beyond what is needed."""
+"""The margin in cells around the needed area when the arrays of counts grow."""
 
 Cells = NDArray[np.int64]
 
 
 @dataclass(slots=True, eq=False)
 class _Trace:
-    """The counts of one scan: cells (row, column) without duplicates, their passes and hits."""
+    """The ray counts of one scan: the cells (row, column) without duplicates, with their passes and hits."""
 
     pose: Floats
     cells: Cells
@@ -59,7 +59,7 @@ class OccupancyMap:
         `pose` has shape (3,).
         """
         self.erase(number)
-        trace = self._traced(scan, pose)
+        trace = self._trace_scan(scan, pose)
         if not len(trace.cells):
             return
         self._grow(trace.cells)
@@ -82,16 +82,16 @@ class OccupancyMap:
 
         The cells are int8: FREE, OCCUPIED or UNKNOWN. Returns None if no cell was reached.
         """
-        seen = self._passes > 0
-        rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+        is_reached = self._passes > 0
+        rows, columns = np.flatnonzero(is_reached.any(axis=1)), np.flatnonzero(is_reached.any(axis=0))
         if not len(rows):
             return None
-        part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        passes, hits = self._passes[part], self._hits[part]
+        area = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        passes, hits = self._passes[area], self._hits[area]
         cells = np.full(passes.shape, UNKNOWN, dtype=np.int8)
-        known = passes > self._min_pass_through
-        cells[known] = FREE
-        cells[known & (hits > self._threshold * passes)] = OCCUPIED
+        is_known = passes > self._min_pass_through
+        cells[is_known] = FREE
+        cells[is_known & (hits > self._threshold * passes)] = OCCUPIED
         y, x = (int(self._corner[0] + rows[0]), int(self._corner[1] + columns[0]))
         return Grid(cells=cells, resolution=self.resolution, x=x * self.resolution, y=y * self.resolution)
 
@@ -108,42 +108,42 @@ class OccupancyMap:
         if size.all():
             low, high = np.minimum(low, self._corner), np.maximum(high, self._corner + size)
         low, high = low - _MARGIN, high + _MARGIN
-        before = self._corner - low
+        offset = self._corner - low
         for name in ("_passes", "_hits"):
-            larger = np.zeros(tuple(high - low), dtype=np.int32)
-            larger[before[0] : before[0] + size[0], before[1] : before[1] + size[1]] = getattr(self, name)
-            setattr(self, name, larger)
+            enlarged = np.zeros(tuple(high - low), dtype=np.int32)
+            enlarged[offset[0] : offset[0] + size[0], offset[1] : offset[1] + size[1]] = getattr(self, name)
+            setattr(self, name, enlarged)
         self._corner = low
 
-    def _traced(self, scan: PlanarScan, pose: Floats) -> _Trace:
+    def _trace_scan(self, scan: PlanarScan, pose: Floats) -> _Trace:
         """Return the counts of the cells along all rays of a scan."""
-        ends = transform_points(pose, np.concatenate((scan.points, scan.passed)))
+        ends = transform_points(pose, np.concatenate((scan.points, scan.free_ends)))
         origin = transform_points(pose, scan.origin[None])[0] / self.resolution
-        away = ends / self.resolution - origin
-        counts = np.maximum(np.ceil(np.abs(away).max(axis=1)).astype(np.int64), 1)
-        first = np.cumsum(counts) - counts
-        ray = np.repeat(np.arange(len(ends)), counts)
-        part = (np.arange(len(ray)) - first[ray]) / counts[ray]
-        walked = np.floor(origin + away[ray] * part[:, None]).astype(np.int64)[:, ::-1]
-        last = np.floor(ends / self.resolution).astype(np.int64)[:, ::-1]
+        offsets = ends / self.resolution - origin
+        counts = np.maximum(np.ceil(np.abs(offsets).max(axis=1)).astype(np.int64), 1)
+        first_steps = np.cumsum(counts) - counts
+        ray_indices = np.repeat(np.arange(len(ends)), counts)
+        fractions = (np.arange(len(ray_indices)) - first_steps[ray_indices]) / counts[ray_indices]
+        crossed_cells = np.floor(origin + offsets[ray_indices] * fractions[:, None]).astype(np.int64)[:, ::-1]
+        end_cells = np.floor(ends / self.resolution).astype(np.int64)[:, ::-1]
         # Count each cell once per ray, and the last cell only as the ray's end.
-        same = np.zeros(len(walked), dtype=bool)
-        same[1:] = (walked[1:] == walked[:-1]).all(axis=1) & (ray[1:] == ray[:-1])
-        walked = walked[~same & (walked != last[ray]).any(axis=1)]
-        hit = last[: len(scan.points)]
-        every = np.concatenate((walked, last))
-        if not len(every):
+        is_repeated = np.zeros(len(crossed_cells), dtype=bool)
+        is_repeated[1:] = (crossed_cells[1:] == crossed_cells[:-1]).all(axis=1) & (ray_indices[1:] == ray_indices[:-1])
+        crossed_cells = crossed_cells[~is_repeated & (crossed_cells != end_cells[ray_indices]).any(axis=1)]
+        hit_cells = end_cells[: len(scan.points)]
+        all_cells = np.concatenate((crossed_cells, end_cells))
+        if not len(all_cells):
             return _Trace(pose.copy(), np.zeros((0, 2), np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32))
-        low = every.min(axis=0)
-        height, width = every.max(axis=0) - low + 1
+        low = all_cells.min(axis=0)
+        height, width = all_cells.max(axis=0) - low + 1
 
         def counts_of(cells: Cells) -> NDArray[np.int64]:
-            flat = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1]
-            result: NDArray[np.int64] = np.bincount(flat, minlength=int(height * width))
+            flat_indices = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1]
+            result: NDArray[np.int64] = np.bincount(flat_indices, minlength=int(height * width))
             return result
 
-        passes = counts_of(every)
-        touched = np.flatnonzero(passes)
-        cells = np.column_stack((touched // width + low[0], touched % width + low[1]))
-        hits = counts_of(hit)[touched] if len(hit) else np.zeros(len(touched), np.int64)
-        return _Trace(pose.copy(), cells, passes[touched].astype(np.int32), hits.astype(np.int32))
+        passes = counts_of(all_cells)
+        reached = np.flatnonzero(passes)
+        cells = np.column_stack((reached // width + low[0], reached % width + low[1]))
+        hits = counts_of(hit_cells)[reached] if len(hit_cells) else np.zeros(len(reached), np.int64)
+        return _Trace(pose.copy(), cells, passes[reached].astype(np.int32), hits.astype(np.int32))

@@ -11,10 +11,10 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.slam.poses import Floats, wrapped
 from linkwright.navigation.slam.steps import Steps
 
-_ROUNDS = 20
-_CONVERGED = 1e-5
-_KERNEL = 9.0
-"""Edges that may be wrong count less where their error is more than this, in squared standard deviations."""
+_MAX_ITERATIONS = 20
+_CONVERGENCE_STEP = 1e-5
+_KERNEL_SCALE = 9.0
+"""The scale of the Cauchy kernel, in squared standard deviations: doubtful edges with larger errors count less."""
 
 
 @dataclass(slots=True)
@@ -22,7 +22,7 @@ class PoseGraph:
     """A graph of poses and measured relative poses between them.
 
     The first pose is fixed. The graph is solved by Gauss-Newton on sparse matrices (Grisetti et al., "A Tutorial on
-    Graph-Based SLAM", 2010). Edges of loops may be wrong, so they get a Cauchy kernel in a second pass.
+    Graph-Based SLAM", 2010). Doubtful edges, such as those of loops, get a Cauchy kernel in a second pass.
 
     Attributes:
         poses: the poses of the nodes, of shape (n, 3).
@@ -66,33 +66,33 @@ class PoseGraph:
         Returns:
             The largest distance that a node moved, in metres.
         """
-        before = self.poses.copy()
+        old_poses = self.poses.copy()
         if self.first and len(self.poses) > 1:
             for robust in (False, True) if any(self.doubtful) else (False,):
-                for _ in range(_ROUNDS):
+                for _ in range(_MAX_ITERATIONS):
                     step = self._step(robust=robust)
                     yield
-                    if step < _CONVERGED:
+                    if step < _CONVERGENCE_STEP:
                         break
-        return float(np.hypot(*(self.poses - before)[:, :2].T).max(initial=0.0))
+        return float(np.hypot(*(self.poses - old_poses)[:, :2].T).max(initial=0.0))
 
     def _step(self, *, robust: bool) -> float:
-        residuals, of_first, of_second = self._linearized()
+        residuals, first_jacobians, second_jacobians = self._linearized()
         information = np.array(self.information)
         if robust:
             errors = np.einsum("ni,nij,nj->n", residuals, information, residuals)
-            weights = np.where(self.doubtful, 1 / (1 + errors / _KERNEL), 1.0)
+            weights = np.where(self.doubtful, 1 / (1 + errors / _KERNEL_SCALE), 1.0)
             information = information * weights[:, None, None]
         sparse, linalg = load_scipy("sparse"), load_scipy("sparse.linalg")
         size = 3 * len(self.poses)
-        edges, within = np.arange(3 * len(self.first)), np.arange(3)
+        edges, components = np.arange(3 * len(self.first)), np.arange(3)
         rows = np.broadcast_to(edges.reshape(-1, 3, 1), (len(self.first), 3, 3)).ravel()
 
         def block(values: Floats, nodes: list[int]) -> Any:
-            columns = np.broadcast_to((3 * np.array(nodes)[:, None] + within)[:, None, :], values.shape)
+            columns = np.broadcast_to((3 * np.array(nodes)[:, None] + components)[:, None, :], values.shape)
             return sparse.csr_matrix((values.ravel(), (rows, columns.ravel())), shape=(len(edges), size))
 
-        jacobian = block(of_first, self.first) + block(of_second, self.second)
+        jacobian = block(first_jacobians, self.first) + block(second_jacobians, self.second)
         columns = np.broadcast_to(edges.reshape(-1, 1, 3), information.shape).ravel()
         weight = sparse.csr_matrix((information.ravel(), (rows, columns)), shape=(len(edges), len(edges)))
         weighted = jacobian.T @ weight
@@ -112,17 +112,19 @@ class PoseGraph:
         yaw = start[:, 2] + measured[:, 2]
         cos, sin = np.cos(yaw), np.sin(yaw)
         to_second = np.stack((np.stack((cos, sin), -1), np.stack((-sin, cos), -1)), axis=1)  # Rotates world vectors.
-        away = end[:, :2] - start[:, :2]
+        offsets = end[:, :2] - start[:, :2]
         residuals = np.zeros((len(start), 3))
         cos_m, sin_m = np.cos(measured[:, 2]), np.sin(measured[:, 2])
         x, y = measured[:, 0], measured[:, 1]
-        residuals[:, :2] = np.einsum("nij,nj->ni", to_second, away)
+        residuals[:, :2] = np.einsum("nij,nj->ni", to_second, offsets)
         residuals[:, :2] -= np.stack((cos_m * x + sin_m * y, cos_m * y - sin_m * x), axis=-1)
         residuals[:, 2] = wrapped(end[:, 2] - yaw)
-        of_second = np.zeros((len(start), 3, 3))
-        of_second[:, :2, :2] = to_second
-        of_second[:, 2, 2] = 1.0
-        of_first = -of_second
-        turned = np.stack((away[:, 1], -away[:, 0]), axis=-1)  # The derivative of R(-yaw) v is R(-yaw) (v_y, -v_x).
-        of_first[:, :2, 2] = np.einsum("nij,nj->ni", to_second, turned)
-        return residuals, of_first, of_second
+        second_jacobians = np.zeros((len(start), 3, 3))
+        second_jacobians[:, :2, :2] = to_second
+        second_jacobians[:, 2, 2] = 1.0
+        first_jacobians = -second_jacobians
+        rotated_offsets = np.stack(
+            (offsets[:, 1], -offsets[:, 0]), axis=-1
+        )  # The derivative of R(-yaw) v is R(-yaw) (v_y, -v_x).
+        first_jacobians[:, :2, 2] = np.einsum("nij,nj->ni", to_second, rotated_offsets)
+        return residuals, first_jacobians, second_jacobians

@@ -17,7 +17,7 @@ def wrapped(angles: Floats) -> Floats:
 
 
 def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
-    """Return the poses of c in a, of shape (..., 3), given those of b in a and of c in b."""
+    """Return the poses of c in a, of shape (..., 3), from the poses of b in a and of c in b."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = c_in_b[..., 0], c_in_b[..., 1]
     yaw = wrapped(b_in_a[..., 2] + c_in_b[..., 2])
@@ -26,7 +26,7 @@ def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
 
 
 def inverse(b_in_a: Floats) -> Floats:
-    """Return the poses of a in b, of shape (..., 3), given the poses of b in a."""
+    """Return the poses of a in b, of shape (..., 3), from the poses of b in a."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = b_in_a[..., 0], b_in_a[..., 1]
     result: Floats = np.stack((-cos * x - sin * y, sin * x - cos * y, -b_in_a[..., 2]), axis=-1)
@@ -34,12 +34,12 @@ def inverse(b_in_a: Floats) -> Floats:
 
 
 def relative_pose(b_in_a: Floats, c_in_a: Floats) -> Floats:
-    """Return the poses of c in b, of shape (..., 3), given those of b in a and of c in a."""
+    """Return the poses of c in b, of shape (..., 3), from the poses of b in a and of c in a."""
     return compose(inverse(b_in_a), c_in_a)
 
 
 def transform_points(pose: Floats, points: Floats) -> Floats:
-    """Transform points, of shape (n, 2), from a frame with a pose, of shape (3,)."""
+    """Transform points, of shape (n, 2), out of the frame whose pose, of shape (3,), is `pose`."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
     return result

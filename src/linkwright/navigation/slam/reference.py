@@ -1,4 +1,4 @@
-"""Earlier scans in the form in which other scans are matched against them."""
+"""Earlier scans, prepared for matching: their points, the directions of their walls, and a likelihood field."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.slam.poses import Floats, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
-_THINNING = 0.05
+_THINNING_CELL = 0.05
 _NEIGHBOURS = 6
-_SPREAD = 0.5
-"""Points whose neighbours are farther away than this, in metres, have no wall direction."""
-_LEAST = 0.01
+_MAX_NEIGHBOUR_DISTANCE = 0.5
+"""The maximum distance of a point's neighbours for its wall to have a direction, in metres."""
+_MIN_LIKELIHOOD = 0.01
 
 
 class Reference:
@@ -31,16 +31,16 @@ class Reference:
     def __init__(self, scans: Sequence[PlanarScan], poses: Floats) -> None:
         pairs = [(scan, pose) for scan, pose in zip(scans, poses, strict=True) if len(scan.points)]
         self.points: Floats = np.zeros((0, 2))
-        self._seen_from: Floats = np.zeros((0, 2))
+        self._sensor_positions: Floats = np.zeros((0, 2))
         if pairs:
             points = np.concatenate([transform_points(pose, scan.points) for scan, pose in pairs])
-            views = np.concatenate(
+            sensors = np.concatenate(
                 [np.broadcast_to(transform_points(pose, scan.origin[None]), scan.points.shape) for scan, pose in pairs]
             )
-            self._thin(points, views)
+            self._average_by_cell(points, sensors)
 
-    def _thin(self, points: Floats, views: Floats) -> None:
-        cells = np.floor((points - points.min(axis=0)) / _THINNING).astype(np.int64)
+    def _average_by_cell(self, points: Floats, sensors: Floats) -> None:
+        cells = np.floor((points - points.min(axis=0)) / _THINNING_CELL).astype(np.int64)
         _, index = np.unique(cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1], return_inverse=True)
         counts = np.bincount(index)
 
@@ -49,7 +49,7 @@ class Reference:
             result: Floats = np.stack(sums, axis=-1) / counts[:, None]
             return result
 
-        self.points, self._seen_from = mean(points), mean(views)
+        self.points, self._sensor_positions = mean(points), mean(sensors)
 
     def __len__(self) -> int:
         return len(self.points)
@@ -59,23 +59,23 @@ class Reference:
         self._tree = load_scipy("spatial").cKDTree(self.points)
         count = min(_NEIGHBOURS, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
-        near = self.points[indices.reshape(-1, count)]
-        offsets = near - near.mean(axis=1, keepdims=True)
+        neighbours = self.points[indices.reshape(-1, count)]
+        offsets = neighbours - neighbours.mean(axis=1, keepdims=True)
         x, y = offsets[..., 0], offsets[..., 1]
         xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
-        along = 0.5 * np.arctan2(2 * xy, xx - yy)
-        normals = np.stack((-np.sin(along), np.cos(along)), axis=-1)
-        away = np.einsum("ni,ni->n", normals, self._seen_from - self.points) < 0
-        normals[away] *= -1
-        root = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
+        directions = 0.5 * np.arctan2(2 * xy, xx - yy)
+        normals = np.stack((-np.sin(directions), np.cos(directions)), axis=-1)
+        faces_away = np.einsum("ni,ni->n", normals, self._sensor_positions - self.points) < 0
+        normals[faces_away] *= -1
+        eigenvalue_differences = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
         total = np.maximum(xx + yy, 1e-12)
-        flatness = root / total  # 1 for a line, 0 for points scattered in all directions.
-        flatness[distances.reshape(-1, count)[:, -1] > _SPREAD] = 0.0
+        flatness = eigenvalue_differences / total  # 1 for a line, 0 for points scattered in all directions.
+        flatness[distances.reshape(-1, count)[:, -1] > _MAX_NEIGHBOUR_DISTANCE] = 0.0
         self._normals: Floats = normals
         self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
 
     def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
-        """Return the nearest reference point to each of some points, of shape (n, 2).
+        """Return the nearest reference point of each point; `points` has shape (n, 2).
 
         Returns:
             Distances (n,), indices (n,), positions (n, 2), normals of the wall towards the sensor (n, 2), and the
@@ -100,13 +100,13 @@ class Likelihood:
         margin = 3.1 * deviation + resolution  # Wide enough that the outermost cells are 0.
         self.corner: Floats = points.min(axis=0) - margin
         size = np.ceil((points.max(axis=0) + margin - self.corner) / resolution).astype(int) + 1
-        empty = np.ones((size[1], size[0]), dtype=bool)
+        is_empty = np.ones((size[1], size[0]), dtype=bool)
         cells = np.floor((points - self.corner) / resolution).astype(int)
-        empty[cells[:, 1], cells[:, 0]] = False
-        distance = load_scipy("ndimage").distance_transform_edt(empty, sampling=resolution)
-        finest = np.exp(-0.5 * (distance / deviation) ** 2).astype(np.float32)
-        finest[finest < _LEAST] = 0.0
-        self._levels: list[NDArray[np.float32]] = [finest]
+        is_empty[cells[:, 1], cells[:, 0]] = False
+        distance = load_scipy("ndimage").distance_transform_edt(is_empty, sampling=resolution)
+        finest_level = np.exp(-0.5 * (distance / deviation) ** 2).astype(np.float32)
+        finest_level[finest_level < _MIN_LIKELIHOOD] = 0.0
+        self._levels: list[NDArray[np.float32]] = [finest_level]
 
     def level(self, number: int) -> tuple[NDArray[np.float32], int]:
         """Return the grid of maxima over blocks of 2^number x 2^number cells.
@@ -116,8 +116,8 @@ class Likelihood:
                 column).
         """
         while len(self._levels) <= number:
-            finer, step = self._levels[-1], 1 << (len(self._levels) - 1)
-            rows = np.maximum(np.pad(finer, ((step, 0), (0, 0))), np.pad(finer, ((0, step), (0, 0))))
-            coarser = np.maximum(np.pad(rows, ((0, 0), (step, 0))), np.pad(rows, ((0, 0), (0, step))))
-            self._levels.append(np.ascontiguousarray(coarser))
+            finer_level, step = self._levels[-1], 1 << (len(self._levels) - 1)
+            rows = np.maximum(np.pad(finer_level, ((step, 0), (0, 0))), np.pad(finer_level, ((0, step), (0, 0))))
+            coarser_level = np.maximum(np.pad(rows, ((0, 0), (step, 0))), np.pad(rows, ((0, 0), (0, step))))
+            self._levels.append(np.ascontiguousarray(coarser_level))
         return self._levels[number], (1 << number) - 1

@@ -18,13 +18,14 @@ class PlanarScan:
 
     Attributes:
         points: the ends of rays with a hit, of shape (n, 2), in metres.
-        passed: the ends of rays that were cut off at the maximum range, of shape (m, 2); the space before them is free.
+        free_ends: the ends of rays that were cut off at the maximum range, of shape (m, 2); the space up to them is
+            free.
         origin: the origin of the rays, of shape (2,).
         stamp_ns: the stamp, in nanoseconds.
     """
 
     points: Floats
-    passed: Floats
+    free_ends: Floats
     origin: Floats
     stamp_ns: int
 
@@ -52,12 +53,12 @@ def planar_scan(
         stamp_ns: the time of the measurement, in nanoseconds.
     """
     with np.errstate(invalid="ignore"):
-        counts = np.isfinite(ranges) & (ranges > max(limits[0], cut_off[0], 0.0)) & (ranges < limits[1])
-    distances = np.asarray(ranges[counts], dtype=np.float64)
-    kept = angles[counts]
-    within = np.minimum(distances, cut_off[1])
+        is_measured = np.isfinite(ranges) & (ranges > max(limits[0], cut_off[0], 0.0)) & (ranges < limits[1])
+    distances = np.asarray(ranges[is_measured], dtype=np.float64)
+    ray_angles = angles[is_measured]
+    clipped = np.minimum(distances, cut_off[1])
     rotation, position = laser
-    local = np.stack((within * np.cos(kept), within * np.sin(kept)), axis=-1)
-    points: Floats = local @ rotation[:2, :2].T + position[:2]
-    ended = distances < cut_off[1]
-    return PlanarScan(points[ended], points[~ended], np.asarray(position[:2], dtype=np.float64), stamp_ns)
+    laser_points = np.stack((clipped * np.cos(ray_angles), clipped * np.sin(ray_angles)), axis=-1)
+    points: Floats = laser_points @ rotation[:2, :2].T + position[:2]
+    is_hit = distances < cut_off[1]
+    return PlanarScan(points[is_hit], points[~is_hit], np.asarray(position[:2], dtype=np.float64), stamp_ns)

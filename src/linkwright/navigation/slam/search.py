@@ -1,8 +1,8 @@
 """Search by branch and bound for the pose at which a scan fits a reference best.
 
-The search is that of Olson ("Real-Time Correlative Scan Matching", ICRA 2009) with the branch and bound of Hess et al.
-("Real-Time Loop Closure in 2D LIDAR SLAM", ICRA 2016): a block of positions is rated by an upper bound of the responses
-in it, so the whole window is searched with few evaluations. A response, as in Karto, is the mean likelihood at the
+The search combines Olson ("Real-Time Correlative Scan Matching", ICRA 2009) with the branch and bound of Hess et al.
+("Real-Time Loop Closure in 2D LIDAR SLAM", ICRA 2016). A block of positions is rated by an upper bound of its
+responses, so the whole window is searched with few evaluations. A response, as in Karto, is the mean likelihood at the
 points.
 """
 
@@ -19,17 +19,17 @@ from linkwright.navigation.slam.reference import Likelihood
 from linkwright.navigation.slam.steps import Steps
 
 _PENALTY_GAIN = 0.2
-_MOST_POINTS = 180
-_BATCH = 1500
-_BLOCKS = 3
-"""The approximate number of the largest blocks along a side of the window."""
+_MAX_POINTS = 180
+_BATCH_SIZE = 1500
+_BLOCKS_PER_SIDE = 3
+"""The approximate number of top-level blocks along a side of the window."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
     """A search window of poses, and the penalties for distance from its centre.
 
-    Names and meanings are those of Karto's parameters.
+    Names and meanings are the same as for Karto's parameters.
 
     Attributes:
         dimension: the side of the window, in metres.
@@ -56,7 +56,7 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The resolution of the search in metres, at least half the smear."""
+        """The side of a cell of the search in metres: the resolution, but at least half of `smear_deviation`."""
         return max(self.resolution, self.smear_deviation / 2)
 
 
@@ -69,8 +69,8 @@ class _Blocks:
     column: NDArray[np.int64]
     bound: Floats
 
-    def part(self, chosen: slice | NDArray[np.bool_]) -> _Blocks:
-        return _Blocks(self.angle[chosen], self.row[chosen], self.column[chosen], self.bound[chosen])
+    def part(self, selection: slice | NDArray[np.bool_]) -> _Blocks:
+        return _Blocks(self.angle[selection], self.row[selection], self.column[selection], self.bound[selection])
 
 
 class _Window:
@@ -78,10 +78,10 @@ class _Window:
 
     def __init__(self, likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> None:
         self._likelihood, self._search = likelihood, search
-        stride = -(-len(points) // _MOST_POINTS)
+        stride = -(-len(points) // _MAX_POINTS)
         points = points[::stride]
-        reach = float(np.quantile(np.hypot(points[:, 0], points[:, 1]), 0.8))
-        step: float = min(search.angle_resolution, 1.5 * likelihood.resolution / max(reach, likelihood.resolution))
+        radius = float(np.quantile(np.hypot(points[:, 0], points[:, 1]), 0.8))
+        step: float = min(search.angle_resolution, 1.5 * likelihood.resolution / max(radius, likelihood.resolution))
         count = ceil(search.angle_offset / step - 1e-9)
         self.angles: Floats = np.arange(-count, count + 1, dtype=np.float64) * step
         self.half = ceil(search.dimension / 2 / likelihood.resolution - 1e-9)
@@ -94,8 +94,8 @@ class _Window:
 
     def top(self) -> tuple[int, _Blocks]:
         """Return the level of the largest blocks, and these blocks with bounds of 0."""
-        side = 2 * self.half + 1
-        level = max(0, (side // _BLOCKS).bit_length() - 1)
+        side_length = 2 * self.half + 1
+        level = max(0, (side_length // _BLOCKS_PER_SIDE).bit_length() - 1)
         offsets = np.arange(-self.half, self.half + 1, 1 << level)
         angle, row, column = (
             array.ravel() for array in np.meshgrid(np.arange(len(self.angles)), offsets, offsets, indexing="ij")
@@ -104,20 +104,22 @@ class _Window:
 
     def judge(self, blocks: _Blocks, level: int) -> None:
         """Set the upper bounds of blocks of a level."""
-        grid, begin = self._likelihood.level(level)
+        grid, offset = self._likelihood.level(level)
         height, width = grid.shape
         flat = grid.ravel()
-        rows = np.clip(self._rows[blocks.angle] + (blocks.row + begin)[:, None].astype(np.int32), 0, height - 1)
-        columns = np.clip(self._columns[blocks.angle] + (blocks.column + begin)[:, None].astype(np.int32), 0, width - 1)
+        rows = np.clip(self._rows[blocks.angle] + (blocks.row + offset)[:, None].astype(np.int32), 0, height - 1)
+        columns = np.clip(
+            self._columns[blocks.angle] + (blocks.column + offset)[:, None].astype(np.int32), 0, width - 1
+        )
         responses = flat.take(rows * np.int32(width) + columns).mean(axis=1, dtype=np.float64)
         bound: Floats = responses * self._penalty(blocks, level)
         blocks.bound = bound
 
     def _penalty(self, blocks: _Blocks, level: int) -> Floats:
-        search, last = self._search, (1 << level) - 1
+        search, block_end = self._search, (1 << level) - 1
 
         def nearest(first: NDArray[np.int64]) -> NDArray[np.int64]:
-            result: NDArray[np.int64] = np.clip(0, first, first + last)
+            result: NDArray[np.int64] = np.clip(0, first, first + block_end)
             return result
 
         squared = (nearest(blocks.row) ** 2 + nearest(blocks.column) ** 2) * self._likelihood.resolution**2
@@ -133,12 +135,12 @@ class _Window:
 
         `level` is the level of the quarters.
         """
-        side = 1 << level
+        block_side = 1 << level
         angle, row, column = (np.repeat(array, 4) for array in (blocks.angle, blocks.row, blocks.column))
-        row += np.tile((0, 0, side, side), len(blocks.angle))
-        column += np.tile((0, side, 0, side), len(blocks.angle))
-        inside = (row <= self.half) & (column <= self.half)
-        return _Blocks(angle[inside], row[inside], column[inside], np.zeros(int(inside.sum())))
+        row += np.tile((0, 0, block_side, block_side), len(blocks.angle))
+        column += np.tile((0, block_side, 0, block_side), len(blocks.angle))
+        is_inside = (row <= self.half) & (column <= self.half)
+        return _Blocks(angle[is_inside], row[is_inside], column[is_inside], np.zeros(int(is_inside.sum())))
 
 
 def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> Steps[tuple[Floats, float]]:
@@ -155,32 +157,32 @@ def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Sea
     """
     window = _Window(likelihood, points, guess, search)
     level, blocks = window.top()
-    yield from _judged(window, blocks, level)
-    best, found = -1.0, blocks.part(np.s_[:1])
+    yield from _rate_in_batches(window, blocks, level)
+    best_response, best_block = -1.0, blocks.part(np.s_[:1])
     while level:
         leaf = _descend(window, blocks, level)
-        if leaf.bound[0] > best:
-            best, found = float(leaf.bound[0]), leaf
+        if leaf.bound[0] > best_response:
+            best_response, best_block = float(leaf.bound[0]), leaf
         level -= 1
-        blocks = window.children(blocks.part(blocks.bound > best), level)
+        blocks = window.children(blocks.part(blocks.bound > best_response), level)
         if not len(blocks.angle):
             break
-        yield from _judged(window, blocks, level)
+        yield from _rate_in_batches(window, blocks, level)
     if len(blocks.angle):
         index = int(np.argmax(blocks.bound))
-        if blocks.bound[index] > best:
-            best, found = float(blocks.bound[index]), blocks.part(np.s_[index : index + 1])
-    shift = np.array((found.column[0], found.row[0])) * likelihood.resolution
-    pose: Floats = np.array((guess[0] + shift[0], guess[1] + shift[1], guess[2] + window.angles[found.angle[0]]))
+        if blocks.bound[index] > best_response:
+            best_response, best_block = float(blocks.bound[index]), blocks.part(np.s_[index : index + 1])
+    shift = np.array((best_block.column[0], best_block.row[0])) * likelihood.resolution
+    pose: Floats = np.array((guess[0] + shift[0], guess[1] + shift[1], guess[2] + window.angles[best_block.angle[0]]))
     pose[2] = (pose[2] + pi) % (2 * pi) - pi
-    return pose, best
+    return pose, best_response
 
 
-def _judged(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
-    for begin in range(0, len(blocks.angle), _BATCH):
-        part = blocks.part(np.s_[begin : begin + _BATCH])
-        window.judge(part, level)
-        blocks.bound[begin : begin + _BATCH] = part.bound
+def _rate_in_batches(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
+    for begin in range(0, len(blocks.angle), _BATCH_SIZE):
+        batch = blocks.part(np.s_[begin : begin + _BATCH_SIZE])
+        window.judge(batch, level)
+        blocks.bound[begin : begin + _BATCH_SIZE] = batch.bound
         yield
 
 
@@ -193,8 +195,8 @@ def _descend(window: _Window, blocks: _Blocks, level: int) -> _Blocks:
     block = blocks.part(np.s_[index : index + 1])
     while level:
         level -= 1
-        quarters = window.children(block, level)
-        window.judge(quarters, level)
-        index = int(np.argmax(quarters.bound))
-        block = quarters.part(np.s_[index : index + 1])
+        children = window.children(block, level)
+        window.judge(children, level)
+        index = int(np.argmax(children.bound))
+        block = children.part(np.s_[index : index + 1])
     return block

@@ -18,9 +18,9 @@ class MapperSettings:
         minimum_travel_distance: how far the robot must move before a scan is processed.
         minimum_travel_heading: the rotation after which a scan is processed even if the robot did not move that far.
         scan_buffer_size: the number of recent scans that a new scan is matched against.
-        scan_buffer_maximum_scan_distance: the maximum distance of those scans from the new one.
+        scan_buffer_maximum_scan_distance: the maximum distance of these scans from the new scan.
         link_match_minimum_response_fine: the minimum response of a match that links scans.
-        link_scan_maximum_distance: scans of earlier passes within this distance are linked with the new one.
+        link_scan_maximum_distance: scans of earlier passes within this distance are linked with the new scan.
         do_loop_closing: whether to search for loops.
         loop_search_maximum_distance: the maximum distance to earlier scans in the search for loops.
         loop_match_minimum_chain_size: the minimum number of consecutive scans for a loop.

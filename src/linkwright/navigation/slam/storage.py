@@ -1,7 +1,7 @@
 """Files that store a pose graph with its scans, in place of slam_toolbox's serialised maps.
 
-A file is a NumPy archive of plain arrays in Linkwright's own format: slam_toolbox writes the memory of its C++
-classes, serialised by Boost, which other programs cannot read.
+A file is a NumPy archive of plain arrays, in a format of Linkwright. slam_toolbox serialises its C++ classes with
+Boost, which other programs cannot read.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from linkwright.navigation.slam.pose_graph import PoseGraph
 from linkwright.navigation.slam.poses import Floats
 from linkwright.navigation.slam.scan import PlanarScan
 
-ENDING = ".posegraph"
+EXTENSION = ".posegraph"
 _FORMAT = 1
-_LARGEST_FILE = 1 << 30
+_MAX_FILE_BYTES = 1 << 30
 
 
 def path_of(name: str) -> Path:
-    """Return the path of a graph's file, with the extension added if the name lacks it."""
-    return Path(name if name.endswith(ENDING) else name + ENDING)
+    """Return the path of a graph's file; adds the extension if the name lacks it."""
+    return Path(name if name.endswith(EXTENSION) else name + EXTENSION)
 
 
 def save_graph(mapper: Mapper, path: Path) -> None:
@@ -55,8 +55,10 @@ def save_graph(mapper: Mapper, path: Path) -> None:
         "odometry": np.array(mapper.odometry).reshape(-1, 3),
         "origins": np.array([scan.origin for scan in scans]).reshape(-1, 2),
         "stamps": np.array([scan.stamp_ns for scan in scans], dtype=np.int64),
-        "counts": np.array([(len(scan.points), len(scan.passed)) for scan in scans], dtype=np.int64).reshape(-1, 2),
-        "points": np.concatenate([np.zeros((0, 2)), *(part for scan in scans for part in (scan.points, scan.passed))]),
+        "counts": np.array([(len(scan.points), len(scan.free_ends)) for scan in scans], dtype=np.int64).reshape(-1, 2),
+        "points": np.concatenate(
+            [np.zeros((0, 2)), *(point_array for scan in scans for point_array in (scan.points, scan.free_ends))]
+        ),
     }
     file = BytesIO()
     np.savez_compressed(file, allow_pickle=False, **arrays)
@@ -71,20 +73,18 @@ def load_graph(mapper: Mapper, path: Path) -> None:
             unchanged.
     """
     try:
-        data = read_file(path, _LARGEST_FILE)
+        data = read_file(path, _MAX_FILE_BYTES)
     except FileNotFoundError:
         message = phrase("the pose graph '{path}' does not exist", path=display_path(path))
         raise LinkwrightError(Diagnostic("NAV501", message, hint=missing_file_hint(path))) from None
     except OSError as error:
         raise _unreadable(path, foreign(error.strerror or error)) from None
     if b"serialization::archive" in data[:64]:
-        raise _unreadable(
-            path, phrase("it was written by slam_toolbox itself, in a format that only slam_toolbox reads")
-        )
+        raise _unreadable(path, phrase("slam_toolbox wrote it, in a format that only slam_toolbox can read"))
     try:
         graph, scans, odometry = _read(data)
     except (BadZipFile, KeyError, ValueError, IndexError, OSError, EOFError):
-        raise _unreadable(path, phrase("it is not a pose graph")) from None
+        raise _unreadable(path, phrase("it does not contain a pose graph")) from None
     mapper.replace(graph, scans, odometry)
 
 
@@ -92,20 +92,22 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
     with np.load(BytesIO(data), allow_pickle=False) as archive:
         arrays = {name: archive[name] for name in archive.files}
     poses, edges, counts = arrays["poses"].reshape(-1, 3), arrays["edges"].reshape(2, -1), arrays["counts"]
-    number, links = len(poses), edges.shape[1]
+    node_count, edge_count = len(poses), edges.shape[1]
     lengths = [len(arrays[name]) for name in ("odometry", "origins", "stamps", "counts")]
-    if int(arrays["format"]) != _FORMAT or lengths != [number] * 4 or counts.sum() != len(arrays["points"]):
+    if int(arrays["format"]) != _FORMAT or lengths != [node_count] * 4 or counts.sum() != len(arrays["points"]):
         raise ValueError
-    if edges.size and (edges.min() < 0 or edges.max() >= number):
+    if edges.size and (edges.min() < 0 or edges.max() >= node_count):
         raise ValueError
-    measured, information = arrays["measured"].reshape(links, 3), arrays["information"].reshape(links, 3, 3)
-    doubtful = arrays["doubtful"].reshape(links)
+    measured, information = arrays["measured"].reshape(edge_count, 3), arrays["information"].reshape(edge_count, 3, 3)
+    doubtful = arrays["doubtful"].reshape(edge_count)
     if not all(np.isfinite(array).all() for array in (poses, measured, information, arrays["points"])):
         raise ValueError
-    parts = np.split(arrays["points"].reshape(-1, 2), np.cumsum(counts.ravel())[:-1])
+    point_arrays = np.split(arrays["points"].reshape(-1, 2), np.cumsum(counts.ravel())[:-1])
     scans = [
-        PlanarScan(parts[2 * index], parts[2 * index + 1], arrays["origins"][index], int(arrays["stamps"][index]))
-        for index in range(number)
+        PlanarScan(
+            point_arrays[2 * index], point_arrays[2 * index + 1], arrays["origins"][index], int(arrays["stamps"][index])
+        )
+        for index in range(node_count)
     ]
     first, second = edges.tolist()
     graph = PoseGraph(poses, first, second, list(measured), list(information), [bool(flag) for flag in doubtful])
@@ -114,5 +116,5 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
 
 def _unreadable(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("the pose graph '{path}' cannot be read: {reason}", path=display_path(path), reason=reason)
-    hint = phrase("map the place again, and save it with the service serialize_map")
+    hint = phrase("create the map again, and save it with the service serialize_map")
     return LinkwrightError(Diagnostic("NAV501", message, hint=hint))

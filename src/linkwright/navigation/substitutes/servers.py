@@ -1,6 +1,6 @@
-"""The common parts of nav2_bringup's launch files, which start servers and their lifecycle manager.
+"""Code shared by nav2_bringup's launch files, which start servers and their lifecycle manager.
 
-The module is imported by launch files, and imports the same launch modules.
+Launch files import this module, and it imports the same launch modules as they do.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Server:
 
     @property
     def node_name(self) -> str:
-        """The node's name: `name`, or else the name of the executable."""
+        """The node's name: `name`, or the name of the executable if `name` is empty."""
         return self.name or self.executable
 
     @property
@@ -99,20 +99,24 @@ def managed(
         context: a context with the launch configurations of `ARGUMENTS` and ``params_file``.
         manager: the name of the lifecycle manager.
         servers: the managed servers.
-        parameters: parameters in addition to the file's, by node name.
+        parameters: parameters in addition to the parameter file, by node name; None for no more.
     """
     sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
     file = configured_parameters(context)
-    names = [server.node_name for server in servers if server.is_here]
-    own: Mapping[str, Any] = {**sim_time, "autostart": is_true(context, "autostart"), "node_names": names}
-    started = [*servers, replace(_MANAGER, name=manager)]
-    given: dict[str, list[Any]] = {
+    managed_names = [server.node_name for server in servers if server.is_here]
+    manager_parameters: Mapping[str, Any] = {
+        **sim_time,
+        "autostart": is_true(context, "autostart"),
+        "node_names": managed_names,
+    }
+    all_servers = [*servers, replace(_MANAGER, name=manager)]
+    node_parameters: dict[str, list[Any]] = {
         server.node_name: [file, {**sim_time, **(parameters or {}).get(server.node_name, {})}] for server in servers
     }
-    given[manager] = [own]
+    node_parameters[manager] = [manager_parameters]
     if is_true(context, "use_composition"):
         container = f"{context.launch_configurations['namespace']}/{context.launch_configurations['container_name']}"
-        nodes = [_composed(server, given[server.node_name]) for server in started]
+        nodes = [_composable_node(server, node_parameters[server.node_name]) for server in all_servers]
         return [LoadComposableNodes(target_container=container, composable_node_descriptions=nodes)]
     respawn = is_true(context, "use_respawn")
     level = ["--ros-args", "--log-level", context.launch_configurations["log_level"]]
@@ -122,17 +126,17 @@ def managed(
             executable=server.executable,
             name=server.node_name,
             output="screen",
-            parameters=given[server.node_name],
+            parameters=node_parameters[server.node_name],
             remappings=[*_TF, *server.remappings],
             arguments=level,
             respawn=respawn and server.node_name != manager,
             respawn_delay=_RESPAWN_SECONDS,
         )
-        for server in started
+        for server in all_servers
     ]
 
 
-def _composed(server: Server, parameters: list[Any]) -> ComposableNode:
+def _composable_node(server: Server, parameters: list[Any]) -> ComposableNode:
     return ComposableNode(
         package=server.package,
         plugin=server.plugin,

@@ -1,8 +1,8 @@
 """transform and relay_field of topic_tools: compute messages with Python expressions.
 
-The expressions are not restricted, as in topic_tools, because the author of a command line or a launch file can run
-programs anyway. Names of message packages give access to their types (``std_msgs.msg.String``). Other names are the
-modules that ``--import`` imports.
+As in topic_tools, the expressions are not restricted, because the author of a command line or a launch file can run
+programs anyway. Expressions can use the modules that ``--import`` names. If it names a message package, the expressions
+can use the package's types, such as ``std_msgs.msg.String``.
 """
 
 from __future__ import annotations
@@ -41,32 +41,32 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _ExpressionTool(SingleNode, ABC):
-    """The base class of nodes that compute a message from each input message.
+    """The base class of nodes that compute an output message from each input message.
 
     Raises:
-        LinkwrightError: an argument (NODE432) or the expression (NODE434) is invalid.
+        LinkwrightError: if an argument (NODE432) or the expression (NODE434) is invalid.
     """
 
     _output_class: Any
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._graph = graph
-        self._words = self._parser().parse_args(words_of(options))
+        self._arguments = self._parser().parse_args(words_of(options))
         self._node, _ = create_node(graph, options, f"{self.PROGRAM}_{getpid()}")
         self._publisher: Publisher[Any] | None = None
         self._subscription: Subscription[Any] | None = None
         with starting(self._node):
-            self._output_class = _message_class(self._words.output_type)
+            self._output_class = _message_class(self._arguments.output_type)
             self._prepare()
-        self._changed = self._node.create_guard_condition(self._look)
-        graph.watch(self._changed.trigger)
+        self._graph_changed = self._node.create_guard_condition(self._look)
+        graph.watch(self._graph_changed.trigger)
         self._look()
 
     PROGRAM: ClassVar[str]
 
     def close(self) -> None:
         """Close the node."""
-        self._graph.unwatch(self._changed.trigger)
+        self._graph.unwatch(self._graph_changed.trigger)
         super().close()
 
     @abstractmethod
@@ -93,38 +93,38 @@ class _ExpressionTool(SingleNode, ABC):
         return parser
 
     def _look(self) -> None:
-        sources = self._node.get_publishers_info_by_topic(self._words.input)
+        sources = self._node.get_publishers_info_by_topic(self._arguments.input)
         if self._subscription is None and sources:
             qos = self._profile([source.qos_profile for source in sources])
-            self._publisher = self._node.create_publisher(self._output_class, self._words.output_topic, qos)
+            self._publisher = self._node.create_publisher(self._output_class, self._arguments.output_topic, qos)
             self._subscription = self._node.create_subscription(
-                sources[0].topic_type, self._words.input, self._receive, qos
+                sources[0].topic_type, self._arguments.input, self._receive, qos
             )
 
     def _profile(self, offers: list[QoSProfile]) -> QoSProfile:
-        given = {
-            name: getattr(self._words, f"qos_{name}") for name in ("depth", "history", "reliability", "durability")
+        overrides = {
+            name: getattr(self._arguments, f"qos_{name}") for name in ("depth", "history", "reliability", "durability")
         }
-        if self._words.qos_profile is None and not any(given.values()):
+        if self._arguments.qos_profile is None and not any(overrides.values()):
             return fit(SENSOR_DATA_QOS, offers).profile
-        base = QoSPresetProfiles.get_from_short_key(self._words.qos_profile or "sensor_data")
+        base = QoSPresetProfiles.get_from_short_key(self._arguments.qos_profile or "sensor_data")
         return QoSProfile(
-            given["depth"] or base.depth,
-            ReliabilityPolicy[given["reliability"].upper()] if given["reliability"] else base.reliability,
-            DurabilityPolicy[given["durability"].upper()] if given["durability"] else base.durability,
-            HistoryPolicy[given["history"].upper()] if given["history"] else base.history,
+            overrides["depth"] or base.depth,
+            ReliabilityPolicy[overrides["reliability"].upper()] if overrides["reliability"] else base.reliability,
+            DurabilityPolicy[overrides["durability"].upper()] if overrides["durability"] else base.durability,
+            HistoryPolicy[overrides["history"].upper()] if overrides["history"] else base.history,
         )
 
     def _receive(self, message: Any) -> None:
         try:
-            made = self._make(message)
+            output = self._make(message)
         except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
             self._node.get_logger().error(
-                f"{self._words.expression}: {type(error).__name__}: {error}", throttle_duration_sec=5.0
+                f"{self._arguments.expression}: {type(error).__name__}: {error}", throttle_duration_sec=5.0
             )
             return
         if self._publisher is not None:
-            self._publisher.publish(made)
+            self._publisher.publish(output)
 
 
 class Transform(_ExpressionTool):
@@ -143,27 +143,29 @@ class Transform(_ExpressionTool):
         return parser
 
     def _prepare(self) -> None:
-        self._field = [name for name in (self._words.field or "").split(".") if name]
-        names = {name: _imported(name) for name in self._words.modules}
-        self._expression = _compiled(self._words.expression, {name.partition(".")[0]: names[name] for name in names})
+        self._field = [name for name in (self._arguments.field or "").split(".") if name]
+        names = {name: _import_name(name) for name in self._arguments.modules}
+        self._expression = _compile_expression(
+            self._arguments.expression, {name.partition(".")[0]: names[name] for name in names}
+        )
 
     def _make(self, message: Any) -> Any:
         for name in self._field:
             message = getattr(message, name)
-        made = self._expression(message)
-        if isinstance(made, self._output_class):
-            return made
-        if isinstance(made, Mapping):
+        output = self._expression(message)
+        if isinstance(output, self._output_class):
+            return output
+        if isinstance(output, Mapping):
             result = self._output_class()
-            set_fields(result, made)
+            set_fields(result, output)
             return result
-        raise TypeError(f"the expression gives a {type(made).__name__}, not a {self._words.output_type}")
+        raise TypeError(f"the expression gives a {type(output).__name__}, not a {self._arguments.output_type}")
 
 
 class RelayField(_ExpressionTool):
     """The running relay_field node, which computes the fields of each message.
 
-    The fields are given as YAML, whose strings are expressions over the input message ``m``.
+    The fields are YAML. Each string in it is an expression, in which ``m`` is the input message.
     """
 
     PROGRAM = "relay_field"
@@ -175,12 +177,12 @@ class RelayField(_ExpressionTool):
 
     def _prepare(self) -> None:
         try:
-            fields = yaml.safe_load(self._words.expression)
+            fields = yaml.safe_load(self._arguments.expression)
         except yaml.YAMLError as error:
-            raise _not_understood(self._words.expression, error) from None
+            raise _parse_error(self._arguments.expression, error) from None
         if not isinstance(fields, dict):
-            raise _not_understood(self._words.expression, "it is not a mapping of fields")
-        self._fields = {name: _prepared(value) for name, value in fields.items()}
+            raise _parse_error(self._arguments.expression, "it is not a mapping of fields")
+        self._fields = {name: _compile_value(value) for name, value in fields.items()}
 
     def _make(self, message: Any) -> Any:
         result = self._output_class()
@@ -196,8 +198,8 @@ class RelayField(_ExpressionTool):
         return result
 
 
-class _Types:
-    """The message types of a package in an expression, such as ``std_msgs.msg.String``."""
+class _PackageTypes:
+    """A message package as an object in expressions, for types such as ``std_msgs.msg.String``."""
 
     def __init__(self, package: str) -> None:
         self.msg = _Messages(package)
@@ -211,29 +213,29 @@ class _Messages:
         return get_message(f"{self._package}/msg/{name}")
 
 
-def _imported(name: str) -> Any:
+def _import_name(name: str) -> Any:
     package = name.partition(".")[0]
     if any(interface_name.startswith(f"{package}/msg/") for interface_name in interface_names("msg")):
-        return _Types(package)
+        return _PackageTypes(package)
     try:
         module = import_module(name)
     except ImportError as error:
-        raise _not_understood(f"--import {name}", error) from None
+        raise _parse_error(f"--import {name}", error) from None
     return import_module(package) if package != name else module
 
 
-def _prepared(value: Any) -> Callable[[Any], Any]:
+def _compile_value(value: Any) -> Callable[[Any], Any]:
     """Compile a YAML value to a function of the input message.
 
     A string is an expression, or a literal string if it is not a valid expression.
     """
     if isinstance(value, dict):
-        fields = {name: _prepared(compute) for name, compute in value.items()}
+        fields = {name: _compile_value(compute) for name, compute in value.items()}
         return lambda message: {name: compute(message) for name, compute in fields.items()}
     if not isinstance(value, str):
         return lambda message: value  # noqa: ARG005  # it is the same for all
     try:
-        expression = _compiled(value, {})
+        expression = _compile_expression(value, {})
     except LinkwrightError:
         return lambda message: value  # noqa: ARG005  # it is the same for all
 
@@ -246,20 +248,20 @@ def _prepared(value: Any) -> Callable[[Any], Any]:
     return worked_out
 
 
-def _compiled(text: str, names: Mapping[str, Any]) -> Callable[[Any], Any]:
+def _compile_expression(text: str, names: Mapping[str, Any]) -> Callable[[Any], Any]:
     try:
         function: Callable[[Any], Any] = eval(f"lambda m: ({text})", dict(names))  # noqa: S307 - see the module
     except SyntaxError as error:
-        raise _not_understood(text, error.msg) from None
+        raise _parse_error(text, error.msg) from None
     return function
 
 
 def _message_class(name: str) -> Any:
-    package, _, short = name.replace("/msg/", "/").partition("/")
-    return get_message(f"{package}/msg/{short}")
+    package, _, type_name = name.replace("/msg/", "/").partition("/")
+    return get_message(f"{package}/msg/{type_name}")
 
 
-def _not_understood(text: str, reason: object) -> LinkwrightError:
+def _parse_error(text: str, reason: object) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic("NODE434", phrase("'{text}' cannot be parsed: {reason}", text=text, reason=foreign(reason)))
     )

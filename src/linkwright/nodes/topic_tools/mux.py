@@ -13,7 +13,7 @@ from linkwright.nodes.settings import bad_value, declare_required
 from linkwright.nodes.topic_tools.tool import TopicTool
 
 NO_TOPIC = "__none"
-"""The name of the selected topic when none is."""
+"""The name that means that no topic is selected."""
 
 
 class _Switch(TopicTool):
@@ -22,41 +22,41 @@ class _Switch(TopicTool):
     Services add, delete, list and select topics.
     """
 
-    _KIND: ClassVar[str]
-    """How the types of the services begin."""
-    _SINGLE: ClassVar[str]
-    """The parameter with the one topic on the other side."""
-    _SEVERAL: ClassVar[str]
-    """The parameter with the topics to select from."""
+    _SERVICE_PREFIX: ClassVar[str]
+    """The prefix of the types of the services."""
+    _SINGLE_PARAMETER: ClassVar[str]
+    """The name of the parameter with the single topic: the output of mux, or the input of demux."""
+    _CHOICES_PARAMETER: ClassVar[str]
+    """The name of the parameter with the topics to select from."""
     _SINGLE_DEFAULT: ClassVar[str]
     _VERB: ClassVar[str]
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         super().__init__(graph, options)
-        for verb, answer in (
+        for verb, callback in (
             ("add", self._add),
             ("delete", self._delete),
             ("list", self._list),
             ("select", self._select),
         ):
-            kind = get_service(f"topic_tools_interfaces/srv/{self._KIND}{verb.capitalize()}")
-            self._node.create_service(kind, f"~/{verb}", answer)
+            service_class = get_service(f"topic_tools_interfaces/srv/{self._SERVICE_PREFIX}{verb.capitalize()}")
+            self._node.create_service(service_class, f"~/{verb}", callback)
 
     def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
-        given: dict[str, object] = {self._SINGLE: words[0]} if words else {}
+        parameters: dict[str, object] = {self._SINGLE_PARAMETER: words[0]} if words else {}
         if words[1:]:
-            given[self._SEVERAL] = words[1:]
-        return replace(options, parameters={**options.parameters, **given})
+            parameters[self._CHOICES_PARAMETER] = words[1:]
+        return replace(options, parameters={**options.parameters, **parameters})
 
     def _declare(self) -> None:
         node = self._node
         self._topics: list[str] = list(
-            declare_required(node, self._SEVERAL, ParameterType.STRING_ARRAY, self.USAGE),
+            declare_required(node, self._CHOICES_PARAMETER, ParameterType.STRING_ARRAY, self.USAGE),
         )
         if not self._topics:
-            raise bad_value(self._SEVERAL, "[]", node.get_name())
+            raise bad_value(self._CHOICES_PARAMETER, "[]", node.get_name())
         selected: str = node.declare_parameter("initial_topic", "").value
-        single: str = node.declare_parameter(self._SINGLE, self._SINGLE_DEFAULT).value
+        single: str = node.declare_parameter(self._SINGLE_PARAMETER, self._SINGLE_DEFAULT).value
         self._lazy = node.declare_parameter("lazy", False).value
         self._place(single, selected or self._topics[0])
 
@@ -65,8 +65,8 @@ class _Switch(TopicTool):
         """Set the topics `_input` and `_output` for a selection.
 
         Args:
-            single: the topic on the side that has only one.
-            selected: the selected topic on the other side.
+            single: the output topic of mux, or the input topic of demux.
+            selected: the selected input topic of mux, or output topic of demux.
         """
 
     @property
@@ -87,7 +87,7 @@ class _Switch(TopicTool):
     def _receive(self, message: Any) -> None:
         self._send(message)
 
-    def _same(self, first: str, second: str) -> bool:
+    def _is_same_topic(self, first: str, second: str) -> bool:
         if NO_TOPIC in (first, second):
             return first == second
         return self._node.resolve_topic_name(first) == self._node.resolve_topic_name(second)
@@ -111,9 +111,9 @@ class _Switch(TopicTool):
         logger.info(f"trying to delete {topic} to {name}")
         response.success = False
         for candidate in self._topics:
-            if not self._same(candidate, topic):
+            if not self._is_same_topic(candidate, topic):
                 continue
-            if self._same(self._selected, topic):
+            if self._is_same_topic(self._selected, topic):
                 logger.warning(f"tried to delete currently selected topic {topic} from {name}")
                 return response
             self._topics.remove(candidate)
@@ -129,14 +129,14 @@ class _Switch(TopicTool):
 
     def _select(self, request: Any, response: Any) -> Any:
         name, topic, logger = self.DEFAULT_NAME, request.topic, self._node.get_logger()
-        before = self._selected
-        response.prev_topic = before if any(self._same(topic, before) for topic in self._topics) else ""
+        previous = self._selected
+        response.prev_topic = previous if any(self._is_same_topic(topic, previous) for topic in self._topics) else ""
         response.success = True
         if topic == NO_TOPIC:
             logger.info(f"{name} selected to no {'input' if name == 'mux' else 'output'}.")
         else:
             logger.info(f"trying to switch {name} to {topic}")
-            response.success = any(self._same(candidate, topic) for candidate in self._topics)
+            response.success = any(self._is_same_topic(candidate, topic) for candidate in self._topics)
             if not response.success:
                 return response
             logger.info(f"{name} selected {'input' if name == 'mux' else 'output'}: [{topic}]")
@@ -154,7 +154,12 @@ class Mux(_Switch):
 
     DEFAULT_NAME = "mux"
     USAGE = "mux OUTPUT_TOPIC INPUT_TOPIC [INPUT_TOPIC ...]"
-    _KIND, _SINGLE, _SEVERAL, _SINGLE_DEFAULT = "Mux", "output_topic", "input_topics", "~/selected"
+    _SERVICE_PREFIX, _SINGLE_PARAMETER, _CHOICES_PARAMETER, _SINGLE_DEFAULT = (
+        "Mux",
+        "output_topic",
+        "input_topics",
+        "~/selected",
+    )
     _VERB = "listening to"
 
     def _place(self, single: str, selected: str) -> None:
@@ -177,7 +182,12 @@ class Demux(_Switch):
 
     DEFAULT_NAME = "demux"
     USAGE = "demux INPUT_TOPIC OUTPUT_TOPIC [OUTPUT_TOPIC ...]"
-    _KIND, _SINGLE, _SEVERAL, _SINGLE_DEFAULT = "Demux", "input_topic", "output_topics", "~/input"
+    _SERVICE_PREFIX, _SINGLE_PARAMETER, _CHOICES_PARAMETER, _SINGLE_DEFAULT = (
+        "Demux",
+        "input_topic",
+        "output_topics",
+        "~/input",
+    )
     _VERB = "publishing to"
 
     def _place(self, single: str, selected: str) -> None:

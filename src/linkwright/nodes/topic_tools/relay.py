@@ -26,15 +26,15 @@ class _InputToOutput(TopicTool):
         self._input = declare_required(node, "input_topic", ParameterType.STRING, self.USAGE)
         self._output = node.declare_parameter("output_topic", self._input + self.SUFFIX).value
         self._lazy = node.declare_parameter("lazy", False).value
-        self._declare_rest()
+        self._declare_parameters()
 
     @abstractmethod
-    def _declare_rest(self) -> None: ...
+    def _declare_parameters(self) -> None: ...
 
     def _declare_clock(self) -> None:
-        wall: bool = self._node.declare_parameter("use_wall_clock", False).value
-        own = self._node.get_clock()
-        self._clock = Clock(timebase=own.timebase) if wall else own
+        use_wall_clock: bool = self._node.declare_parameter("use_wall_clock", False).value
+        node_clock = self._node.get_clock()
+        self._clock = Clock(timebase=node_clock.timebase) if use_wall_clock else node_clock
 
 
 class Relay(_InputToOutput):
@@ -49,7 +49,7 @@ class Relay(_InputToOutput):
     WORDS: ClassVar = {"input_topic": str, "output_topic": str}
     SUFFIX = "_relay"
 
-    def _declare_rest(self) -> None: ...
+    def _declare_parameters(self) -> None: ...
 
     def _receive(self, message: Any) -> None:
         self._send(message)
@@ -81,41 +81,41 @@ class Throttle(_InputToOutput):
         names = self._BYTES if words[:1] == ["bytes"] else self._MESSAGES
         return options_from_words(options, words, names, self.USAGE)
 
-    def _declare_rest(self) -> None:
+    def _declare_parameters(self) -> None:
         node = self._node
-        kind = declare_required(node, "throttle_type", ParameterType.STRING, self.USAGE)
+        throttle_type = declare_required(node, "throttle_type", ParameterType.STRING, self.USAGE)
         self._period_ns = 0
-        if kind == "messages":
+        if throttle_type == "messages":
             rate = declare_required(node, "msgs_per_sec", ParameterType.DOUBLE, self.USAGE)
             self._period_ns = int(1e9 / positive(node, "msgs_per_sec", rate))
-        elif kind == "bytes":
-            self._bytes: int = declare_required(node, "bytes_per_sec", ParameterType.INTEGER, self.USAGE)
+        elif throttle_type == "bytes":
+            self._max_bytes: int = declare_required(node, "bytes_per_sec", ParameterType.INTEGER, self.USAGE)
             self._window_ns = int(declare_required(node, "window", ParameterType.DOUBLE, self.USAGE) * 1e9)
             self._sent: deque[tuple[int, int]] = deque()
         else:
-            raise bad_value("throttle_type", kind, node.get_name(), ("messages", "bytes"))
+            raise bad_value("throttle_type", throttle_type, node.get_name(), ("messages", "bytes"))
         self._declare_clock()
-        self._last_ns = self._clock.now_ns()
+        self._last_sent_ns = self._clock.now_ns()
 
     def _receive(self, message: Any) -> None:
         now_ns = self._clock.now_ns()
         if self._period_ns:
             self._count(message, now_ns)
         else:
-            self._weigh(message, now_ns)
+            self._throttle_bytes(message, now_ns)
 
     def _count(self, message: Any, now_ns: int) -> None:
-        if now_ns < self._last_ns:
+        if now_ns < self._last_sent_ns:
             self._node.get_logger().warning("Detected jump back in time, resetting throttle period to now for.")
-            self._last_ns = now_ns
-        if now_ns - self._last_ns >= self._period_ns:
+            self._last_sent_ns = now_ns
+        if now_ns - self._last_sent_ns >= self._period_ns:
             self._send(message)
-            self._last_ns = now_ns
+            self._last_sent_ns = now_ns
 
-    def _weigh(self, message: Any, now_ns: int) -> None:
+    def _throttle_bytes(self, message: Any, now_ns: int) -> None:
         while self._sent and not now_ns - self._window_ns <= self._sent[0][0] <= now_ns:
             self._sent.popleft()
-        if sum(size for _, size in self._sent) < self._bytes:
+        if sum(size for _, size in self._sent) < self._max_bytes:
             self._send(message)
             self._sent.append((now_ns, len(serialize(message))))
 
@@ -132,16 +132,16 @@ class Drop(_InputToOutput):
     WORDS: ClassVar = {"input_topic": str, "X": int, "Y": int, "output_topic": str}
     SUFFIX = "_drop"
 
-    def _declare_rest(self) -> None:
-        self._dropped: int = declare_required(self._node, "X", ParameterType.INTEGER, self.USAGE)
-        self._round: int = declare_required(self._node, "Y", ParameterType.INTEGER, self.USAGE)
+    def _declare_parameters(self) -> None:
+        self._drop_count: int = declare_required(self._node, "X", ParameterType.INTEGER, self.USAGE)
+        self._cycle_length: int = declare_required(self._node, "Y", ParameterType.INTEGER, self.USAGE)
         self._count = 0
 
     def _receive(self, message: Any) -> None:
-        if self._count >= self._dropped:
+        if self._count >= self._drop_count:
             self._send(message)
         self._count += 1
-        if self._count >= self._round:
+        if self._count >= self._cycle_length:
             self._count = 0
 
 
@@ -158,7 +158,7 @@ class Delay(_InputToOutput):
     WORDS: ClassVar = {"input_topic": str, "delay": float, "output_topic": str}
     SUFFIX = "_delay"
 
-    def _declare_rest(self) -> None:
+    def _declare_parameters(self) -> None:
         self._delay: float = self._node.declare_parameter("delay", 0.0).value
         if not self._delay >= 0.0:
             raise bad_value("delay", self._delay, self._node.get_name())

@@ -1,8 +1,8 @@
-"""The base class of topic_tools' nodes, with an input whose type is taken from the graph, and an output.
+"""The base class of topic_tools' nodes, which publish an output topic with the same type as the input topic.
 
-Differences from topic_tools 1.3: changes of the graph are handled immediately instead of within 100 ms; the node
-subscribes again to a source that returns with another type; and a stop is sent when the publisher of the last velocity
-disappears.
+There are three differences from topic_tools 1.3. Changes of the graph are handled immediately instead of within 100 ms.
+If a source returns with another type, the node subscribes to it again. If the publisher of the last velocity
+disappears, a stop is sent.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from linkwright.nodes.standstill import VELOCITIES, send_stop
 class TopicTool(SingleNode, ABC):
     """The base class of nodes that forward messages.
 
-    The output has a publisher while the input has one, with the same type, reliability and durability. A subclass sets
-    `_input` and `_output` in `_declare`.
+    While the input topic has a publisher, the node publishes the output topic with the same type and a compatible QoS.
+    A subclass sets `_input` and `_output` in `_declare`.
 
     Attributes:
         USAGE: the usage text.
-        WORDS: the parameters that command-line arguments set, with their converters.
+        WORDS: the functions that convert command-line arguments to parameter values, by parameter name.
     """
 
     USAGE: ClassVar[str]
@@ -45,7 +45,7 @@ class TopicTool(SingleNode, ABC):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._publisher: Publisher[Any] | None = None
         self._subscription: Subscription[Any] | None = None
-        self._mixed = False
+        self._has_mixed_qos = False
         with starting(self._node):
             self._declare()
             log_unknown(self._node)
@@ -81,18 +81,18 @@ class TopicTool(SingleNode, ABC):
             self._stop()
             return
         kind = sources[0].topic_type
-        qos = self._fitting([source.qos_profile for source in sources])
-        if not self._is_like(self._publisher, self._output, kind, qos):
+        qos = self._matching_profile([source.qos_profile for source in sources])
+        if not self._matches(self._publisher, self._output, kind, qos):
             self._stop()
             self._publisher = self._node.create_publisher(kind, self._output, qos)
-        if not self._is_like(self._subscription, self._input, kind, qos):
+        if not self._matches(self._subscription, self._input, kind, qos):
             self._unsubscribe()
         if self._lazy and not (self._publisher and self._publisher.get_subscription_count()):
             self._unsubscribe()
         elif self._subscription is None:
-            self._subscription = self._subscribed(kind, qos)
+            self._subscription = self._create_subscription(kind, qos)
 
-    def _subscribed(self, kind: str, qos: QoSProfile) -> Subscription[Any]:
+    def _create_subscription(self, kind: str, qos: QoSProfile) -> Subscription[Any]:
         if kind not in VELOCITIES:
             return self._node.create_subscription(kind, self._input, self._receive, qos)
         commander = Commander(self._stop_output, DriverWatch.of(self._node))
@@ -101,26 +101,27 @@ class TopicTool(SingleNode, ABC):
         commander.watch(subscription)
         return subscription
 
-    def _stop_output(self, lost: EndpointInfo) -> None:
-        """Publish a stop if the output is a velocity, after the input's publisher has disappeared."""
+    def _stop_output(self, lost_publisher: EndpointInfo) -> None:
+        """Publish a stop if the output is a velocity topic; called after the input's publisher has disappeared."""
         if self._publisher is not None and self._publisher.type_name in VELOCITIES:
-            send_stop(self._node, self._publisher, lost)
+            send_stop(self._node, self._publisher, lost_publisher)
 
     def _sources(self) -> list[Any]:
         return self._node.get_publishers_info_by_topic(self._input)
 
-    def _fitting(self, offers: list[QoSProfile]) -> QoSProfile:
-        fitting = fit(DEFAULT_QOS, offers)
-        if fitting.mixed and not self._mixed:
-            for offered, taken in fitting.mixed:
+    def _matching_profile(self, offers: list[QoSProfile]) -> QoSProfile:
+        qos_match = fit(DEFAULT_QOS, offers)
+        if qos_match.mixed and not self._has_mixed_qos:
+            for offered_value, fallback_value in qos_match.mixed:
                 self._node.get_logger().warning(
-                    f"Some, but not all, publishers on topic {self._input} offer {offered}. Falling back to {taken} in "
+                    f"Some, but not all, publishers on topic {self._input} offer {offered_value}. Falling "
+                    f"back to {fallback_value} in "
                     "order to connect to all publishers."
                 )
-        self._mixed = bool(fitting.mixed)
-        return fitting.profile
+        self._has_mixed_qos = bool(qos_match.mixed)
+        return qos_match.profile
 
-    def _is_like(
+    def _matches(
         self, endpoint: Publisher[Any] | Subscription[Any] | None, topic: str, kind: str, qos: QoSProfile
     ) -> bool:
         return (

@@ -36,19 +36,19 @@ def ament_cmake_lists(request: PackageRequest) -> str:
     """Return the ``CMakeLists.txt`` of an ament_cmake package."""
     library, node = request.library_name, request.node
     tools = ["ament_cmake", "ament_cmake_ros"] if library else ["ament_cmake"]
-    parts = [_head(request), _find([*tools, *request.dependencies])]
+    parts = [_header(request), _find_packages([*tools, *request.dependencies])]
     if not request.dependencies:
         parts.append(_NO_DEPENDENCIES)
     if library:
         parts += [
-            _library(request, f"add_library({library} src/{library}.cpp)", "include/${PROJECT_NAME}"),
+            _library_target(request, f"add_library({library} src/{library}.cpp)", "include/${PROJECT_NAME}"),
             _ament_dependencies(library, request.dependencies),
-            _building_library(request),
+            _export_definition(request),
             "\ninstall(\n  DIRECTORY include/\n  DESTINATION include/${PROJECT_NAME}\n)\n",
             _install_library(library, "export_${PROJECT_NAME}"),
         ]
     if node:
-        parts.append(_executable(request, "include/${PROJECT_NAME}"))
+        parts.append(_executable_target(request, "include/${PROJECT_NAME}"))
         if library:
             parts.append(f"target_link_libraries({node} {library})\n")
         else:
@@ -68,18 +68,18 @@ def ament_cmake_lists(request: PackageRequest) -> str:
 def plain_cmake_lists(request: PackageRequest) -> str:
     """Return the ``CMakeLists.txt`` of a package that does not use ament."""
     library, node = request.library_name, request.node
-    parts = [_head(request, version=True)]
-    parts.append(_find(request.dependencies) if request.dependencies else f"\n{_NO_DEPENDENCIES}")
+    parts = [_header(request, version=True)]
+    parts.append(_find_packages(request.dependencies) if request.dependencies else f"\n{_NO_DEPENDENCIES}")
     if library:
         parts += [
-            _library(request, f"add_library({library} SHARED src/{library}.cpp)", "include"),
+            _library_target(request, f"add_library({library} SHARED src/{library}.cpp)", "include"),
             _plain_dependencies(library, request.dependencies),
-            _building_library(request),
+            _export_definition(request),
             "\ninstall(\n  DIRECTORY include/\n  DESTINATION include\n)\n",
             _install_library(library, f"export_{request.name}"),
         ]
     if node:
-        parts.append(_executable(request, "include"))
+        parts.append(_executable_target(request, "include"))
         if library:
             parts.append(f"target_link_libraries({node} PUBLIC {library})\n")
         else:
@@ -214,16 +214,16 @@ def visibility_control(request: PackageRequest) -> str:
 """
 
 
-def _head(request: PackageRequest, *, version: bool = False) -> str:
+def _header(request: PackageRequest, *, version: bool = False) -> str:
     project = f"{request.name} VERSION 0.0.0" if version else request.name
     return f"cmake_minimum_required(VERSION 3.8)\nproject({project})\n{_WARNINGS}"
 
 
-def _find(names: Sequence[str]) -> str:
+def _find_packages(names: Sequence[str]) -> str:
     return "\n# find dependencies\n" + "".join(f"find_package({name} REQUIRED)\n" for name in names)
 
 
-def _library(request: PackageRequest, declaration: str, installed_headers: str) -> str:
+def _library_target(request: PackageRequest, declaration: str, installed_headers: str) -> str:
     library = request.library_name
     return f"""
 {declaration}
@@ -231,7 +231,7 @@ add_library({request.name}::{library} ALIAS {library})
 {_target_settings(str(library), installed_headers)}"""
 
 
-def _executable(request: PackageRequest, installed_headers: str) -> str:
+def _executable_target(request: PackageRequest, installed_headers: str) -> str:
     node = request.node
     return f"\nadd_executable({node} src/{node}.cpp)\n{_target_settings(str(node), installed_headers)}"
 
@@ -249,8 +249,8 @@ target_include_directories({target} PUBLIC
 def _ament_dependencies(target: str, names: Sequence[str]) -> str:
     if not names:
         return ""
-    rows = "".join(f'  "{name}"\n' for name in names)
-    return f"ament_target_dependencies(\n  {target}\n{rows})\n"
+    dependency_lines = "".join(f'  "{name}"\n' for name in names)
+    return f"ament_target_dependencies(\n  {target}\n{dependency_lines})\n"
 
 
 def _plain_dependencies(target: str, names: Sequence[str]) -> str:
@@ -263,7 +263,7 @@ def _plain_dependencies(target: str, names: Sequence[str]) -> str:
     )
 
 
-def _building_library(request: PackageRequest) -> str:
+def _export_definition(request: PackageRequest) -> str:
     return f"""
 # On Windows: export the library's symbols while it is built, import them while it is used.
 target_compile_definitions({request.library_name} PRIVATE "{request.name.upper()}_BUILDING_LIBRARY")

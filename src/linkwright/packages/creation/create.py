@@ -38,7 +38,7 @@ class Folder:
 
 @dataclass(frozen=True)
 class File:
-    """A file to write, relative to the package's folder; `report` names it if it is announced."""
+    """A file to write, relative to the package's folder; `announced` is whether its creation is reported."""
 
     path: Path
     text: str
@@ -46,13 +46,13 @@ class File:
 
 
 @dataclass(frozen=True)
-class Remark:
+class ReportLine:
     """A line to report between other steps."""
 
     text: str
 
 
-Step = Folder | File | Remark
+Step = Folder | File | ReportLine
 
 
 def create_package(request: PackageRequest, report: Callable[[str], None]) -> list[Diagnostic]:
@@ -81,12 +81,12 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         is_created = True
         report(f"creating folder {shown(package)}")
         for step in steps(request):
-            _carry_out(step, package, report)
+            _execute_step(step, package, report)
     except OSError as error:
         if is_created:
             shutil.rmtree(package, ignore_errors=True)  # an incomplete package would block the next attempt
-        where = shown(Path(error.filename)) if error.filename else shown(package)
-        message = phrase("cannot create '{where}': {strerror}", where=where, strerror=foreign(error.strerror or error))
+        path = shown(Path(error.filename)) if error.filename else shown(package)
+        message = phrase("cannot create '{where}': {strerror}", where=path, strerror=foreign(error.strerror or error))
         hint = phrase("choose a folder that you may write to: --destination-directory FOLDER")
         raise LinkwrightError(Diagnostic("PKG208", message, hint=hint)) from None
     return findings
@@ -100,20 +100,20 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
             "an ament_python package cannot be named 'test': its module and its tests would share a folder"
         )
         findings.append(Diagnostic("PKG206", message, hint=phrase("choose another name")))
-    for name, what in ((request.node_name, "node"), (request.library_name, "library")):
+    for name, member_kind in ((request.node_name, "node"), (request.library_name, "library")):
         if name is not None:
-            findings += check_member_name(name, what)
+            findings += check_member_name(name, member_kind)
     for dependency in request.dependencies:
         findings += check_dependency(dependency)
     findings += check_email(request.maintainer.email)
     package = request.destination / request.name
     if not has_errors(findings) and (package.exists() or package.is_symlink()):
-        what = "folder" if package.is_dir() else "file"
+        member_kind = "folder" if package.is_dir() else "file"
         hint = phrase("remove it, or choose another name or another --destination-directory")
         findings.append(
             Diagnostic(
                 "PKG207",
-                phrase("the {what} '{package}' already exists", what=term(what), package=shown(package)),
+                phrase("the {what} '{package}' already exists", what=term(member_kind), package=shown(package)),
                 hint=hint,
             )
         )
@@ -128,18 +128,20 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
 
 
 def _check_license(identifier: str) -> list[Diagnostic]:
-    known = known_licenses()
-    if identifier in known:
+    identifiers = known_licenses()
+    if identifier in identifiers:
         return []
     if identifier == DEFAULT_LICENSE:
         message = phrase("the package has no license yet, so no LICENSE is written")
-        hint = phrase("give --license with one of {known}", known=joined(known))
+        hint = phrase("choose one with --license: {known}", known=joined(identifiers))
     else:
         message = phrase(
-            "no text is known for the license '{identifier}': package.xml names it, but no LICENSE is written",
+            "Linkwright has no text for the license '{identifier}': package.xml names it, but no LICENSE is written",
             identifier=identifier,
         )
-        hint = did_you_mean(identifier, known) or phrase("texts are known for {known}", known=joined(known))
+        hint = did_you_mean(identifier, identifiers) or phrase(
+            ("the licenses with a text are {known}"), known=joined(identifiers)
+        )
     return [Diagnostic("PKG210", message, severity=Severity.WARNING, hint=hint)]
 
 
@@ -183,7 +185,7 @@ def shown(path: Path) -> str:
 
 def _python_steps(request: PackageRequest) -> Iterator[Step]:
     module = Path(request.name)
-    yield Remark("creating source folder")
+    yield ReportLine("creating source folder")
     yield Folder(module)
     yield File(Path("setup.py"), package_templates.setup_py(request))
     yield File(Path("setup.cfg"), package_templates.setup_cfg(request))
@@ -202,7 +204,7 @@ def _python_steps(request: PackageRequest) -> Iterator[Step]:
 
 def _cmake_steps(request: PackageRequest) -> Iterator[Step]:
     source, include = Path("src"), Path("include") / request.name
-    yield Remark("creating source and include folder")
+    yield ReportLine("creating source and include folder")
     yield Folder(source)
     yield Folder(include)
     if request.build_type == "ament_cmake":
@@ -220,8 +222,8 @@ def _cmake_steps(request: PackageRequest) -> Iterator[Step]:
         yield File(include / "visibility_control.h", cmake_templates.visibility_control(request))
 
 
-def _carry_out(step: Step, package: Path, report: Callable[[str], None]) -> None:
-    if isinstance(step, Remark):
+def _execute_step(step: Step, package: Path, report: Callable[[str], None]) -> None:
+    if isinstance(step, ReportLine):
         report(step.text)
         return
     path = package / step.path

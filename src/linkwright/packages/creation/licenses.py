@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-_TEXTS = Path(__file__).with_name("license_texts")
+_TEXT_FOLDER = Path(__file__).with_name("license_texts")
 
 
 def known_licenses() -> list[str]:
     """Return the identifiers of the licences whose texts are available, in alphabetical order."""
-    return sorted(path.name.removesuffix(".txt") for path in _TEXTS.glob("*.txt"))
+    return sorted(path.name.removesuffix(".txt") for path in _TEXT_FOLDER.glob("*.txt"))
 
 
 def license_text(identifier: str, *, year: int, holder: str) -> str | None:
@@ -26,4 +26,4 @@ def license_text(identifier: str, *, year: int, holder: str) -> str | None:
 
 
 def _read(identifier: str) -> str:
-    return (_TEXTS / f"{identifier}.txt").read_text(encoding="utf-8")
+    return (_TEXT_FOLDER / f"{identifier}.txt").read_text(encoding="utf-8")

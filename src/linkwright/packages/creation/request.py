@@ -27,7 +27,7 @@ class Maintainer:
 
 @dataclass(frozen=True)
 class PackageRequest:
-    """The package to create.
+    """The properties of the package to create.
 
     Attributes:
         destination: the folder in which the package's folder is created, as the user wrote it.

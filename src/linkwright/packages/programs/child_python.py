@@ -1,7 +1,7 @@
 """Start of processes whose Python programs can import ``rclpy`` and related modules.
 
-The processes import the installed modules or, if there are none, the stand-ins. The stand-ins are in a room above this
-one, so they register here how to start a process that uses them; see `linkwright.standins.activate`.
+The processes import the installed modules or, if there are none, the stand-ins. This room cannot import the room of the
+stand-ins, so the stand-ins register here how to start such a process; see `linkwright.standins.activate`.
 """
 
 from __future__ import annotations

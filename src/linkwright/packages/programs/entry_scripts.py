@@ -1,7 +1,7 @@
 """Cached script files for entry points, which ``colcon build`` would install.
 
-A launch file may search for the path of an executable, and debuggers, shells and process lists expect a program with
-its own name. Therefore, a script file is written for an entry point.
+A launch file may search for the path of an executable, and debuggers, shells and process lists expect each program to
+have its own file. Therefore, a script file is written for an entry point.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.packages.programs.child_python import python_command
 from linkwright.packages.readers.entry_points import EntryPoint
 
-_LONGEST_INTERPRETER_LINE = 120
-"""Systems cut longer ones off."""
+_MAX_INTERPRETER_LINE = 120
+"""The maximum length of the interpreter line in characters; operating systems truncate longer lines."""
 
 
 def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:
@@ -33,10 +33,10 @@ def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]
     Raises:
         OSError: the file cannot be written.
     """
-    return _kept(package, name, str(roots[0]), _script(entry, roots))
+    return _write_script(package, name, str(roots[0]), _entry_point_code(entry, roots))
 
 
-def script_for_ours(package: str, name: str) -> Path:
+def script_for_own_node(package: str, name: str) -> Path:
     """Return the script file that runs one of Linkwright's own nodes.
 
     Raises:
@@ -46,19 +46,19 @@ def script_for_ours(package: str, name: str) -> Path:
         *_interpreter_lines(),
         "import sys",
         "",
-        "from linkwright.process.interruption import end_at_once",
+        "from linkwright.process.interruption import end_on_interrupt",
         "",
         'if __name__ == "__main__":',
-        "    end_at_once()",
+        "    end_on_interrupt()",
         "    from linkwright.nodes.process import main",
         "",
         f"    sys.exit(main({package!r}, {name!r}, sys.argv[1:]))",
         "",
     ]
-    return _kept(package, name, __file__, "\n".join(lines))
+    return _write_script(package, name, __file__, "\n".join(lines))
 
 
-def _kept(package: str, name: str, origin: str, text: str) -> Path:
+def _write_script(package: str, name: str, origin: str, text: str) -> Path:
     key = hashlib.sha256(f"{origin}\0{package}\0{name}".encode()).hexdigest()[:16]
     path = cache_folder() / "executables" / key / "lib" / package / name
     if path.is_file() and path.read_text(encoding="utf-8") == text:
@@ -68,7 +68,7 @@ def _kept(package: str, name: str, origin: str, text: str) -> Path:
     return path
 
 
-def _script(entry: EntryPoint, roots: Sequence[Path]) -> str:
+def _entry_point_code(entry: EntryPoint, roots: Sequence[Path]) -> str:
     function, _, rest = entry.function.partition(".")
     return "\n".join(
         [
@@ -88,7 +88,7 @@ def _script(entry: EntryPoint, roots: Sequence[Path]) -> str:
 def _interpreter_lines() -> list[str]:
     (interpreter,) = python_command([])
     line = f"#!{interpreter}"
-    if " " not in interpreter and len(line) < _LONGEST_INTERPRETER_LINE:
+    if " " not in interpreter and len(line) < _MAX_INTERPRETER_LINE:
         return [line]
     # The shell runs the second line as a command, and Python reads it as the beginning of a string.
     return ["#!/bin/sh", f'\'\'\'exec\' "{interpreter}" "$0" "$@"', "' '''"]

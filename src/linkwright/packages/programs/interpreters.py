@@ -13,11 +13,11 @@ from pathlib import Path
 from linkwright.loading.deferred import lazy_pattern
 
 _VERSION = lazy_pattern(r"python(\d+)\.(\d+)")
-_ASK_SECONDS = 5.0
+_QUERY_TIMEOUT = 5.0
 
 
 def needs_our_interpreter(path: Path) -> bool:
-    """Return whether a script that names another Python version must run in this one.
+    """Return whether a script for another Python version must run with the current interpreter.
 
     This is the case if ROS is not installed.
 
@@ -57,7 +57,7 @@ def _python_version(interpreter: str) -> tuple[int, ...] | None:
     program = "import sys; print(*sys.version_info[:2])"
     try:
         done = subprocess.run(  # noqa: S603 - the interpreter that the user's script names
-            [interpreter, "-I", "-S", "-c", program], capture_output=True, timeout=_ASK_SECONDS, check=True, text=True
+            [interpreter, "-I", "-S", "-c", program], capture_output=True, timeout=_QUERY_TIMEOUT, check=True, text=True
         )
         return tuple(int(word) for word in done.stdout.split())
     except (OSError, subprocess.SubprocessError, ValueError):

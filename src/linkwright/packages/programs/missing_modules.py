@@ -1,4 +1,4 @@
-"""Hints on what provides a missing Python module or name: a ROS package, PyPI, or a module."""
+"""Hints on where to get a missing Python module or name: from a ROS package, PyPI or another module."""
 
 from __future__ import annotations
 
@@ -60,9 +60,11 @@ _DISTRIBUTIONS = {
 }
 """Module -> the name of its PyPI distribution, if it differs."""
 
-_FROM_PYPI = frozenset({"flatten_dict", "jinja2", "numpy", "pandas", "psutil", "pydantic", "requests", "scipy", "toml"})
+_PYPI_MODULES = frozenset(
+    {"flatten_dict", "jinja2", "numpy", "pandas", "psutil", "pydantic", "requests", "scipy", "toml"}
+)
 
-_ENDINGS = (
+_ROS_SUFFIXES = (
     "_bringup",
     "_common",
     "_config",
@@ -83,8 +85,8 @@ def missing_name(error: ImportError) -> tuple[str, str] | None:
 
     The result is None if the module itself is missing.
     """
-    found = _CANNOT_IMPORT.search(str(error))
-    return None if found is None else (found[1], found[2])
+    match = _CANNOT_IMPORT.search(str(error))
+    return None if match is None else (match[1], match[2])
 
 
 def other_module_hint(error: ImportError) -> Phrase | None:
@@ -96,9 +98,9 @@ def other_module_hint(error: ImportError) -> Phrase | None:
     if missing is None:
         return None
     name, module = missing
-    homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
-    found = homes(name) if homes else []
-    return phrase("import it from {modules}", modules=quoted_names(found, " or ")) if found else None
+    find_homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
+    modules = find_homes(name) if find_homes else []
+    return phrase("import it from {modules}", modules=quoted_names(modules, " or ")) if modules else None
 
 
 def provider_hint(module: str) -> Phrase:
@@ -111,21 +113,21 @@ def provider_hint(module: str) -> Phrase:
 
 def known_provider_hint(module: str) -> Phrase | None:
     """Return the hint of `provider_hint` for a known module, or None for an unknown one."""
-    top = module.partition(".")[0]
-    project = _ROS_PACKAGES.get(top)
+    top_module = module.partition(".")[0]
+    project = _ROS_PACKAGES.get(top_module)
     if project is not None:
         return phrase(
             "it is part of {project}: put the sources into the workspace's src folder; no build is needed",
             project=project,
         )
-    project = _COMPILED_PACKAGES.get(top)
+    project = _COMPILED_PACKAGES.get(top_module)
     if project is not None:
         return phrase(
             "it is part of {project}, which must be compiled: source a ROS 2 installation that contains it",
             project=project,
         )
-    if top in _DISTRIBUTIONS or top in _FROM_PYPI:
-        return package_hint(_DISTRIBUTIONS.get(top, top))
-    if top.endswith(_ENDINGS) or top.startswith(("ros_", "ros2_")):
-        return phrase("put the ROS package '{top}' into the workspace's src folder; no build is needed", top=top)
+    if top_module in _DISTRIBUTIONS or top_module in _PYPI_MODULES:
+        return package_hint(_DISTRIBUTIONS.get(top_module, top_module))
+    if top_module.endswith(_ROS_SUFFIXES) or top_module.startswith(("ros_", "ros2_")):
+        return phrase("put the ROS package '{top}' into the workspace's src folder; no build is needed", top=top_module)
     return None

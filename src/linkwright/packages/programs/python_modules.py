@@ -12,7 +12,7 @@ from itertools import chain
 from pathlib import Path
 
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
-from linkwright.packages.programs.source_programs import NOT_FOR_PROGRAMS, python_root
+from linkwright.packages.programs.source_programs import NON_PROGRAM_MODULES, python_root
 from linkwright.packages.programs.workspace_environment import python_folders
 
 
@@ -25,7 +25,7 @@ def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | No
             others, because many packages have a module ``scripts`` or ``utils``.
         near: the folder of the file that imports the module.
     """
-    if name in NOT_FOR_PROGRAMS:
+    if name in NON_PROGRAM_MODULES:
         return None
     own = finder.find(name)
     if own is not None:

@@ -30,8 +30,8 @@ from linkwright.packages.readers.entry_points import (
 
 _PYTHON_PACKAGE = lazy_pattern(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
 BUILD_FILES = ("setup.py", "setup.cfg", "pyproject.toml", "CMakeLists.txt")
-NOT_FOR_PROGRAMS = frozenset({"setup", "conftest", "test", "tests"})
-_ASK_SECONDS = 10.0
+NON_PROGRAM_MODULES = frozenset({"setup", "conftest", "test", "tests"})
+_SETUP_TIMEOUT = 10.0
 _SETUP_RUNNER = """
 import json, runpy, sys, types
 def setup(**given):
@@ -78,12 +78,12 @@ def source_programs(folder: Path, *, runs_setup: bool = True) -> SourcePrograms:
         folder: the folder of the package.
         runs_setup: whether a ``setup.py`` that computes its programs is run. Otherwise, such programs are left out.
     """
-    found = SourcePrograms(folder)
-    found.is_complete = any((folder / name).is_file() for name in BUILD_FILES)
-    _read_configurations(found)
-    _read_setup_py(found, runs_setup=runs_setup)
-    _read_cmake(found)
-    return found
+    programs = SourcePrograms(folder)
+    programs.is_complete = any((folder / name).is_file() for name in BUILD_FILES)
+    _read_configurations(programs)
+    _read_setup_py(programs, runs_setup=runs_setup)
+    _read_cmake(programs)
+    return programs
 
 
 def python_root(folder: Path, package: str) -> Path | None:
@@ -109,39 +109,39 @@ def module_file(root: Path, module: str) -> Path | None:
 def _modules(folder: Path) -> Iterator[Path]:
     """Yield the importable modules and packages in a folder, except those used to build or test."""
     for path in (*folder.glob("*.py"), *(path.parent for path in folder.glob("*/__init__.py"))):
-        if path.stem not in NOT_FOR_PROGRAMS:
+        if path.stem not in NON_PROGRAM_MODULES:
             yield path
 
 
-def _read_configurations(found: SourcePrograms) -> None:
+def _read_configurations(programs: SourcePrograms) -> None:
     """Add the programs in ``pyproject.toml`` and ``setup.cfg``."""
-    cfg = text_of(found.folder / "setup.cfg")
+    cfg = text_of(programs.folder / "setup.cfg")
     for line in (
-        *read_pyproject_group(text_of(found.folder / "pyproject.toml"), PROGRAMS),
+        *read_pyproject_group(text_of(programs.folder / "pyproject.toml"), PROGRAMS),
         *read_setup_cfg_group(cfg, PROGRAMS),
     ):
-        _add_entry(found, line)
+        _add_entry(programs, line)
     for line in option_lines(cfg, "options", "scripts"):
-        _add_script(found, line.strip())
+        _add_script(programs, line.strip())
 
 
-def _read_setup_py(found: SourcePrograms, *, runs_setup: bool) -> None:
+def _read_setup_py(programs: SourcePrograms, *, runs_setup: bool) -> None:
     from linkwright.packages.readers.setup_py import read_setup
 
-    path = found.folder / "setup.py"
+    path = programs.folder / "setup.py"
     text = text_of(path)
     if not text:
         return
     facts = read_setup(SourceText(str(path), text))
     for entry in facts.entry_points:
-        found.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
-    computed = facts.call and not facts.entry_points_complete
-    if runs_setup and (computed or re.search(r"\bscripts\s*=", text)):
-        entries, scripts = _run_setup_py(found.folder)
+        programs.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
+    has_computed_entry_points = facts.has_call and not facts.entry_points_complete
+    if runs_setup and (has_computed_entry_points or re.search(r"\bscripts\s*=", text)):
+        entries, scripts = _run_setup_py(programs.folder)
         for line in entries:
-            _add_entry(found, line)
+            _add_entry(programs, line)
         for name in scripts:
-            _add_script(found, name)
+            _add_script(programs, name)
 
 
 def _run_setup_py(folder: Path) -> tuple[list[str], list[str]]:
@@ -150,41 +150,41 @@ def _run_setup_py(folder: Path) -> tuple[list[str], list[str]]:
     Both lists are empty if the run fails.
     """
     try:
-        done = subprocess.run(  # noqa: S603 - the user runs a program of this very package
+        process = subprocess.run(  # noqa: S603 - the user runs a program of this very package
             [sys.executable, "-c", _SETUP_RUNNER],
             cwd=folder,
             capture_output=True,
-            timeout=_ASK_SECONDS,
+            timeout=_SETUP_TIMEOUT,
             check=True,
             text=True,
         )
-        entries, scripts = json.loads(done.stdout.splitlines()[-1])
+        entries, scripts = json.loads(process.stdout.splitlines()[-1])
     except (OSError, subprocess.SubprocessError, ValueError, IndexError):
         return [], []
     return [str(entry) for entry in entries], [str(script) for script in scripts]
 
 
-def _read_cmake(found: SourcePrograms) -> None:
-    path = found.folder / "CMakeLists.txt"
+def _read_cmake(programs: SourcePrograms) -> None:
+    path = programs.folder / "CMakeLists.txt"
     text = text_of(path)
     if not text:
         return
     from linkwright.packages.readers.cmake import read_cmake
 
-    file = read_cmake(SourceText(str(path), text), found.folder)
+    file = read_cmake(SourceText(str(path), text), programs.folder)
     for name, relative in file.programs.items():
-        _add_script(found, relative, name)
-    found.compiled |= file.executables - set(file.programs)
-    found.is_complete &= file.is_complete
+        _add_script(programs, relative, name)
+    programs.compiled |= file.executables - set(file.programs)
+    programs.is_complete &= file.is_complete
 
 
-def _add_entry(found: SourcePrograms, line: Any) -> None:
+def _add_entry(programs: SourcePrograms, line: Any) -> None:
     match = LINE.match(line) if isinstance(line, str) else None
     if match is not None:
-        found.entry_points[match[1]] = EntryPoint(match[2], match[3] or "main")
+        programs.entry_points[match[1]] = EntryPoint(match[2], match[3] or "main")
 
 
-def _add_script(found: SourcePrograms, relative: str, name: str | None = None) -> None:
-    path = found.folder / relative
+def _add_script(programs: SourcePrograms, relative: str, name: str | None = None) -> None:
+    path = programs.folder / relative
     if relative and path.is_file():
-        found.scripts[name or path.name] = path
+        programs.scripts[name or path.name] = path

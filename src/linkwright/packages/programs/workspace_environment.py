@@ -10,8 +10,8 @@ from linkwright.packages import PackageFinder, install_prefix, is_installed, is_
 from linkwright.packages.finder import START_VARIABLE
 from linkwright.packages.programs.source_programs import python_root
 
-_AMENT = "AMENT_PREFIX_PATH"
-_PYTHON = "PYTHONPATH"
+_PREFIX_VARIABLE = "AMENT_PREFIX_PATH"
+_PYTHON_VARIABLE = "PYTHONPATH"
 
 
 def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
@@ -23,7 +23,7 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
     """
     environment = dict(base)
     environment[START_VARIABLE] = os.pathsep.join(map(str, finder.starts))
-    known = set(base.get(_AMENT, "").split(os.pathsep))
+    existing_prefixes = set(base.get(_PREFIX_VARIABLE, "").split(os.pathsep))
     prefixes: dict[str, None] = {}
     folders: dict[str, None] = {}
     for name, share in finder.packages().items():
@@ -34,11 +34,11 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
             root = python_root(share, name)
             if root is not None:
                 folders[str(root)] = None
-        elif str(prefix) not in known:
+        elif str(prefix) not in existing_prefixes:
             prefixes[str(prefix)] = None
             folders.update((str(folder), None) for folder in python_folders(prefix, name))
-    _append(environment, _AMENT, prefixes)
-    _append(environment, _PYTHON, folders)
+    _append(environment, _PREFIX_VARIABLE, prefixes)
+    _append(environment, _PYTHON_VARIABLE, folders)
     return environment
 
 
@@ -57,12 +57,12 @@ def python_folders(prefix: Path, package: str) -> Iterator[Path]:
         for line in lines:
             _, _, rest = line.partition(";")
             variable, _, value = rest.partition(";")
-            if variable == _PYTHON and value:
+            if variable == _PYTHON_VARIABLE and value:
                 yield prefix / value
 
 
 def _append(environment: dict[str, str], name: str, entries: Mapping[str, None]) -> None:
-    present = [entry for entry in environment.get(name, "").split(os.pathsep) if entry]
-    added = [entry for entry in entries if entry not in present]
-    if added:
-        environment[name] = os.pathsep.join([*present, *added])
+    existing_entries = [entry for entry in environment.get(name, "").split(os.pathsep) if entry]
+    new_entries = [entry for entry in entries if entry not in existing_entries]
+    if new_entries:
+        environment[name] = os.pathsep.join([*existing_entries, *new_entries])

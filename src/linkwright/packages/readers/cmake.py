@@ -1,6 +1,6 @@
-"""Reader for the install rules of a ``CMakeLists.txt`` without CMake.
+"""Reader for the install rules of a ``CMakeLists.txt``, which does not need CMake.
 
-For packages of descriptions, launch files, scripts and interfaces, CMake compiles nothing and only copies files.
+In packages of descriptions, launch files, scripts and interfaces, CMake compiles nothing and only copies files.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.lean_dataclasses import dataclass, field, replace
-from linkwright.packages.readers.cmake_commands import is_followed
+from linkwright.packages.readers.cmake_commands import has_known_effect
 from linkwright.packages.readers.cmake_conditions import matched
 from linkwright.packages.readers.cmake_language import (
     BUILD,
@@ -32,14 +32,14 @@ _KEYWORDS = frozenset(
         *("DIRECTORY_PERMISSIONS", "TYPE", "EXCLUDE"),
     }
 )
-_COMPILED = frozenset(
+_COMPILED_TARGET_COMMANDS = frozenset(
     {
         *("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"),
         *("rclcpp_components_register_node", "pybind11_add_module", "python3_add_library"),
     }
 )
-_INTERFACES = (".msg", ".srv", ".action", ".idl")
-_FOLDERS_OF_TYPES = {
+_INTERFACE_EXTENSIONS = (".msg", ".srv", ".action", ".idl")
+_FOLDERS_BY_TYPE = {
     "BIN": "bin",
     "SBIN": "sbin",
     "LIB": "lib",
@@ -51,8 +51,8 @@ _FOLDERS_OF_TYPES = {
     "MAN": "share/man",
     "DOC": "share/doc",
 }
-_NAME = "CMakeLists.txt"
-_INDEX = "share/ament_index/resource_index"
+_FILE_NAME = "CMakeLists.txt"
+_INDEX_FOLDER = "share/ament_index/resource_index"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +77,9 @@ class PathPattern:
         """
         if self.is_regex:
             return bool(matched(self.text, path))
-        parts = path.split("/")
+        components = path.split("/")
         depth = self.text.count("/") + 1
-        return fnmatchcase("/".join(parts[-depth:]), self.text)
+        return fnmatchcase("/".join(components[-depth:]), self.text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ class CopyRule:
         kind: ``FILES``, ``PROGRAMS`` or ``DIRECTORY``.
         items: the sources, relative to the package; a trailing slash means the content of a folder.
         destination: the target folder, relative to the prefix; None if it is not known.
-        renamed: the new name of a single file, or None.
+        new_name: the new name of a single file; None to keep the name.
         patterns: the patterns for files and folders in a copied folder.
         only_matching: whether only files that match a pattern are copied.
         is_optional: whether the sources may be missing.
@@ -99,30 +99,32 @@ class CopyRule:
     kind: str
     items: tuple[Argument, ...]
     destination: str | None
-    renamed: str | None = None
+    new_name: str | None = None
     patterns: tuple[PathPattern, ...] = ()
     only_matching: bool = False
     is_optional: bool = False
 
-    def takes(self, folder: str, inside: PurePosixPath) -> bool:
+    def takes(self, folder: str, relative_path: PurePosixPath) -> bool:
         """Return whether the rule copies a file in a folder.
 
         Args:
             folder: the folder, relative to the package.
-            inside: the path of the file, relative to the folder.
+            relative_path: the path of the file, relative to the folder.
         """
         if not self.patterns:
             return not self.only_matching
-        return self._takes([f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)])
+        return self._selects(
+            [f"/{folder.rstrip('/')}/{path}" for path in (*list(relative_path.parents)[:-1], relative_path)]
+        )
 
-    def may_lack(self, item: str) -> bool:
+    def may_be_missing(self, item: str) -> bool:
         """Return whether the build continues if an item is missing.
 
         CMake applies the patterns first: a missing item does not count as a folder, so ``FILES_MATCHING`` skips it.
         """
-        return self.is_optional or not self._takes([f"/{item.rstrip('/')}"])
+        return self.is_optional or not self._selects([f"/{item.rstrip('/')}"])
 
-    def _takes(self, paths: Sequence[str]) -> bool:
+    def _selects(self, paths: Sequence[str]) -> bool:
         """Return whether the patterns select a file.
 
         Args:
@@ -130,13 +132,13 @@ class CopyRule:
         """
         if any(pattern.is_excluded and pattern.matches(path) for pattern in self.patterns for path in paths):
             return False
-        included = (pattern for pattern in self.patterns if not pattern.is_excluded)
-        return not self.only_matching or any(pattern.matches(paths[-1]) for pattern in included)
+        include_patterns = (pattern for pattern in self.patterns if not pattern.is_excluded)
+        return not self.only_matching or any(pattern.matches(paths[-1]) for pattern in include_patterns)
 
 
 @dataclass
 class CMakeFile:
-    """The facts of a ``CMakeLists.txt``, with its subdirectories and included files.
+    """The targets and install rules of a ``CMakeLists.txt``, with its subdirectories and included files.
 
     Attributes:
         project: the name of the project, or None.
@@ -146,8 +148,8 @@ class CMakeFile:
         modules: the installed Python packages and modules, as folders and files relative to the package.
         hooks: the installed files that set environment variables, relative to the prefix.
         compiled: the compiled targets.
-        foreign: the commands of other packages, which may install further files.
-        unknown: the reasons why further files may be installed.
+        foreign: the commands of other packages, which may install additional files.
+        unknown: the reasons why additional files may be installed.
         is_ament: whether the package is an ament package.
     """
 
@@ -183,13 +185,13 @@ class CMakeFile:
     @property
     def required(self) -> list[Argument]:
         """The files and folders that must exist for the build to succeed."""
-        return [item for rule in self.copies for item in rule.items if not rule.may_lack(item.text)]
+        return [item for rule in self.copies for item in rule.items if not rule.may_be_missing(item.text)]
 
     @property
     def programs(self) -> dict[str, str]:
         """The installed programs that are files: name -> path relative to the package."""
         return {
-            rule.renamed or PurePosixPath(item.text).name: item.text
+            rule.new_name or PurePosixPath(item.text).name: item.text
             for rule in self.copies
             if rule.kind == "PROGRAMS"
             for item in rule.items
@@ -218,8 +220,8 @@ class CMakeFile:
     def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
         """Yield the installed files whose paths in the share folder and in the package differ.
 
-        Folders whose files keep their paths are not read. Missing files, and some files that are installed outside the
-        share folder, are left out.
+        A folder is not read if all of its files keep their paths. Missing files, and some files that are installed
+        outside the share folder, are omitted.
 
         Args:
             package: the package's folder.
@@ -234,57 +236,57 @@ class CMakeFile:
         for rule in self.copies:
             if rule.destination is not None:
                 for item in rule.items:
-                    yield from self._copied(rule, item.text, rule.destination, package, share)
+                    yield from self._copied_files(rule, item.text, rule.destination, package, share)
 
-    def _copied(
+    def _copied_files(
         self, rule: CopyRule, item: str, destination: str, package: Path, share: PurePosixPath | None
     ) -> Iterator[InstalledFile]:
-        into, here = PurePosixPath(destination), PurePosixPath(item)
+        target, source = PurePosixPath(destination), PurePosixPath(item)
         if item.startswith(BUILD):
-            yield from self._copied_from_build(rule, item, into)
+            yield from self._copied_build_files(rule, item, target)
             return
-        single = into / (rule.renamed or here.name)
-        if share is not None and rule.kind != "DIRECTORY" and single == share / here:
+        target_file = target / (rule.new_name or source.name)
+        if share is not None and rule.kind != "DIRECTORY" and target_file == share / source:
             return
         path = package / item
         if not path.exists():
-            if share is not None or rule.may_lack(item) or item.startswith("$<"):
+            if share is not None or rule.may_be_missing(item) or item.startswith("$<"):
                 return
             raise FileNotFoundError(item)
         if path.is_file():
-            yield InstalledFile(item, str(single))
+            yield InstalledFile(item, str(target_file))
             return
-        below = into if item.endswith("/") else into / path.resolve().name
-        if share is not None and (below == share / here or not _is_nested(below, share)):
+        target_folder = target if item.endswith("/") else target / path.resolve().name
+        if share is not None and (target_folder == share / source or not _is_nested(target_folder, share)):
             return
         for file in sorted(path.rglob("*")):
-            inside = PurePosixPath(file.relative_to(path).as_posix())
-            if file.is_file() and rule.takes(item, inside):
-                yield InstalledFile((here / inside).as_posix(), str(below / inside))
+            relative_path = PurePosixPath(file.relative_to(path).as_posix())
+            if file.is_file() and rule.takes(item, relative_path):
+                yield InstalledFile((source / relative_path).as_posix(), str(target_folder / relative_path))
 
-    def _copied_from_build(self, rule: CopyRule, item: str, into: PurePosixPath) -> Iterator[InstalledFile]:
-        below = into if item.endswith("/") else into / PurePosixPath(item).name
+    def _copied_build_files(self, rule: CopyRule, item: str, target: PurePosixPath) -> Iterator[InstalledFile]:
+        target_folder = target if item.endswith("/") else target / PurePosixPath(item).name
         for path, file in self._generated.items():
             if path == item:
-                yield file._replace(destination=str(into / (rule.renamed or PurePosixPath(path).name)))
+                yield file._replace(destination=str(target / (rule.new_name or PurePosixPath(path).name)))
             elif path.startswith(f"{item.rstrip('/')}/"):
-                inside = PurePosixPath(path).relative_to(item)
-                if rule.takes(item, inside):
-                    yield file._replace(destination=str(below / inside))
+                relative_path = PurePosixPath(path).relative_to(item)
+                if rule.takes(item, relative_path):
+                    yield file._replace(destination=str(target_folder / relative_path))
 
     def _make(self, source: str, destination: str, values: dict[str, str] | None = None, content: str = "") -> None:
         """Record a file that the build generates and installs.
 
         If the same file is recorded again, the content is appended.
         """
-        before = self._made.get(destination)
-        text = None if values is not None else (before.content or "" if before else "") + content
+        previous = self._made.get(destination)
+        text = None if values is not None else (previous.content or "" if previous else "") + content
         self._made[destination] = InstalledFile(source, destination, values, text)
 
 
-def _is_nested(one: PurePosixPath, other: PurePosixPath) -> bool:
+def _is_nested(first: PurePosixPath, second: PurePosixPath) -> bool:
     """Return whether two folders are the same or one contains the other."""
-    return one.is_relative_to(other) or other.is_relative_to(one)
+    return first.is_relative_to(second) or second.is_relative_to(first)
 
 
 def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
@@ -305,32 +307,34 @@ def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
 
 def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
     name, arguments, words = command.name, command.arguments, command.words
-    if not is_followed(name):
+    if not has_known_effect(name):
         file.foreign.append(name)
-    if name in _COMPILED and "INTERFACE" not in words and words:
+    if name in _COMPILED_TARGET_COMMANDS and "INTERFACE" not in words and words:
         file.compiled.append(words[0])
     if name == "project" and arguments:
         file.project = file.project or arguments[0]
     elif name in ("add_executable", "ament_auto_add_executable") and words and not is_open(words[0]):
         file.targets.add(words[0])
     elif name == "rclcpp_components_register_node":
-        executable = _following(words, "EXECUTABLE")
+        executable = _argument_after(words, "EXECUTABLE")
         if executable is not None and not is_open(executable):
             file.targets.add(executable)
     elif name == "configure_file" and len(words) > 1 and not is_open(words[0]):
         source = within_package(words[0], command.folder)
-        file._generated[_in_build(words[1], program)] = InstalledFile(source, "", dict(program.variables))
+        file._generated[_build_path(words[1], program)] = InstalledFile(source, "", dict(program.variables))
     elif name == "file" and len(words) > 1 and words[0] in ("WRITE", "APPEND"):
-        path = _in_build(words[1], program)
-        before = file._generated.get(path) if words[0] == "APPEND" else None
-        content = (before.content or "" if before else "") + "".join(words[2:])
-        file._generated[path] = InstalledFile(_NAME, "", None, content)
+        path = _build_path(words[1], program)
+        previous = file._generated.get(path) if words[0] == "APPEND" else None
+        content = (previous.content or "" if previous else "") + "".join(words[2:])
+        file._generated[path] = InstalledFile(_FILE_NAME, "", None, content)
     elif name in ("install", "catkin_install_python") and words:
         _read_install(file, command)
     elif name == "rosidl_generate_interfaces":
-        file.interfaces += [within_package(word, command.folder) for word in words if word.endswith(_INTERFACES)]
+        file.interfaces += [
+            within_package(word, command.folder) for word in words if word.endswith(_INTERFACE_EXTENSIONS)
+        ]
     elif name == "ament_python_install_package" and words:
-        file.modules.append(within_package(_following(words, "PACKAGE_DIR") or words[0], command.folder))
+        file.modules.append(within_package(_argument_after(words, "PACKAGE_DIR") or words[0], command.folder))
     elif name == "ament_python_install_module" and words:
         file.modules.append(within_package(words[0], command.folder))
     elif name == "ament_environment_hooks":
@@ -343,10 +347,10 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
         file.is_ament = True
         if "INSTALL_TO_SHARE" in words:
             share = f"share/{file.project.text if file.project else ''}"
-            _add(file, CopyRule("DIRECTORY", arguments[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
+            _add_rule(file, CopyRule("DIRECTORY", arguments[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
 
 
-def _in_build(word: str, program: CMakeProgram) -> str:
+def _build_path(word: str, program: CMakeProgram) -> str:
     return word if word.startswith(BUILD) else f"{program.variables['CMAKE_CURRENT_BINARY_DIR']}/{word}"
 
 
@@ -357,26 +361,28 @@ def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
             continue
         hook = within_package(word, command.folder)
         name = PurePosixPath(hook).name
-        into = f"share/{file.project.text if file.project else ''}/environment/{name.removesuffix('.in')}"
-        file.hooks.append(into)
+        target = f"share/{file.project.text if file.project else ''}/environment/{name.removesuffix('.in')}"
+        file.hooks.append(target)
         if name.endswith(".in"):
-            file._make(hook, into, dict(program.variables))
+            file._make(hook, target, dict(program.variables))
         else:
-            file._made[into] = InstalledFile(hook, into)
+            file._made[target] = InstalledFile(hook, target)
 
 
 def _read_resource(file: CMakeFile, command: Command) -> None:
     """Record an entry of the resource index, and the plugin description that it refers to."""
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
-        name, content = _following(words, "PACKAGE_NAME") or project, _following(words, "CONTENT") or ""
-        file._make(_NAME, f"{_INDEX}/{words[0]}/{name}", content=content)
+        name, content = _argument_after(words, "PACKAGE_NAME") or project, _argument_after(words, "CONTENT") or ""
+        file._make(_FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}/{name}", content=content)
     elif len(words) > 1 and not is_open(words[1]):
         path = PurePosixPath(within_package(words[1], command.folder))
         share = f"share/{project}"
-        file._make(_NAME, f"{_INDEX}/{words[0]}__pluginlib__plugin/{project}", content=f"{share}/{path.name}\n")
+        file._make(
+            _FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}__pluginlib__plugin/{project}", content=f"{share}/{path.name}\n"
+        )
         rule = CopyRule("FILES", command.arguments[1:2], share, is_optional=command.is_conditional)
-        _add(file, rule, command)
+        _add_rule(file, rule, command)
 
 
 def _read_install(file: CMakeFile, command: Command) -> None:
@@ -384,44 +390,46 @@ def _read_install(file: CMakeFile, command: Command) -> None:
     kind = words[0]
     items = tuple(takewhile(lambda argument: argument.text not in _KEYWORDS, arguments[1:]))
     if kind in ("FILES", "PROGRAMS", "DIRECTORY"):
-        destination = _following(words, "DESTINATION") or _FOLDERS_OF_TYPES.get(_following(words, "TYPE") or "")
+        destination = _argument_after(words, "DESTINATION") or _FOLDERS_BY_TYPE.get(
+            _argument_after(words, "TYPE") or ""
+        )
         if destination is None or is_open(destination):
             file.unknown.append(f"'install({' '.join(words)})' cannot be read without CMake")
             destination = None
         else:
             destination = destination.removeprefix(f"{PREFIX}/")
-        renamed = _following(words, "RENAME")
+        new_name = _argument_after(words, "RENAME")
         is_optional = command.is_conditional or "OPTIONAL" in words
-        patterns, only_matching = tuple(_patterns(words)), "FILES_MATCHING" in words
-        rule = CopyRule(kind, items, destination, renamed, patterns, only_matching, is_optional)
-        _add(file, rule, command)
+        patterns, only_matching = tuple(_path_patterns(words)), "FILES_MATCHING" in words
+        rule = CopyRule(kind, items, destination, new_name, patterns, only_matching, is_optional)
+        _add_rule(file, rule, command)
     elif kind == "TARGETS":
         file.targets |= {item.text for item in items}
     elif kind in ("CODE", "SCRIPT"):
         file.unknown.append(f"the effect of install({kind}) is not known here")
 
 
-def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
-    """Add an install rule without the items that only CMake can evaluate."""
-    known = tuple(
+def _add_rule(file: CMakeFile, rule: CopyRule, command: Command) -> None:
+    """Add an install rule; items that only CMake can evaluate are omitted."""
+    known_items = tuple(
         Argument(within_package(item.text, command.folder), item.start, item.end, item.source)
         for item in rule.items
         if not is_open(item.text)
     )
-    if len(known) < len(rule.items):
+    if len(known_items) < len(rule.items):
         file.unknown.append(f"'{command.name}({' '.join(command.words)})' cannot be read without CMake")
-    if known:
-        file.copies.append(replace(rule, items=known))
+    if known_items:
+        file.copies.append(replace(rule, items=known_items))
 
 
-def _following(words: Sequence[str], keyword: str) -> str | None:
+def _argument_after(words: Sequence[str], keyword: str) -> str | None:
     """Return the argument after a keyword, or None if there is none."""
-    at = words.index(keyword) + 1 if keyword in words else len(words)
-    return words[at] if at < len(words) else None
+    index = words.index(keyword) + 1 if keyword in words else len(words)
+    return words[index] if index < len(words) else None
 
 
-def _patterns(words: Sequence[str]) -> Iterator[PathPattern]:
-    for at, word in enumerate(words[:-1]):
+def _path_patterns(words: Sequence[str]) -> Iterator[PathPattern]:
+    for index, word in enumerate(words[:-1]):
         if word in ("PATTERN", "REGEX"):
-            is_excluded = words[at + 2 : at + 3] == ["EXCLUDE"]
-            yield PathPattern(words[at + 1], word == "REGEX", is_excluded)
+            is_excluded = words[index + 2 : index + 3] == ["EXCLUDE"]
+            yield PathPattern(words[index + 1], word == "REGEX", is_excluded)

@@ -1,4 +1,4 @@
-"""The CMake commands, of CMake and of ROS's build tools, whose installed files are known.
+"""The commands of CMake and of ROS's build tools for which the installed files are known.
 
 A package may define other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot be
 read here, so the files that they install are not known.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from linkwright.loading.deferred import lazy_pattern
 
-_OF_CMAKE = frozenset(
+_CMAKE_COMMANDS = frozenset(
     {
         *("add_compile_definitions", "add_compile_options", "add_custom_command", "add_custom_target"),
         *("add_definitions", "add_dependencies", "add_executable", "add_library", "add_link_options"),
@@ -23,19 +23,19 @@ _OF_CMAKE = frozenset(
         *("try_compile", "try_run", "unset", "variable_watch"),
     }
 )
-_OF_FAMILIES = lazy_pattern(
+_COMMAND_FAMILIES = lazy_pattern(
     r"(cmake|ctest|check|find|fetchcontent|externalproject|pkg|set|get|target|qt[56]?|pybind11|protobuf|gz_find|export"
     r"|ament|rosidl|catkin|rclcpp|pluginlib|roslint|roslaunch|generate)_\w+"
     r"|python3?_add_\w+|moveit_package|xacro_add_files|add_(message|service|action)_files"
     r"|add_\w*(test|gmock)\w*"
 )
-"""Commands by their beginnings; those that install, such as ``ament_python_install_package``, are read."""
+"""Commands by prefix; commands that install files, such as ``ament_python_install_package``, are evaluated."""
 
 
-def is_followed(command: str) -> bool:
+def has_known_effect(command: str) -> bool:
     """Return whether the installed files of a command are known.
 
     Args:
         command: the name of the command in lower case.
     """
-    return command in _OF_CMAKE or bool(_OF_FAMILIES.fullmatch(command))
+    return command in _CMAKE_COMMANDS or bool(_COMMAND_FAMILIES.fullmatch(command))

@@ -11,20 +11,20 @@ from linkwright.packages.readers.cmake_syntax import is_open
 
 _NUMBER = lazy_pattern(r"[+-]?\d+(\.\d*)?")
 YES = frozenset({"1", "ON", "YES", "TRUE", "Y"})
-_NO = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
-_ORDERS: dict[str, Callable[[int], bool]] = {
+_FALSE_CONSTANTS = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
+_ORDER_TESTS: dict[str, Callable[[int], bool]] = {
     "EQUAL": lambda sign: sign == 0,
     "LESS": lambda sign: sign < 0,
     "GREATER": lambda sign: sign > 0,
     "LESS_EQUAL": lambda sign: sign <= 0,
     "GREATER_EQUAL": lambda sign: sign >= 0,
 }
-_BINARY = frozenset({"MATCHES", "IN_LIST"}) | {
-    f"{kind}{order}" for kind in ("", "STR", "VERSION_") for order in _ORDERS
+_BINARY_OPERATORS = frozenset({"MATCHES", "IN_LIST"}) | {
+    f"{kind}{order}" for kind in ("", "STR", "VERSION_") for order in _ORDER_TESTS
 }
-_MOST_WORDS = 200
-_LONGEST_SEARCH = 0.2
-"""Seconds for a regular expression, which may come from an untrusted file."""
+_MAX_TOKENS = 200
+_SEARCH_TIMEOUT = 0.2
+"""The maximum time in seconds to match a regular expression, which may come from an untrusted file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,80 +52,80 @@ class Condition:
     Args:
         words: the words of the condition.
         variables: the known variables; ``MATCHES`` sets ``CMAKE_MATCH_...`` in them.
-        is_there: called with an operator and a path; returns whether the path exists, or for ``IS_DIRECTORY`` whether
-            it is a folder, or None if that is not known.
+        path_exists: called with an operator and a path; returns whether the path exists or, for ``IS_DIRECTORY``, is a
+            folder; returns None if that is not known.
     """
 
     words: Sequence[Word]
     variables: MutableMapping[str, str]
     is_there: Callable[[str, str], bool | None]
-    _at: int = 0
+    _index: int = 0
 
     def answer(self) -> bool | None:
         """Return whether the condition is true, or None if that is not known."""
-        if len(self.words) > _MOST_WORDS:
+        if len(self.words) > _MAX_TOKENS:
             return None
-        answer = self._evaluate_or()
-        return answer if self._at == len(self.words) else None
+        evaluate = self._evaluate_or()
+        return evaluate if self._index == len(self.words) else None
 
     def _next(self, *keywords: str) -> bool:
-        if self._at < len(self.words) and self.words[self._at].keyword in keywords:
-            self._at += 1
+        if self._index < len(self.words) and self.words[self._index].keyword in keywords:
+            self._index += 1
             return True
         return False
 
     def _evaluate_or(self) -> bool | None:
-        found = self._both()
+        result = self._evaluate_and()
         while self._next("OR"):
-            other = self._both()
-            found = True if found or other else None if None in (found, other) else False
-        return found
+            other = self._evaluate_and()
+            result = True if result or other else None if None in (result, other) else False
+        return result
 
-    def _both(self) -> bool | None:
-        found = self._evaluate_not()
+    def _evaluate_and(self) -> bool | None:
+        result = self._evaluate_not()
         while self._next("AND"):
             other = self._evaluate_not()
-            found = False if False in (found, other) else None if None in (found, other) else True
-        return found
+            result = False if False in (result, other) else None if None in (result, other) else True
+        return result
 
     def _evaluate_not(self) -> bool | None:
         if self._next("NOT"):
-            found = self._evaluate_not()
-            return None if found is None else not found
+            result = self._evaluate_not()
+            return None if result is None else not result
         return self._evaluate_test()
 
     def _evaluate_test(self) -> bool | None:
         if self._next("("):
-            found = self._evaluate_or()
-            return found if self._next(")") else None
-        if self._at >= len(self.words):
+            result = self._evaluate_or()
+            return result if self._next(")") else None
+        if self._index >= len(self.words):
             return None
-        word = self.words[self._at]
-        self._at += 1
+        word = self.words[self._index]
+        self._index += 1
         if word.keyword in ("EXISTS", "IS_DIRECTORY", "DEFINED", "COMMAND", "TARGET", "POLICY", "IS_ABSOLUTE"):
-            return self._about(word.text)
-        if self._at < len(self.words) and self.words[self._at].keyword in _BINARY:
-            operator = self.words[self._at].text
-            self._at += 1
-            return self._compared(word, operator)
-        return self._truth(word)
+            return self._evaluate_unary(word.text)
+        if self._index < len(self.words) and self.words[self._index].keyword in _BINARY_OPERATORS:
+            operator = self.words[self._index].text
+            self._index += 1
+            return self._evaluate_binary(word, operator)
+        return self._evaluate_word(word)
 
-    def _about(self, what: str) -> bool | None:
-        if self._at >= len(self.words):
+    def _evaluate_unary(self, operator: str) -> bool | None:
+        if self._index >= len(self.words):
             return None
-        subject = self.words[self._at].text
-        self._at += 1
+        subject = self.words[self._index].text
+        self._index += 1
         if is_open(subject):
             return None
-        if what == "DEFINED":
+        if operator == "DEFINED":
             return True if subject in self.variables else None
-        return self.is_there(what, subject) if what in ("EXISTS", "IS_DIRECTORY") else None
+        return self.is_there(operator, subject) if operator in ("EXISTS", "IS_DIRECTORY") else None
 
-    def _compared(self, left: Word, operator: str) -> bool | None:
-        if self._at >= len(self.words):
+    def _evaluate_binary(self, left: Word, operator: str) -> bool | None:
+        if self._index >= len(self.words):
             return None
-        right = self.words[self._at]
-        self._at += 1
+        right = self.words[self._index]
+        self._index += 1
         value = self._value(left)
         if operator == "IN_LIST":
             items = self.variables.get(right.text)
@@ -136,22 +136,22 @@ class Condition:
         if operator == "MATCHES":
             return self._matches(value, other)
         kind = next((kind for kind in ("STR", "VERSION_") if operator.startswith(kind)), "")
-        sign = _order(kind, value, other)
-        return None if sign is None else _ORDERS[operator.removeprefix(kind)](sign)
+        sign = _compare(kind, value, other)
+        return None if sign is None else _ORDER_TESTS[operator.removeprefix(kind)](sign)
 
     def _matches(self, text: str, pattern: str) -> bool | None:
-        found = matched(pattern, text)
-        if found is None:
+        matches = matched(pattern, text)
+        if matches is None:
             return None
-        if found:
-            groups = [found[0][0], *found[0][1]]
+        if matches:
+            groups = [matches[0][0], *matches[0][1]]
             self.variables.update({f"CMAKE_MATCH_{number}": group for number, group in enumerate(groups)})
-        return bool(found)
+        return bool(matches)
 
     def _value(self, word: Word) -> str:
         return word.text if word.is_quoted else self.variables.get(word.text, word.text)
 
-    def _truth(self, word: Word) -> bool | None:
+    def _evaluate_word(self, word: Word) -> bool | None:
         if is_open(word.text):
             return None
         constant = _constant(word.text)
@@ -171,8 +171,8 @@ def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
     import regex
 
     try:
-        found = regex.finditer(pattern, text, timeout=_LONGEST_SEARCH)
-        return [(match[0], [group or "" for group in match.groups()]) for match in found]
+        matches = regex.finditer(pattern, text, timeout=_SEARCH_TIMEOUT)
+        return [(match[0], [group or "" for group in match.groups()]) for match in matches]
     except (regex.error, TimeoutError, RecursionError):
         return None
 
@@ -181,18 +181,18 @@ def _constant(text: str) -> bool | None:
     upper = text.upper()
     if upper in YES or (_NUMBER.fullmatch(upper) and float(upper)):
         return True
-    if upper in _NO or upper.endswith("-NOTFOUND") or _NUMBER.fullmatch(upper):
+    if upper in _FALSE_CONSTANTS or upper.endswith("-NOTFOUND") or _NUMBER.fullmatch(upper):
         return False
     return None
 
 
-def _order(kind: str, left: str, right: str) -> int | None:
+def _compare(kind: str, left: str, right: str) -> int | None:
     if kind == "STR":
         return (left > right) - (left < right)
     if kind == "VERSION_":
-        pair = [[int(part) for part in re.findall(r"\d+", text)] for text in (left, right)]
-        longest = max(len(parts) for parts in pair)
-        one, other = ([*parts, *[0] * (longest - len(parts))] for parts in pair)
+        versions = [[int(part) for part in re.findall(r"\d+", text)] for text in (left, right)]
+        max_length = max(len(parts) for parts in versions)
+        one, other = ([*parts, *[0] * (max_length - len(parts))] for parts in versions)
         return (one > other) - (one < other)
     if not _NUMBER.fullmatch(left) or not _NUMBER.fullmatch(right):
         return None

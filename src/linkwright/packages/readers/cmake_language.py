@@ -1,10 +1,10 @@
 """An interpreter for the part of CMake's language that determines a package's files.
 
 Commands are yielded in the order in which CMake runs them. The interpreter evaluates variables, lists, texts, loops,
-functions and macros of the file, and runs subdirectories and included files. It also evaluates patterns of files, and
-conditions with known values. Facts that only CMake knows, such as the variables of ``find_package``, are unknown. If a
-condition is unknown, all branches are run, and a variable that two branches set differently has no value. A variable
-with an unknown value remains in the text as ``${...}``.
+functions and macros of the file, and runs subdirectories and included files. It also evaluates file patterns, and
+conditions with known values. Values that only CMake can compute, such as the variables of ``find_package``, are
+unknown. If a condition is unknown, all branches are run, and a variable that two branches set differently becomes
+unknown. A variable with an unknown value remains in the text as ``${...}``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,15 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
-from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements
+from linkwright.packages.readers.cmake_syntax import (
+    BLOCK_ENDS,
+    Statement,
+    Token,
+    branches,
+    end_of_block,
+    is_open,
+    statements,
+)
 from linkwright.packages.readers.cmake_values import (
     UNKNOWN,
     evaluate_math,
@@ -35,22 +43,22 @@ from linkwright.packages.readers.cmake_values import (
 
 _VARIABLE = lazy_pattern(r"\$\{([A-Za-z0-9_.+/-]+)\}")
 _ENVIRONMENT = lazy_pattern(r"\$ENV\{(\w+)\}")
-_DEEPEST = 20
-_MOST_COMMANDS = 20_000
-_LONGEST_TEXT = 1_000_000
-_OF_A_COMMAND = 1_000
-"""So many characters count as much as a command."""
+_MAX_DEPTH = 20
+_MAX_COMMANDS = 20_000
+_MAX_TEXT_LENGTH = 1_000_000
+_CHARACTERS_PER_COMMAND = 1_000
+"""The number of characters that count as one command towards `_MAX_COMMANDS`."""
 
 SOURCE, BUILD, PREFIX = "<source>", "<build>", "<prefix>"
-"""The names of the package's, build's and installation's folders in values of variables."""
+"""The placeholders for the package, build and installation folders in the values of variables."""
 
-_PLATFORM = {
+_PLATFORM_VARIABLES = {
     "WIN32": "1" if os.name == "nt" else "0",
     "MSVC": "1" if os.name == "nt" else "0",
     "UNIX": "0" if os.name == "nt" else "1",
     "APPLE": "1" if sys.platform == "darwin" else "0",
 }
-_FOUND = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmake_auto_FOUND"), "1")}
+_FOUND_VARIABLES = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmake_auto_FOUND"), "1")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +100,8 @@ class Command:
         return [argument.text for argument in self.arguments]
 
 
-class _TooMuchError(Exception):
-    """Raised with a command's name when a file takes too many steps or a text is too long."""
+class _LimitExceededError(Exception):
+    """Raised when a file runs too many commands or a text is too long; the argument names the command or text."""
 
 
 @dataclass(slots=True)
@@ -105,7 +113,7 @@ class _Routine:
 
 @dataclass(slots=True)
 class CMakeProgram:
-    """An interpreter that runs a ``CMakeLists.txt`` without CMake.
+    """An interpreter for a ``CMakeLists.txt``, which does not need CMake.
 
     Args:
         package: the folder of the package, in which subdirectories, included files and matches of patterns are
@@ -128,17 +136,17 @@ class CMakeProgram:
             "CMAKE_INSTALL_BINDIR": "bin",
             "CMAKE_INSTALL_LIBDIR": "lib",
             "CMAKE_INSTALL_INCLUDEDIR": "include",
-            **_PLATFORM,
-            **_FOUND,
+            **_PLATFORM_VARIABLES,
+            **_FOUND_VARIABLES,
         }
     )
     unknown: list[str] = field(default_factory=list)
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
-    _conditions: int = 0
-    _around: dict[str, int] = field(default_factory=dict)  # leaving command -> nesting of unknown conditions
-    _leaving: str = ""
-    _for_parent: dict[str, str] = field(default_factory=dict)
+    _unknown_conditions: int = 0
+    _around: dict[str, int] = field(default_factory=dict)  # e.g. `break` -> unknown conditions around it
+    _exit_command: str = ""
+    _parent_values: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
     _count: int = 0
 
@@ -146,7 +154,7 @@ class CMakeProgram:
         """Yield the commands of a file, including those of called functions and included files."""
         try:
             yield from self._run_file(source)
-        except _TooMuchError as error:
+        except _LimitExceededError as error:
             self.unknown.append(str(error))
 
     def _run_file(self, source: SourceText) -> Iterator[Command]:
@@ -157,25 +165,25 @@ class CMakeProgram:
 
     @contextmanager
     def _leavable_block(self, *commands: str) -> Iterator[None]:
-        """Run a block that the given commands, such as ``break``, leave."""
-        before = self._around
-        self._around = {**before, **dict.fromkeys(commands, self._conditions)}
+        """Return a context for a block that the given commands, such as ``break``, leave."""
+        outer_depths = self._around
+        self._around = {**outer_depths, **dict.fromkeys(commands, self._unknown_conditions)}
         try:
             yield
         finally:
-            self._around = before
-            if self._leaving in commands:
-                self._leaving = ""
+            self._around = outer_depths
+            if self._exit_command in commands:
+                self._exit_command = ""
 
     def _run_block(self, body: Sequence[Statement]) -> Iterator[Command]:
-        at = 0
-        while at < len(body) and not self._leaving:
-            statement = body[at]
-            at += 1
-            if statement.name in ENDS:
-                end = end_of_block(body, at, statement.name)
-                yield from self._run_compound(statement, list(body[at:end]))
-                at = end + 1
+        index = 0
+        while index < len(body) and not self._exit_command:
+            statement = body[index]
+            index += 1
+            if statement.name in BLOCK_ENDS:
+                end = end_of_block(body, index, statement.name)
+                yield from self._run_compound(statement, list(body[index:end]))
+                index = end + 1
             else:
                 yield from self._run_command(statement)
 
@@ -191,41 +199,41 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """Yield the commands of the branch with a true condition, and of unknown ones before it."""
+        """Yield the commands of the first true branch, and of the preceding branches with unknown conditions."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
-            answer = True if condition is None else self._holds(condition)
-            if answer is False:
+            is_true = True if condition is None else self._evaluate_condition(condition)
+            if is_true is False:
                 continue
-            is_uncertain = is_uncertain or answer is None
-            self._conditions += is_uncertain
+            is_uncertain = is_uncertain or is_true is None
+            self._unknown_conditions += is_uncertain
             yield from self._run_block(branch)
-            self._conditions -= is_uncertain
-            if answer:
+            self._unknown_conditions -= is_uncertain
+            if is_true:
                 return
 
-    def _holds(self, condition: Statement) -> bool | None:
-        words = list[Word]()
+    def _evaluate_condition(self, condition: Statement) -> bool | None:
+        condition_words = list[Word]()
         for token in condition.tokens:
-            text = self._substituted(token)
-            parts = [text] if token.is_quoted else items_of(text)
-            words += [Word(part, token.is_quoted) for part in parts]
-        return Condition(words, self.variables, self._is_there).answer()
+            text = self._substitute(token)
+            items = [text] if token.is_quoted else items_of(text)
+            condition_words += [Word(part, token.is_quoted) for part in items]
+        return Condition(condition_words, self.variables, self._path_exists).answer()
 
-    def _is_there(self, what: str, path: str) -> bool | None:
+    def _path_exists(self, test: str, path: str) -> bool | None:
         if self.package is None or not path.startswith(SOURCE):
             return None
-        found = self.package / within_package(path, self._folder)
-        return found.is_dir() if what == "IS_DIRECTORY" else found.exists()
+        full_path = self.package / within_package(path, self._folder)
+        return full_path.is_dir() if test == "IS_DIRECTORY" else full_path.exists()
 
     def _run_while(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
         with self._leavable_block("break"):
-            while not self._leaving:
+            while not self._exit_command:
                 self._tick("while")
-                answer = self._holds(opening)
-                if answer is None:
+                is_true = self._evaluate_condition(opening)
+                if is_true is None:
                     self.unknown.append("while")
-                if not answer:
+                if not is_true:
                     return
                 yield from self._run_once(body)
 
@@ -234,16 +242,16 @@ class CMakeProgram:
         if loop is None:
             self.unknown.append("foreach")
             return
-        names, rounds = loop
-        before = {name: self.variables.get(name) for name in names}
+        names, iterations = loop
+        old_values = {name: self.variables.get(name) for name in names}
         with self._leavable_block("break"):
-            for values in rounds:
+            for values in iterations:
                 self._tick("foreach")
                 self.variables.update(zip(names, values, strict=True))
                 yield from self._run_once(body)
-                if self._leaving:
+                if self._exit_command:
                     break
-        for name, value in before.items():
+        for name, value in old_values.items():
             _restore(self.variables, name, value)
 
     def _run_once(self, body: list[Statement]) -> Iterator[Command]:
@@ -256,13 +264,13 @@ class CMakeProgram:
         The result is None if the values are not known.
         """
         if "IN" in words[1:] and words[words.index("IN", 1) :][1:2] == ["ZIP_LISTS"]:
-            at = words.index("IN", 1)
-            names, lists = words[:at], [items_of(self.variables.get(word, UNKNOWN)) for word in words[at + 2 :]]
+            index = words.index("IN", 1)
+            names, lists = words[:index], [items_of(self.variables.get(word, UNKNOWN)) for word in words[index + 2 :]]
             if len(names) != len(lists) or len({len(items) for items in lists}) != 1:
                 return None
             rounds = list(zip(*lists, strict=True))
         elif words[1:2] == ["RANGE"]:
-            names, rounds = words[:1], [(str(number),) for number in _range(words[2:])]
+            names, rounds = words[:1], [(str(number),) for number in _foreach_range(words[2:])]
             if not rounds:
                 return None
         else:
@@ -282,18 +290,18 @@ class CMakeProgram:
 
     def _tick(self, name: str) -> None:
         self._count += 1
-        if self._count > _MOST_COMMANDS:
-            raise _TooMuchError(name)
+        if self._count > _MAX_COMMANDS:
+            raise _LimitExceededError(name)
 
     # --- commands ----------------------------------------------------------------------------------------------------
 
     def _run_command(self, statement: Statement) -> Iterator[Command]:
         name = statement.name
         self._tick(name)
-        command = Command(name, tuple(self._arguments(statement)), self._folder, self._conditions > 0)
+        command = Command(name, tuple(self._arguments(statement)), self._folder, self._unknown_conditions > 0)
         words = command.words
         if name in ("return", "break", "continue"):
-            self._leaving = name if self._conditions == self._around.get(name) else ""
+            self._exit_command = name if self._unknown_conditions == self._around.get(name) else ""
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
         elif name in ("add_subdirectory", "include") and words:
@@ -303,63 +311,67 @@ class CMakeProgram:
             yield command
 
     def _call(self, routine: _Routine, words: list[str]) -> Iterator[Command]:
-        if self._depth >= _DEEPEST:
+        if self._depth >= _MAX_DEPTH:
             self.unknown.append("function")
             return
-        outside = dict(self.variables)
-        bound = dict(zip(routine.parameters, words, strict=False))
-        bound |= {f"ARGV{number}": word for number, word in enumerate(words)}
-        bound |= {"ARGV": ";".join(words), "ARGN": ";".join(words[len(routine.parameters) :]), "ARGC": str(len(words))}
-        self.variables.update(bound)
+        outer_variables = dict(self.variables)
+        bindings = dict(zip(routine.parameters, words, strict=False))
+        bindings |= {f"ARGV{number}": word for number, word in enumerate(words)}
+        bindings |= {
+            "ARGV": ";".join(words),
+            "ARGN": ";".join(words[len(routine.parameters) :]),
+            "ARGC": str(len(words)),
+        }
+        self.variables.update(bindings)
         self._depth += 1
-        for_parent = self._for_parent
+        for_parent = self._parent_values
         if routine.has_scope:
-            self._for_parent = {}
+            self._parent_values = {}
         with self._leavable_block("return"):
             yield from self._run_block(routine.body)
         self._depth -= 1
         if routine.has_scope:
-            self.variables = outside | self._for_parent
-            self._for_parent = for_parent
+            self.variables = outer_variables | self._parent_values
+            self._parent_values = for_parent
         else:
-            for name in bound:
-                _restore(self.variables, name, outside.get(name))
+            for name in bindings:
+                _restore(self.variables, name, outer_variables.get(name))
 
-    def _run_other_file(self, command: str, word: str) -> Iterator[Command]:
+    def _run_other_file(self, command: str, file_argument: str) -> Iterator[Command]:
         is_folder = command == "add_subdirectory"
-        if not is_folder and "/" not in word and not word.endswith(".cmake"):
+        if not is_folder and "/" not in file_argument and not file_argument.endswith(".cmake"):
             return  # a module of CMake itself, which installs nothing
-        place = within_package(word, self._folder)
+        relative_path = within_package(file_argument, self._folder)
         path = (
             None
-            if self.package is None or is_open(place)
-            else self.package / place / ("CMakeLists.txt" if is_folder else "")
+            if self.package is None or is_open(relative_path)
+            else self.package / relative_path / ("CMakeLists.txt" if is_folder else "")
         )
         try:
             text = None if path is None else path.read_text(encoding="utf-8", errors="replace")
         except OSError:
             text = None
-        if text is None or self._depth >= _DEEPEST:
+        if text is None or self._depth >= _MAX_DEPTH:
             self.unknown.append(command)
             return
-        outside, folder, for_parent = dict(self.variables), self._folder, self._for_parent
+        outer_variables, folder, for_parent = dict(self.variables), self._folder, self._parent_values
         self.variables["CMAKE_CURRENT_LIST_DIR"] = posixpath.join(
-            SOURCE, place if is_folder else posixpath.dirname(place)
+            SOURCE, relative_path if is_folder else posixpath.dirname(relative_path)
         )
         if is_folder:
-            self._folder = "" if place == "." else place
-            self._for_parent = {}
-            self.variables["CMAKE_CURRENT_SOURCE_DIR"] = posixpath.join(SOURCE, place)
-            self.variables["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BUILD, place)
+            self._folder = "" if relative_path == "." else relative_path
+            self._parent_values = {}
+            self.variables["CMAKE_CURRENT_SOURCE_DIR"] = posixpath.join(SOURCE, relative_path)
+            self.variables["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BUILD, relative_path)
         self._depth += 1
         yield from self._run_file(SourceText(str(path), text))
         self._depth -= 1
         self._folder = folder
         if is_folder:
-            self.variables = outside | self._for_parent
-            self._for_parent = for_parent
+            self.variables = outer_variables | self._parent_values
+            self._parent_values = for_parent
         else:
-            self.variables["CMAKE_CURRENT_LIST_DIR"] = outside["CMAKE_CURRENT_LIST_DIR"]
+            self.variables["CMAKE_CURRENT_LIST_DIR"] = outer_variables["CMAKE_CURRENT_LIST_DIR"]
 
     # --- variables ---------------------------------------------------------------------------------------------------
 
@@ -399,7 +411,7 @@ class CMakeProgram:
             values = values[: values.index("CACHE")]
         if values[-1:] == ["PARENT_SCOPE"]:
             value = ";".join(values[:-1])
-            self._for_parent[name] = UNKNOWN if self._conditions or is_open(value) else value
+            self._parent_values[name] = UNKNOWN if self._unknown_conditions or is_open(value) else value
         else:
             self._set(name, ";".join(values))
 
@@ -407,49 +419,53 @@ class CMakeProgram:
         return self.variables.get(name, "")
 
     def _set(self, name: str, value: str) -> None:
-        is_certain = not self._conditions or self.variables.get(name, value) == value
+        is_certain = not self._unknown_conditions or self.variables.get(name, value) == value
         self.variables[name] = value if is_certain and not is_open(value) else UNKNOWN
 
     def _change_list(self, words: list[str]) -> None:
         for target, value in list_command(words[0], words[1:], self._value).items():
             if words[0] in ("APPEND", "PREPEND"):
-                self.variables[target] = value  # also in a branch: a possible item counts as an item
+                self.variables[target] = value  # also if uncertain: a possible item is added
             else:
                 self._set(target, value)
 
     def _glob_files(self, words: list[str], *, recursive: bool) -> str:
         """Return the files that match the patterns of ``file(GLOB ...)``, as a CMake list."""
-        base: str | None = None
-        with_folders = not recursive
+        relative_to: str | None = None
+        includes_folders = not recursive
         patterns: list[str] = []
-        rest = iter(words)
-        for word in rest:
+        word_iterator = iter(words)
+        for word in word_iterator:
             if word == "RELATIVE":
-                base = within_package(next(rest, ""), self._folder)
+                relative_to = within_package(next(word_iterator, ""), self._folder)
             elif word == "LIST_DIRECTORIES":
-                with_folders = next(rest, "").upper() in YES
+                includes_folders = next(word_iterator, "").upper() in YES
             elif word not in ("CONFIGURE_DEPENDS", "FOLLOW_SYMLINKS"):
                 patterns.append(within_package(word, self._folder))
         if self.package is None or any(map(is_open, words)):
             return UNKNOWN
         if any(pattern.startswith(("/", "..", "<")) for pattern in patterns):
             return UNKNOWN
-        found = {
+        paths = {
             path.relative_to(self.package).as_posix()
             for pattern in patterns
             for path in _glob_paths(self.package, pattern, recursive=recursive)
-            if with_folders or path.is_file()
+            if includes_folders or path.is_file()
         }
-        if base is None:
-            return ";".join(f"{SOURCE}/{path}" for path in sorted(found))
-        return ";".join(posixpath.relpath(path, base or ".") for path in sorted(found))
+        if relative_to is None:
+            return ";".join(f"{SOURCE}/{path}" for path in sorted(paths))
+        return ";".join(posixpath.relpath(path, relative_to or ".") for path in sorted(paths))
 
     def _parse_arguments(self, words: list[str]) -> None:
         if words[0] == "PARSE_ARGV":
             arguments = items_of(self._value("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
             words = [*words[2:6], *arguments]
-        prefix, options, single, many, *arguments = words
-        kinds = {name: kind for kind, names in enumerate((options, single, many)) for name in items_of(names)}
+        prefix, options, one_value_names, multi_value_names, *arguments = words
+        kinds = {
+            name: kind
+            for kind, names in enumerate((options, one_value_names, multi_value_names))
+            for name in items_of(names)
+        }
         values: dict[str, list[str]] = {}
         current = "UNPARSED_ARGUMENTS"
         for word in (item for text in arguments for item in items_of(text)):
@@ -465,38 +481,38 @@ class CMakeProgram:
 
     def _arguments(self, statement: Statement) -> Iterator[Argument]:
         for token in statement.tokens:
-            text = self._substituted(token)
-            self._count += len(text) // _OF_A_COMMAND
+            text = self._substitute(token)
+            self._count += len(text) // _CHARACTERS_PER_COMMAND
             for item in [text] if token.is_quoted else items_of(text):
                 yield Argument(item, token.start, token.end, statement.source)
 
-    def _substituted(self, token: Token) -> str:
+    def _substitute(self, token: Token) -> str:
         """Substitute the values of known variables in an argument, and return the text."""
-        text, room = token.text, _LONGEST_TEXT
+        text, room = token.text, _MAX_TEXT_LENGTH
 
         def value(match: re.Match[str]) -> str:
             nonlocal room
-            found = self.variables.get(match[1], match[0])
-            room -= len(found)
+            value = self.variables.get(match[1], match[0])
+            room -= len(value)
             if room < 0:
-                raise _TooMuchError(token.text)
-            return found
+                raise _LimitExceededError(token.text)
+            return value
 
-        for _ in range(_DEEPEST if token.has_variables else 0):  # nested references: ${${NAME}_FILES}
-            filled = _ENVIRONMENT.sub(lambda match: _environment(match[1]) or match[0], text)
-            filled = _VARIABLE.sub(value, filled)
-            if filled == text:
+        for _ in range(_MAX_DEPTH if token.has_variables else 0):  # nested references: ${${NAME}_FILES}
+            substituted = _ENVIRONMENT.sub(lambda match: _environment_value(match[1]) or match[0], text)
+            substituted = _VARIABLE.sub(value, substituted)
+            if substituted == text:
                 break
-            text = filled
+            text = substituted
         return text
 
 
-def _environment(name: str) -> str | None:
+def _environment_value(name: str) -> str | None:
     """Return the value of one of ROS's environment variables, or None for any other variable."""
     return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
 
 
-def _range(words: Sequence[str]) -> range:
+def _foreach_range(words: Sequence[str]) -> range:
     """Return the numbers of ``foreach(i RANGE ...)``, including the last.
 
     The result is empty if an argument is not an integer or the range is too long.
@@ -506,7 +522,7 @@ def _range(words: Sequence[str]) -> range:
     except ValueError:
         return range(0)
     start, stop, step = [0, *numbers, 1][:3] if len(numbers) == 1 else [*numbers, 1, 1][:3]
-    return range(start, stop + 1, step) if step > 0 and stop - start < _MOST_COMMANDS else range(0)
+    return range(start, stop + 1, step) if step > 0 and stop - start < _MAX_COMMANDS else range(0)
 
 
 def _glob_paths(package: Path, pattern: str, *, recursive: bool) -> Iterable[Path]:
@@ -514,10 +530,10 @@ def _glob_paths(package: Path, pattern: str, *, recursive: bool) -> Iterable[Pat
 
     As in CMake, ``**`` has the same meaning as ``*``.
     """
-    folder, _, last = re.sub(r"\*+", "*", pattern).rpartition("/")
-    if last in ("", "."):
+    folder, _, name_pattern = re.sub(r"\*+", "*", pattern).rpartition("/")
+    if name_pattern in ("", "."):
         return ()  # the pattern matches only the folder itself
-    return (package / folder).rglob(last) if recursive else package.glob(posixpath.join(folder, last))
+    return (package / folder).rglob(name_pattern) if recursive else package.glob(posixpath.join(folder, name_pattern))
 
 
 def within_package(text: str, folder: str) -> str:
@@ -532,8 +548,8 @@ def within_package(text: str, folder: str) -> str:
     """
     if text.startswith(("/", "$<", BUILD)):
         return text
-    below = text[len(SOURCE) :].lstrip("/") if text.startswith(SOURCE) else posixpath.join(folder, text)
-    path = posixpath.normpath(below or ".")
+    relative_path = text[len(SOURCE) :].lstrip("/") if text.startswith(SOURCE) else posixpath.join(folder, text)
+    path = posixpath.normpath(relative_path or ".")
     return f"{path}/" if text.endswith("/") and not path.endswith("/") else path
 
 

@@ -1,4 +1,4 @@
-"""Parser for CMake files, which returns commands with their arguments, and blocks."""
+"""Parser for the commands, arguments and blocks of CMake files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 
-_PIECE = lazy_pattern(
+_TOKEN_PATTERN = lazy_pattern(
     r"""
     (?P<blank>\s+)
   | (?P<comment>\#\[(?P<level>=*)\[.*?\](?P=level)\] | \#[^\n]*)
@@ -20,21 +20,21 @@ _PIECE = lazy_pattern(
     """,
     re.VERBOSE | re.DOTALL,
 )
-_OPEN = lazy_pattern(r"\$(\{|ENV\{|<)")
-_ESCAPED = lazy_pattern(r"\\([^A-Za-z0-9;])")
-ENDS = {
+_REFERENCE = lazy_pattern(r"\$(\{|ENV\{|<)")
+_ESCAPE = lazy_pattern(r"\\([^A-Za-z0-9;])")
+BLOCK_ENDS = {
     "if": "endif",
     "foreach": "endforeach",
     "while": "endwhile",
     "function": "endfunction",
     "macro": "endmacro",
 }
-"""The commands that begin a block, and those that end it."""
+"""For each command that begins a block, the command that ends the block."""
 
 
 def is_open(text: str) -> bool:
     """Return whether a text contains a variable or generator expression that only CMake can evaluate."""
-    return _OPEN.search(text) is not None
+    return _REFERENCE.search(text) is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,50 +77,50 @@ def statements(source: SourceText) -> Iterator[Statement]:
     Nested parentheses are treated as arguments.
     """
     text = source.text
-    at, name, depth = 0, "", 0
+    position, name, depth = 0, "", 0
     tokens: list[Token] = []
-    while at < len(text):
-        piece = _PIECE.match(text, at)
-        if piece is None:
-            at += 1
+    while position < len(text):
+        match = _TOKEN_PATTERN.match(text, position)
+        if match is None:
+            position += 1
             continue
-        at = piece.end()
-        if piece["open"] or piece["close"]:
-            if (depth > 0 and piece["open"]) or depth > 1:
-                tokens.append(Token(piece[0], piece.start(), piece.end(), is_quoted=False, has_variables=False))
-            depth = depth + 1 if piece["open"] else max(0, depth - 1)
+        position = match.end()
+        if match["open"] or match["close"]:
+            if (depth > 0 and match["open"]) or depth > 1:
+                tokens.append(Token(match[0], match.start(), match.end(), is_quoted=False, has_variables=False))
+            depth = depth + 1 if match["open"] else max(0, depth - 1)
             if depth == 0 and name:
                 yield Statement(name.lower(), tuple(tokens), source)
                 name, tokens = "", []
-        elif piece["word"] and depth == 0:
-            name, tokens = piece["word"], []
-        elif depth and piece["blank"] is None and piece["comment"] is None:
-            tokens.append(_argument(piece))
+        elif match["word"] and depth == 0:
+            name, tokens = match["word"], []
+        elif depth and match["blank"] is None and match["comment"] is None:
+            tokens.append(_make_token(match))
 
 
-def _argument(piece: re.Match[str]) -> Token:
-    if piece["bracket"] is not None:
-        return Token(piece["bracket"], piece.start(), piece.end(), is_quoted=True, has_variables=False)
-    quote = 1 if piece["quoted"] is not None else 0
-    text = piece["word"] or piece["quoted"] or ""
+def _make_token(match: re.Match[str]) -> Token:
+    if match["bracket"] is not None:
+        return Token(match["bracket"], match.start(), match.end(), is_quoted=True, has_variables=False)
+    quote = 1 if match["quoted"] is not None else 0
+    text = match["word"] or match["quoted"] or ""
     return Token(
-        _ESCAPED.sub(r"\1", text), piece.start() + quote, piece.end() - quote, is_quoted=bool(quote), has_variables=True
+        _ESCAPE.sub(r"\1", text), match.start() + quote, match.end() - quote, is_quoted=bool(quote), has_variables=True
     )
 
 
-def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
+def end_of_block(commands: Sequence[Statement], first_index: int, name: str) -> int:
     """Return the index of the command that closes a block.
 
     If the block is not closed, return the number of commands.
 
     Args:
         commands: the commands.
-        at: the index after the command that opens the block.
+        first_index: the index after the command that opens the block.
         name: the name of the command that opens the block.
     """
     depth = 1
-    for index in range(at, len(commands)):
-        depth += (commands[index].name == name) - (commands[index].name == ENDS[name])
+    for index in range(first_index, len(commands)):
+        depth += (commands[index].name == name) - (commands[index].name == BLOCK_ENDS[name])
         if not depth:
             return index
     return len(commands)

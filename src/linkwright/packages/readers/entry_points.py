@@ -37,7 +37,7 @@ class EntryPoint(NamedTuple):
 
 
 def read_setup_py_group(text: str, group: str) -> list[str]:
-    """Return the lines of a group in any dictionary of a ``setup.py``, which is not run."""
+    """Return the lines of a group in any dictionary of a ``setup.py``, without running the file."""
     with suppress(SyntaxError):
         for node in ast.walk(ast.parse(text)):
             for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
@@ -61,8 +61,8 @@ def read_pyproject_group(text: str, group: str) -> list[str]:
         import tomli as tomllib  # type: ignore[import-not-found, unused-ignore]
     try:
         project: Any = tomllib.loads(text)["project"]
-        points = project["scripts"] if group == PROGRAMS else project["entry-points"][group]
-        return [f"{name} = {target}" for name, target in points.items()]
+        entry_points = project["scripts"] if group == PROGRAMS else project["entry-points"][group]
+        return [f"{name} = {target}" for name, target in entry_points.items()]
     except (tomllib.TOMLDecodeError, KeyError, TypeError, AttributeError):
         return []
 

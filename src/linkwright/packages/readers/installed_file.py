@@ -27,7 +27,7 @@ class InstalledFile(NamedTuple):
     content: str | None = None
 
     @property
-    def is_made(self) -> bool:
+    def is_generated(self) -> bool:
         """Whether the build generates the file instead of copying its source."""
         return self.values is not None or self.content is not None
 

@@ -1,4 +1,4 @@
-"""Reader for the syntax trees of Python launch files, which are not run."""
+"""Reader for Python launch files, which are parsed but not run."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from linkwright.packages.readers.setup_py import SyntaxProblem, syntax_problem
 
 FUNCTION = "generate_launch_description"
 _TEST_FUNCTION = "generate_test_description"
-_TESTING = frozenset({"launch_testing", "launch_pytest"})
-_ENDINGS = (".launch.py", "_launch.py")
-_WRITING = frozenset("wax")
-"""Modes in which ``open`` makes a file."""
-_JOINING = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution", "str", "as_posix"})
+_TEST_PACKAGES = frozenset({"launch_testing", "launch_pytest"})
+_LAUNCH_EXTENSIONS = (".launch.py", "_launch.py")
+_WRITE_MODES = frozenset("wax")
+"""The modes in which ``open`` creates a file."""
+_PATH_FUNCTIONS = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution", "str", "as_posix"})
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """An expression of a launch file: its text, its node and its location."""
+    """An expression that evaluates to a text: the text, its syntax node and its location."""
 
     text: str
     node: ast.expr
@@ -48,7 +48,7 @@ class SharedFile:
 
 @dataclass
 class LaunchFile:
-    """The facts of a Python launch file.
+    """The nodes, paths and imports of a Python launch file.
 
     Attributes:
         path: the path relative to the package.
@@ -60,7 +60,7 @@ class LaunchFile:
         shares: the packages whose share folder the file uses.
         paths: the complete paths in share folders that the file constructs.
         imports: the packages that the file imports from, with the locations.
-        made: the files that the launch file itself writes, as package and path.
+        written_files: the files that the launch file itself writes, as package and path.
     """
 
     source: SourceText
@@ -73,12 +73,12 @@ class LaunchFile:
     shares: list[Place] = field(default_factory=list)
     paths: list[SharedFile] = field(default_factory=list)
     imports: list[tuple[str, Span]] = field(default_factory=list)
-    made: frozenset[tuple[str, str]] = frozenset()
+    written_files: frozenset[tuple[str, str]] = frozenset()
 
 
 def is_launch_file(path: str) -> bool:
     """Return whether a path has the name of a Python launch file."""
-    return path.endswith(_ENDINGS)
+    return path.endswith(_LAUNCH_EXTENSIONS)
 
 
 def read_launch_file(source: SourceText, path: str) -> LaunchFile:
@@ -97,19 +97,21 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     facts.has_function = any(map(_may_define_function, python.tree.body))
     _read_imports(python, facts)
     facts.is_test = any(map(_defines_test, python.tree.body)) or any(
-        package in _TESTING for package, _ in facts.imports
+        package in _TEST_PACKAGES for package, _ in facts.imports
     )
     for call in python.calls("Node", "LifecycleNode", "ComposableNode"):
         package, executable = argument_of(call, "package"), argument_of(call, "executable")
         facts.nodes.append(StartedNode(_place(python, package), _place(python, executable)))
     for call in python.calls("get_package_share_directory", "get_package_share_path", "FindPackageShare"):
         argument = call.args[0] if call.args else argument_of(call, "package")
-        place = _place(python, argument)
-        if place is not None:
-            facts.shares.append(place)
-    written = (python.value(node) for node in _written(python))
-    facts.made = frozenset(
-        (share_path.package, share_path.rest.strip("/")) for share_path in written if isinstance(share_path, SharePath)
+        expression = _place(python, argument)
+        if expression is not None:
+            facts.shares.append(expression)
+    written_paths = (python.value(node) for node in _written_paths(python))
+    facts.written_files = frozenset(
+        (share_path.package, share_path.rest.strip("/"))
+        for share_path in written_paths
+        if isinstance(share_path, SharePath)
     )
     with suppress(RecursionError):  # raised for a sum of a thousand terms, whose paths are ignored
         _PathReader(python, facts).visit(python.tree)
@@ -139,21 +141,21 @@ def _defines_function(node: ast.stmt, name: str) -> bool:
 
 
 def _read_imports(python: PythonFile, facts: LaunchFile) -> None:
-    found: dict[str, Span] = {}
+    spans: dict[str, Span] = {}
     for node in ast.walk(python.tree):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.setdefault(node.module.partition(".")[0], python.span(node))
+            spans.setdefault(node.module.partition(".")[0], python.span(node))
         elif isinstance(node, ast.Import):
             for alias in node.names:
-                found.setdefault(alias.name.partition(".")[0], python.span(node))
-    facts.imports = list(found.items())
+                spans.setdefault(alias.name.partition(".")[0], python.span(node))
+    facts.imports = list(spans.items())
 
 
-def _written(python: PythonFile) -> Iterator[ast.expr]:
+def _written_paths(python: PythonFile) -> Iterator[ast.expr]:
     """Yield the expressions for the paths of files that are written."""
     for call in python.calls("open", owner=""):
         mode = call.args[1] if len(call.args) > 1 else argument_of(call, "mode")
-        if call.args and _WRITING.intersection(python.text(mode) or ""):
+        if call.args and _WRITE_MODES.intersection(python.text(mode) or ""):
             yield call.args[0]
     for call in python.calls("write_text", "write_bytes"):
         if isinstance(call.func, ast.Attribute):
@@ -175,15 +177,15 @@ class _PathReader(ast.NodeVisitor):
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python
         self._facts = facts
-        self._inside_path = 0
-        self._used = _names_in_path_operations(python.tree)
+        self._path_depth = 0
+        self._names_in_paths = _names_in_path_operations(python.tree)
 
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
-        if any(name in self._used for name in names):
-            self._inside_path += 1  # other paths begin with this name
+        if any(name in self._names_in_paths for name in names):
+            self._path_depth += 1  # other paths begin with this name
             self.generic_visit(node)
-            self._inside_path -= 1
+            self._path_depth -= 1
         else:
             self.generic_visit(node)
 
@@ -193,23 +195,23 @@ class _PathReader(ast.NodeVisitor):
             return
         assert isinstance(node, ast.expr)
         value = self._python.value(node)
-        if isinstance(value, SharePath) and value.rest and not self._inside_path:
+        if isinstance(value, SharePath) and value.rest and not self._path_depth:
             self._facts.paths.append(SharedFile(value.package, value.rest.strip("/"), self._python.span(node)))
-        self._inside_path += 1
+        self._path_depth += 1
         super().generic_visit(node)
-        self._inside_path -= 1
+        self._path_depth -= 1
 
 
 def _names_in_path_operations(tree: ast.AST) -> set[str]:
-    found = set()
-    waiting = [(tree, False)]
-    while waiting:
-        node, inside = waiting.pop()
-        inside = inside or _is_path_operation(node)
-        if inside and isinstance(node, ast.Name):
-            found.add(node.id)
-        waiting.extend((child, inside) for child in ast.iter_child_nodes(node))
-    return found
+    names = set()
+    pending = [(tree, False)]
+    while pending:
+        node, is_in_path = pending.pop()
+        is_in_path = is_in_path or _is_path_operation(node)
+        if is_in_path and isinstance(node, ast.Name):
+            names.add(node.id)
+        pending.extend((child, is_in_path) for child in ast.iter_child_nodes(node))
+    return names
 
 
 def _is_path_operation(node: ast.AST) -> bool:
@@ -217,4 +219,4 @@ def _is_path_operation(node: ast.AST) -> bool:
         return isinstance(node.op, (ast.Add, ast.Div))
     if isinstance(node, ast.JoinedStr):
         return True
-    return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _JOINING
+    return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _PATH_FUNCTIONS

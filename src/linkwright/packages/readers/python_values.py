@@ -1,4 +1,4 @@
-"""Evaluation of expressions for strings and paths in a Python file, which is not run.
+"""Evaluation of string and path expressions in a Python file without running the file.
 
 An expression has a value only if the value is certain: literals, names that are assigned once, joined paths, share
 folders of packages, and patterns of file names. Every other value is `UNKNOWN`, and rules ignore it.
@@ -54,9 +54,11 @@ class Pattern:
 
 Value = Union[UnknownType, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - it names itself
 
-_DEEPEST = 40
-_JOINS = frozenset({"os.path.join", "path.join", "join", "Path", "PurePath", "pathlib.Path", "PathJoinSubstitution"})
-_SHARES = frozenset({"get_package_share_directory", "get_package_share_path", "FindPackageShare"})
+_MAX_DEPTH = 40
+_JOIN_FUNCTIONS = frozenset(
+    {"os.path.join", "path.join", "join", "Path", "PurePath", "pathlib.Path", "PathJoinSubstitution"}
+)
+_SHARE_FUNCTIONS = frozenset({"get_package_share_directory", "get_package_share_path", "FindPackageShare"})
 
 
 class PythonFile:
@@ -75,26 +77,26 @@ class PythonFile:
 
     def __init__(self, source: SourceText) -> None:
         self.source = source
-        self.tree = _parsed(source.text)
+        self.tree = _parse(source.text)
 
     @cached_property
-    def _assigned(self) -> dict[str, ast.expr | None]:
+    def _assignments(self) -> dict[str, ast.expr | None]:
         """Name -> the expression assigned to it; None for several assignments or a complex target."""
         bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
-            _note_bindings(node, bindings)
+            _record_bindings(node, bindings)
         return bindings
 
-    def assigned(self, name: str) -> ast.expr | None:
+    def assigned_expression(self, name: str) -> ast.expr | None:
         """Return the expression assigned to a name, or None if there is not exactly one assignment."""
-        return self._assigned.get(name)
+        return self._assignments.get(name)
 
     def resolved(self, node: ast.expr) -> ast.expr:
         """Return the expression that is assigned to a name, and any other expression unchanged."""
-        for _ in range(_DEEPEST):
+        for _ in range(_MAX_DEPTH):
             if not isinstance(node, ast.Name):
                 break
-            value = self.assigned(node.id)
+            value = self.assigned_expression(node.id)
             if value is None:
                 break
             node = value
@@ -107,14 +109,14 @@ class PythonFile:
             names: the last parts of the dotted names of the functions.
             owner: the part of the dotted name before the last; None for any.
         """
-        found = [
+        calls = [
             node
             for node in ast.walk(self.tree)
             if isinstance(node, ast.Call)
             and called_name(node).rpartition(".")[2] in names
             and (owner is None or called_name(node).rpartition(".")[0] == owner)
         ]
-        yield from sorted(found, key=lambda node: (node.lineno, node.col_offset))
+        yield from sorted(calls, key=lambda node: (node.lineno, node.col_offset))
 
     def offset(self, line: int, column: int) -> int:
         """Return the character offset of a position in the syntax tree.
@@ -146,12 +148,12 @@ class PythonFile:
 
     def value(self, node: ast.expr | None, depth: int = 0) -> Value:
         """Return the value of an expression, or `UNKNOWN` if the value is not certain."""
-        if node is None or depth > _DEEPEST:
+        if node is None or depth > _MAX_DEPTH:
             return UNKNOWN
         if isinstance(node, ast.Constant):
             return node.value if isinstance(node.value, (str, int, float, type(None))) else UNKNOWN
         if isinstance(node, ast.Name):
-            return self.value(self.assigned(node.id), depth + 1)
+            return self.value(self.assigned_expression(node.id), depth + 1)
         if isinstance(node, (ast.List, ast.Tuple)):
             return tuple(self.value(item, depth + 1) for item in node.elts)
         if isinstance(node, ast.JoinedStr):
@@ -169,8 +171,8 @@ class PythonFile:
 
     def _piece(self, piece: ast.expr, depth: int) -> Value:
         if isinstance(piece, ast.FormattedValue):
-            plain = piece.conversion == -1 and piece.format_spec is None
-            return self.value(piece.value, depth + 1) if plain else UNKNOWN
+            has_default_format = piece.conversion == -1 and piece.format_spec is None
+            return self.value(piece.value, depth + 1) if has_default_format else UNKNOWN
         return self.value(piece, depth + 1)
 
     def _operation(self, node: ast.BinOp, depth: int) -> Value:
@@ -192,34 +194,34 @@ class PythonFile:
 
     def _call(self, node: ast.Call, depth: int) -> Value:
         name = called_name(node)
-        last = name.rpartition(".")[2]
+        function_name = name.rpartition(".")[2]
         if any(isinstance(argument, ast.Starred) for argument in node.args):
             return UNKNOWN
-        if last in _SHARES:
+        if function_name in _SHARE_FUNCTIONS:
             package = self.value(node.args[0] if node.args else argument_of(node, "package"), depth + 1)
             return SharePath(package) if isinstance(package, str) else UNKNOWN
         arguments = [self.value(argument, depth + 1) for argument in node.args]
-        if name in _JOINS and arguments:
-            if last == "PathJoinSubstitution":
+        if name in _JOIN_FUNCTIONS and arguments:
+            if function_name == "PathJoinSubstitution":
                 return joined(arguments[0]) if isinstance(arguments[0], tuple) else UNKNOWN
             return joined(arguments)
-        if last == "joinpath" and isinstance(node.func, ast.Attribute):
+        if function_name == "joinpath" and isinstance(node.func, ast.Attribute):
             return joined([self.value(node.func.value, depth + 1), *arguments])
-        if last in ("as_posix", "find") and isinstance(node.func, ast.Attribute):
+        if function_name in ("as_posix", "find") and isinstance(node.func, ast.Attribute):
             owner = self.value(node.func.value, depth + 1)
-            return owner if isinstance(owner, SharePath) or last == "as_posix" else UNKNOWN
+            return owner if isinstance(owner, SharePath) or function_name == "as_posix" else UNKNOWN
         if name == "str" and len(arguments) == 1:
             return arguments[0]
-        if last in ("glob", "iglob") and name in ("glob", "glob.glob", "iglob", "glob.iglob") and arguments:
+        if function_name in ("glob", "iglob") and name in ("glob", "glob.glob", "iglob", "glob.iglob") and arguments:
             recursive = argument_of(node, "recursive")
             is_recursive = isinstance(recursive, ast.Constant) and bool(recursive.value)
             return Pattern(arguments[0], is_recursive) if isinstance(arguments[0], str) else UNKNOWN
-        if last == "TextSubstitution":
+        if function_name == "TextSubstitution":
             return self.value(argument_of(node, "text"), depth + 1)
         return UNKNOWN
 
 
-def _note_bindings(node: ast.AST, bindings: dict[str, ast.expr | None]) -> None:
+def _record_bindings(node: ast.AST, bindings: dict[str, ast.expr | None]) -> None:
     if isinstance(node, ast.Assign):
         for target in node.targets:
             _bind(target, node.value, bindings)
@@ -239,13 +241,13 @@ def _bind(target: ast.expr, value: ast.expr | None, bindings: dict[str, ast.expr
     if isinstance(target, ast.Name):
         bindings[target.id] = None if target.id in bindings else value
     elif isinstance(target, (ast.Tuple, ast.List)):
-        for part in target.elts:
-            _bind(part, None, bindings)
+        for element in target.elts:
+            _bind(element, None, bindings)
     elif isinstance(target, ast.Starred):
         _bind(target.value, None, bindings)
 
 
-def _parsed(text: str) -> ast.Module:
+def _parse(text: str) -> ast.Module:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # ignore warnings about the user's code, such as invalid escapes
@@ -277,14 +279,14 @@ def concatenated(values: Sequence[Value]) -> Value:
     """Return the concatenation of values, or `UNKNOWN` if it is not known."""
     if not values:
         return ""
-    first = values[0]
-    rest = values[1:]
-    if not all(isinstance(value, str) for value in rest):
+    prefix = values[0]
+    suffixes = values[1:]
+    if not all(isinstance(value, str) for value in suffixes):
         return UNKNOWN
-    text = "".join(value for value in rest if isinstance(value, str))
-    if isinstance(first, SharePath):
-        return SharePath(first.package, first.rest + text)
-    return first + text if isinstance(first, str) else UNKNOWN
+    text = "".join(value for value in suffixes if isinstance(value, str))
+    if isinstance(prefix, SharePath):
+        return SharePath(prefix.package, prefix.rest + text)
+    return prefix + text if isinstance(prefix, str) else UNKNOWN
 
 
 def joined(values: Sequence[Value]) -> Value:

@@ -1,6 +1,6 @@
 """Functions that an interpreted ``setup.py`` may call to construct paths or list files.
 
-These functions open no file, access nothing outside the package, and return no large results.
+These functions do not open files, do not access anything outside the package, and do not return large results.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pathlib import Path, PurePosixPath
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 
-_MOST_ITEMS = 20_000
-_LONGEST_TEXT = 4096
-_WIDE = lazy_pattern(r"\d{3}|\*")
+_MAX_ITEMS = 20_000
+_MAX_TEXT_LENGTH = 4096
+_WIDE_FORMAT = lazy_pattern(r"\d{3}|\*")
 
 METHODS: dict[type, frozenset[str]] = {
     kind: frozenset(names.split())
@@ -49,21 +49,21 @@ def bounded(value: Any) -> Any:
     Raises:
         NotKnownError: the value is too large.
     """
-    if isinstance(value, str) and len(value) > _LONGEST_TEXT:
+    if isinstance(value, str) and len(value) > _MAX_TEXT_LENGTH:
         raise NotKnownError
-    if isinstance(value, (list, tuple, dict, set)) and len(value) > _MOST_ITEMS:
+    if isinstance(value, (list, tuple, dict, set)) and len(value) > _MAX_ITEMS:
         raise NotKnownError
     return value
 
 
-def weight(value: Any, most: int) -> int:
+def weight(value: Any, limit: int) -> int:
     """Return the size of a value up to a limit.
 
-    The size counts nested items and, in part, the length of texts. A list that contains another list twice, which
-    contains another list twice and so on, is small in memory but practically endless to print or compare.
+    The size includes nested items and, in part, the lengths of texts. A list that contains the same list twice, on many
+    levels, is small in memory but takes very long to print or compare.
     """
     count, pending = 0, [value]
-    while pending and count <= most:
+    while pending and count <= limit:
         item = pending.pop()
         count += 1
         if isinstance(item, str):
@@ -73,27 +73,27 @@ def weight(value: Any, most: int) -> int:
             pending += item.values()
         elif isinstance(item, (list, tuple, set, frozenset)):
             pending += item
-    return min(count, most)
+    return min(count, limit)
 
 
-def formatted(template: str, *arguments: Any, **named: Any) -> str:
+def format_template(template: str, *arguments: Any, **keyword_arguments: Any) -> str:
     """Return ``template.format(...)``.
 
     Raises:
         NotKnownError: the template may pad texts to a large width, or accesses attributes.
     """
-    if _WIDE.search(template) or "." in "".join(re.findall(r"\{[^}]*\}", template)):
+    if _WIDE_FORMAT.search(template) or "." in "".join(re.findall(r"\{[^}]*\}", template)):
         raise NotKnownError
-    return template.format(*arguments, **named)
+    return template.format(*arguments, **keyword_arguments)
 
 
-def percent(template: str, arguments: Any) -> str:
+def percent_format(template: str, arguments: Any) -> str:
     """Return ``template % arguments``.
 
     Raises:
         NotKnownError: the template may pad texts to a large width.
     """
-    if _WIDE.search(template):
+    if _WIDE_FORMAT.search(template):
         raise NotKnownError
     return str(template % arguments)
 
@@ -107,21 +107,21 @@ class PackageLibrary:
 
     def __init__(self, folder: Path) -> None:
         self._folder = Path(os.path.abspath(folder))  # noqa: PTH100 - links stay
-        path: dict[str, Callable[..., Any]] = {
+        path_functions: dict[str, Callable[..., Any]] = {
             **{
                 name: getattr(posixpath, name)
                 for name in ("join", "dirname", "basename", "split", "splitext", "normpath")
             },
             **dict.fromkeys(("abspath", "realpath"), self._absolute),
             "relpath": lambda path, start=".": posixpath.relpath(self._absolute(path), self._absolute(start)),
-            "isfile": lambda path: self._real(path).is_file(),
-            "isdir": lambda path: self._real(path).is_dir(),
-            "exists": lambda path: self._real(path).exists(),
+            "isfile": lambda path: self._checked_path(path).is_file(),
+            "isdir": lambda path: self._checked_path(path).is_dir(),
+            "exists": lambda path: self._checked_path(path).exists(),
         }
         self.functions: dict[str, Callable[..., Any]] = {
-            **{f"os.path.{name}": function for name, function in path.items()},
+            **{f"os.path.{name}": function for name, function in path_functions.items()},
             "os.walk": self._walk,
-            "os.listdir": lambda path=".": sorted(entry.name for entry in self._listed(path)),
+            "os.listdir": lambda path=".": sorted(entry.name for entry in self._list_folder(path)),
             "os.getcwd": self._folder.as_posix,
             "os.fspath": str,
             "glob.glob": self._glob,
@@ -132,10 +132,10 @@ class PackageLibrary:
             **dict.fromkeys(("pathlib.Path", "pathlib.PurePath"), PurePosixPath),
         }
         self.path_methods: dict[str, Callable[..., Any]] = {
-            "is_file": path["isfile"],
-            "is_dir": path["isdir"],
-            "exists": path["exists"],
-            "iterdir": lambda path: sorted(path / entry.name for entry in self._listed(path)),
+            "is_file": path_functions["isfile"],
+            "is_dir": path_functions["isdir"],
+            "exists": path_functions["exists"],
+            "iterdir": lambda path: sorted(path / entry.name for entry in self._list_folder(path)),
             "glob": self._path_glob,
             "rglob": lambda path, pattern: self._path_glob(path, f"**/{pattern}"),
             **dict.fromkeys(("resolve", "absolute"), lambda path: PurePosixPath(self._absolute(path))),
@@ -147,43 +147,43 @@ class PackageLibrary:
         Raises:
             NotKnownError: the path is outside the package.
         """
-        return self._real(path).relative_to(self._folder).as_posix()
+        return self._checked_path(path).relative_to(self._folder).as_posix()
 
     def _absolute(self, path: Any) -> str:
         return posixpath.normpath(posixpath.join(self._folder.as_posix(), str(path)))
 
-    def _real(self, path: Any) -> Path:
+    def _checked_path(self, path: Any) -> Path:
         if not isinstance(path, (str, PurePosixPath)):
             raise NotKnownError
-        found = Path(self._absolute(path))
-        if not found.is_relative_to(self._folder):
+        absolute_path = Path(self._absolute(path))
+        if not absolute_path.is_relative_to(self._folder):
             raise NotKnownError
-        return found
+        return absolute_path
 
-    def _listed(self, path: Any) -> Iterable[Path]:
-        return bounded(list(self._real(path).iterdir()))  # type: ignore[no-any-return]  # what it is given
+    def _list_folder(self, path: Any) -> Iterable[Path]:
+        return bounded(list(self._checked_path(path).iterdir()))  # type: ignore[no-any-return]  # what it is given
 
     def _walk(self, top: Any) -> Iterator[tuple[str, list[str], list[str]]]:
         count = 0
-        for root, folders, files in os.walk(self._real(top)):
+        for root, folders, files in os.walk(self._checked_path(top)):
             count += 1 + len(files)
-            if count > _MOST_ITEMS:
+            if count > _MAX_ITEMS:
                 raise NotKnownError
             folders.sort()
-            inside = Path(root).relative_to(self._real(top)).as_posix()
-            yield str(top) if inside == "." else posixpath.join(str(top), inside), folders, sorted(files)
+            relative_root = Path(root).relative_to(self._checked_path(top)).as_posix()
+            yield str(top) if relative_root == "." else posixpath.join(str(top), relative_root), folders, sorted(files)
 
-    def _glob(self, pattern: Any, recursive: bool = False, **other: Any) -> list[str]:
+    def _glob(self, pattern: Any, recursive: bool = False, **unsupported: Any) -> list[str]:
         text = str(pattern)
-        fixed = re.split(r"[*?\[]", text, maxsplit=1)[0]
-        self._real(fixed)
-        if other or ".." in text.split("/"):
+        fixed_prefix = re.split(r"[*?\[]", text, maxsplit=1)[0]
+        self._checked_path(fixed_prefix)
+        if unsupported or ".." in text.split("/"):
             raise NotKnownError
-        found = glob(text, root_dir=self._folder, recursive=bool(recursive))  # noqa: PTH207 - as setup.py has it
-        return sorted(bounded([name.replace("\\", "/") for name in found]))
+        names = glob(text, root_dir=self._folder, recursive=bool(recursive))  # noqa: PTH207 - as setup.py has it
+        return sorted(bounded([name.replace("\\", "/") for name in names]))
 
     def _path_glob(self, path: PurePosixPath, pattern: str) -> list[PurePosixPath]:
         if ".." in pattern.split("/") or pattern.startswith("/"):
             raise NotKnownError
-        top = self._real(path)
+        top = self._checked_path(path)
         return bounded(sorted(path / entry.relative_to(top).as_posix() for entry in top.glob(pattern)))  # type: ignore[no-any-return]  # what it is given

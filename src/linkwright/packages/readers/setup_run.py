@@ -20,15 +20,15 @@ from linkwright.packages.readers.setup_library import (
     NotKnownError,
     PackageLibrary,
     bounded,
-    formatted,
-    percent,
+    format_template,
+    percent_format,
     weight,
 )
 
-_MOST_STEPS = 300_000
-_MOST_WEIGHT = 100_000
-_WEIGHED_IN_A_STEP = 32
-_DEEPEST = 40
+_MAX_STEPS = 300_000
+_MAX_WEIGHT = 100_000
+_WEIGHT_PER_STEP = 32
+_MAX_DEPTH = 40
 _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
@@ -57,19 +57,19 @@ class _Unknown:
 _UNKNOWN = _Unknown()
 
 
-class _Named:
+class _ModuleMember:
     """A member of a module that is identified by its full name."""
 
     def __init__(self, name: str) -> None:
         self.name = name
 
 
-class _CannotFollowError(Exception):
+class _CannotContinueError(Exception):
     """Raised when the execution depends on a value that is unknown or too slow to compute."""
 
 
-class _LeaveError(Exception):
-    """Raised to execute ``break``, ``continue``, or ``return``, with the returned value."""
+class _ExitError(Exception):
+    """Raised to execute ``break``, ``continue`` or ``return``; `value` is the returned value."""
 
     def __init__(self, kind: str, value: Any = None) -> None:
         super().__init__(kind)
@@ -96,15 +96,15 @@ def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
     """
     library = PackageLibrary(folder)
     try:
-        _Run(library).body(tree.body)
+        _Interpreter(library).body(tree.body)
     except _SetupCalledError as called:
-        return list(_installed(called.data_files, library))
+        return list(_installed_files(called.data_files, library))
     except Exception:  # noqa: BLE001 - what the user's expressions may raise
         return None
     return None
 
 
-def _installed(data_files: Any, library: PackageLibrary) -> Iterator[InstalledFile]:
+def _installed_files(data_files: Any, library: PackageLibrary) -> Iterator[InstalledFile]:
     for entry in data_files if isinstance(data_files, (list, tuple)) else ():
         if not isinstance(entry, (list, tuple)) or len(entry) != 2 or not isinstance(entry[1], (list, tuple)):
             continue
@@ -117,11 +117,11 @@ def _installed(data_files: Any, library: PackageLibrary) -> Iterator[InstalledFi
                 yield InstalledFile(source, str(PurePosixPath(entry[0]) / PurePosixPath(source).name))
 
 
-class _Run:
+class _Interpreter:
     def __init__(self, library: PackageLibrary) -> None:
         self._library = library
         self._scopes: list[dict[str, Any]] = [{"__file__": "setup.py", "__name__": "__main__"}]
-        self._own: set[Any] = set()  # the functions defined in the file
+        self._defined_functions: set[Any] = set()  # the functions that the file defines
         self._steps = self._depth = 0
 
     # --- statements --------------------------------------------------------------------------------------------------
@@ -133,8 +133,8 @@ class _Run:
 
     def _tick(self) -> None:
         self._steps += 1
-        if self._steps > _MOST_STEPS:
-            raise _CannotFollowError
+        if self._steps > _MAX_STEPS:
+            raise _CannotContinueError
 
     def _run_statement(self, node: ast.stmt) -> None:
         if isinstance(node, (ast.Import, ast.ImportFrom)):
@@ -163,9 +163,9 @@ class _Run:
         elif isinstance(node, ast.Try):
             self.body([*node.body, *node.orelse, *node.finalbody])
         elif isinstance(node, ast.Return):
-            raise _LeaveError("return", None if node.value is None else self._value(node.value))
+            raise _ExitError("return", None if node.value is None else self._value(node.value))
         elif isinstance(node, (ast.Break, ast.Continue)):
-            raise _LeaveError("break" if isinstance(node, ast.Break) else "continue")
+            raise _ExitError("break" if isinstance(node, ast.Break) else "continue")
         elif isinstance(node, ast.ClassDef):
             self._scopes[-1][node.name] = _UNKNOWN
         elif not isinstance(node, (ast.Pass, ast.Assert, ast.Global, ast.Delete)):
@@ -174,16 +174,16 @@ class _Run:
     def _import(self, node: ast.Import | ast.ImportFrom) -> None:
         for alias in node.names:
             if isinstance(node, ast.ImportFrom):
-                self._scopes[-1][alias.asname or alias.name] = _Named(f"{node.module}.{alias.name}")
+                self._scopes[-1][alias.asname or alias.name] = _ModuleMember(f"{node.module}.{alias.name}")
             else:
                 name = alias.name if alias.asname else alias.name.partition(".")[0]
-                self._scopes[-1][alias.asname or name] = _Named(name)
+                self._scopes[-1][alias.asname or name] = _ModuleMember(name)
 
     def _augment(self, node: ast.AugAssign) -> None:
-        value = self._value(ast.BinOp(_loaded(node.target), node.op, node.value))
-        before = self._value(_loaded(node.target))
-        if isinstance(before, list) and isinstance(value, list):
-            before[:] = value  # change the list in place, because other names may refer to it
+        value = self._value(ast.BinOp(_load_expression(node.target), node.op, node.value))
+        old_value = self._value(_load_expression(node.target))
+        if isinstance(old_value, list) and isinstance(value, list):
+            old_value[:] = value  # change the list in place, because other names may refer to it
         else:
             self._bind(node.target, value)
 
@@ -193,7 +193,7 @@ class _Run:
             self._bind(node.target, item)
             try:
                 self.body(node.body)
-            except _LeaveError as leave:
+            except _ExitError as leave:
                 if leave.kind == "break":
                     return
                 if leave.kind == "return":
@@ -204,9 +204,9 @@ class _Run:
         if isinstance(target, ast.Name):
             self._scopes[-1][target.id] = value
         elif isinstance(target, (ast.Tuple, ast.List)):
-            parts = [_UNKNOWN] * len(target.elts) if value is _UNKNOWN else list(self._items(value))
-            for element, part in zip(target.elts, parts, strict=True):
-                self._bind(element, part)
+            values = [_UNKNOWN] * len(target.elts) if value is _UNKNOWN else list(self._items(value))
+            for element, element_value in zip(target.elts, values, strict=True):
+                self._bind(element, element_value)
         elif isinstance(target, ast.Subscript):
             owner = self._value(target.value)
             if isinstance(owner, list) and isinstance(target.slice, ast.Slice):
@@ -220,20 +220,20 @@ class _Run:
         """Return the value of an expression, or `_UNKNOWN` if it cannot be evaluated."""
         self._tick()
         try:
-            value = bounded(self._evaluated(node))
+            value = bounded(self._evaluate(node))
         except (NotKnownError, TypeError, ValueError, AttributeError, LookupError, OSError):
             return _UNKNOWN
         if isinstance(value, (list, tuple, dict, set)):
-            self._weigh(value)
+            self._count_weight(value)
         return value
 
-    def _weigh(self, value: Any) -> None:
-        weighed = weight(value, _MOST_WEIGHT)
-        self._steps += weighed // _WEIGHED_IN_A_STEP
-        if weighed == _MOST_WEIGHT:
-            raise _CannotFollowError
+    def _count_weight(self, value: Any) -> None:
+        value_weight = weight(value, _MAX_WEIGHT)
+        self._steps += value_weight // _WEIGHT_PER_STEP
+        if value_weight == _MAX_WEIGHT:
+            raise _CannotContinueError
 
-    def _known(self, node: ast.expr) -> Any:
+    def _known_value(self, node: ast.expr) -> Any:
         value = self._value(node)
         if value is _UNKNOWN:
             raise NotKnownError
@@ -242,19 +242,19 @@ class _Run:
     def _truth(self, node: ast.expr) -> bool:
         value = self._value(node)
         if value is _UNKNOWN:
-            raise _CannotFollowError  # the next steps depend on this value
+            raise _CannotContinueError  # the next steps depend on this value
         return bool(value)
 
     def _items(self, value: Any) -> Iterator[Any]:
-        if isinstance(value, (_Unknown, _Named)):
-            raise _CannotFollowError
+        if isinstance(value, (_Unknown, _ModuleMember)):
+            raise _CannotContinueError
         yield from value
 
-    def _evaluated(self, node: ast.expr) -> Any:
-        kind = _KINDS.get(type(node))
-        if kind is None:
+    def _evaluate(self, node: ast.expr) -> Any:
+        evaluator = _EVALUATORS.get(type(node))
+        if evaluator is None:
             raise NotKnownError
-        return kind(self, node)
+        return evaluator(self, node)
 
     def _constant(self, node: ast.Constant) -> Any:
         return node.value
@@ -284,24 +284,24 @@ class _Run:
         mapping: dict[Any, Any] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
-                mapping |= self._known(value)
+                mapping |= self._known_value(value)
             else:
-                mapping[self._known(key)] = self._value(value)
+                mapping[self._known_value(key)] = self._value(value)
         return mapping
 
-    def _joined(self, node: ast.JoinedStr) -> str:
-        parts: list[str] = []
+    def _f_string(self, node: ast.JoinedStr) -> str:
+        texts: list[str] = []
         for piece in node.values:
             if isinstance(piece, ast.FormattedValue):
                 if piece.format_spec is not None or piece.conversion not in (-1, ord("s")):
                     raise NotKnownError
-                parts.append(str(self._known(piece.value)))
+                texts.append(str(self._known_value(piece.value)))
             else:
-                parts.append(self._known(piece))
-        return "".join(parts)
+                texts.append(self._known_value(piece))
+        return "".join(texts)
 
     def _operation(self, node: ast.BinOp) -> Any:
-        left, right = self._known(node.left), self._known(node.right)
+        left, right = self._known_value(node.left), self._known_value(node.right)
         if isinstance(node.op, ast.Add) and isinstance(left, (str, list, tuple, int)):
             return left + right
         if isinstance(node.op, ast.Sub) and isinstance(left, int):
@@ -309,19 +309,19 @@ class _Run:
         if isinstance(node.op, ast.Div) and isinstance(left, PurePosixPath):
             return left / right
         if isinstance(node.op, ast.Mod) and isinstance(left, str):
-            return percent(left, right)
+            return percent_format(left, right)
         raise NotKnownError
 
     def _logic(self, node: ast.BoolOp) -> Any:
         value = None
         for operand in node.values:
-            value = self._known(operand)
+            value = self._known_value(operand)
             if bool(value) == isinstance(node.op, ast.Or):
                 break
         return value
 
     def _unary(self, node: ast.UnaryOp) -> Any:
-        value = self._known(node.operand)
+        value = self._known_value(node.operand)
         if isinstance(node.op, ast.Not):
             return not value
         if isinstance(node.op, ast.USub) and isinstance(value, int):
@@ -329,56 +329,58 @@ class _Run:
         raise NotKnownError
 
     def _comparison(self, node: ast.Compare) -> bool:
-        left = self._known(node.left)
-        for operation, right in zip(node.ops, map(self._known, node.comparators), strict=True):
+        left = self._known_value(node.left)
+        for operation, right in zip(node.ops, map(self._known_value, node.comparators), strict=True):
             if not _COMPARISONS[type(operation)](left, right):
                 return False
             left = right
         return True
 
-    def _choice(self, node: ast.IfExp) -> Any:
+    def _conditional(self, node: ast.IfExp) -> Any:
         return self._value(node.body if self._truth(node.test) else node.orelse)
 
     def _comprehension(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp) -> Any:
         self._scopes.append({})
         try:
-            items = list(self._rounds(node.generators, lambda: self._value(node.elt)))
+            items = list(self._comprehension_values(node.generators, lambda: self._value(node.elt)))
         finally:
             self._scopes.pop()
         return set(items) if isinstance(node, ast.SetComp) else items
 
-    def _rounds(self, generators: list[ast.comprehension], value: Callable[[], Any]) -> Iterator[Any]:
+    def _comprehension_values(self, generators: list[ast.comprehension], value: Callable[[], Any]) -> Iterator[Any]:
         if not generators:
             yield value()
             return
-        first, *others = generators
-        for item in self._items(self._value(first.iter)):
+        generator, *remaining_generators = generators
+        for item in self._items(self._value(generator.iter)):
             self._tick()
-            self._bind(first.target, item)
-            if all(self._truth(condition) for condition in first.ifs):
-                yield from self._rounds(others, value)
+            self._bind(generator.target, item)
+            if all(self._truth(condition) for condition in generator.ifs):
+                yield from self._comprehension_values(remaining_generators, value)
 
-    def _part(self, node: ast.Subscript) -> Any:
-        owner = self._known(node.value)
-        key = self._slice(node.slice) if isinstance(node.slice, ast.Slice) else self._known(node.slice)
+    def _subscript(self, node: ast.Subscript) -> Any:
+        owner = self._known_value(node.value)
+        key = self._slice(node.slice) if isinstance(node.slice, ast.Slice) else self._known_value(node.slice)
         if not isinstance(owner, (str, list, tuple, dict)):
             raise NotKnownError
         return owner[key]
 
     def _slice(self, node: ast.Slice) -> slice:
-        return slice(*(None if part is None else self._known(part) for part in (node.lower, node.upper, node.step)))
+        return slice(
+            *(None if part is None else self._known_value(part) for part in (node.lower, node.upper, node.step))
+        )
 
     def _attribute(self, node: ast.Attribute) -> Any:
-        owner = self._known(node.value)
-        if isinstance(owner, _Named):
-            return "/" if owner.name == "os" and node.attr == "sep" else _Named(f"{owner.name}.{node.attr}")
+        owner = self._known_value(node.value)
+        if isinstance(owner, _ModuleMember):
+            return "/" if owner.name == "os" and node.attr == "sep" else _ModuleMember(f"{owner.name}.{node.attr}")
         if isinstance(owner, PurePosixPath) and node.attr in ATTRIBUTES:
             return getattr(owner, node.attr)
         return self._method(owner, node.attr)
 
     def _method(self, owner: Any, name: str) -> Callable[..., Any]:
         if isinstance(owner, str) and name == "format":
-            return lambda *arguments, **named: formatted(owner, *arguments, **named)
+            return lambda *arguments, **named: format_template(owner, *arguments, **named)
         if isinstance(owner, PurePosixPath) and name in self._library.path_methods:
             return lambda *arguments, **named: self._library.path_methods[name](owner, *arguments, **named)
         if any(isinstance(owner, kind) and name in names for kind, names in METHODS.items()):
@@ -392,88 +394,91 @@ class _Run:
     # --- calls -------------------------------------------------------------------------------------------------------
 
     def _call(self, node: ast.Call) -> Any:
-        called = self._known(node.func)
-        named: dict[str, Any] = {}
+        function = self._known_value(node.func)
+        keyword_arguments: dict[str, Any] = {}
         for keyword in node.keywords:
             if keyword.arg is None:
-                named |= self._known(keyword.value)
+                keyword_arguments |= self._known_value(keyword.value)
             else:
-                named[keyword.arg] = self._value(keyword.value)
+                keyword_arguments[keyword.arg] = self._value(keyword.value)
         arguments = self._elements(node.args)
-        if isinstance(called, _Named):
-            if called.name.rpartition(".")[2] == "setup":
-                raise _SetupCalledError(named.get("data_files"))
-            called = self._function_of_library(called.name)
-        if not callable(called):
+        if isinstance(function, _ModuleMember):
+            if function.name.rpartition(".")[2] == "setup":
+                raise _SetupCalledError(keyword_arguments.get("data_files"))
+            function = self._library_function(function.name)
+        if not callable(function):
             raise NotKnownError
-        is_kept = getattr(called, "__name__", "") in ("append", "insert", "setdefault", "add") or called in self._own
-        if not is_kept and any(value is _UNKNOWN for value in (*arguments, *named.values())):
+        accepts_unknown = (
+            getattr(function, "__name__", "") in ("append", "insert", "setdefault", "add")
+            or function in self._defined_functions
+        )
+        if not accepts_unknown and any(value is _UNKNOWN for value in (*arguments, *keyword_arguments.values())):
             raise NotKnownError
-        result = called(*(self._named_function(value) for value in arguments), **named)
+        result = function(*(self._resolve_function(value) for value in arguments), **keyword_arguments)
         return (
             list(result)
             if isinstance(result, (map, filter, zip, enumerate, Mapping)) and not isinstance(result, dict)
             else result
         )
 
-    def _named_function(self, value: Any) -> Any:
-        return self._function_of_library(value.name) if isinstance(value, _Named) else value
+    def _resolve_function(self, value: Any) -> Any:
+        return self._library_function(value.name) if isinstance(value, _ModuleMember) else value
 
-    def _function_of_library(self, name: str) -> Callable[..., Any]:
+    def _library_function(self, name: str) -> Callable[..., Any]:
         try:
             return self._library.functions[name]
         except KeyError:
             raise NotKnownError from None
 
     def _function(self, parameters: ast.arguments, body: list[ast.stmt]) -> Callable[..., Any]:
-        names = [posonlyarg.arg for posonlyarg in (*parameters.posonlyargs, *parameters.args)]
+        names = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         defaults = dict(zip(reversed(names), reversed(self._elements(parameters.defaults)), strict=False))
-        only = {
+        keyword_only = {
             parameter.arg: _UNKNOWN if default is None else self._value(default)
             for parameter, default in zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
         }
         outer = self._scopes[1:]
 
-        def called(*arguments: Any, **named: Any) -> Any:
-            scope = {**defaults, **only, **dict(zip(names, arguments, strict=False)), **named}
+        def called(*arguments: Any, **keyword_arguments: Any) -> Any:
+            scope = {**defaults, **keyword_only, **dict(zip(names, arguments, strict=False)), **keyword_arguments}
             if parameters.vararg is not None:
                 scope[parameters.vararg.arg] = arguments[len(names) :]
-            before, self._scopes = self._scopes, [self._scopes[0], *outer, scope]
+            outer_scopes, self._scopes = self._scopes, [self._scopes[0], *outer, scope]
             self._depth += 1
             try:
-                if self._depth > _DEEPEST:
-                    raise _CannotFollowError
+                if self._depth > _MAX_DEPTH:
+                    raise _CannotContinueError
                 self.body(body)
-            except _LeaveError as leave:
+            except _ExitError as leave:
                 return leave.value
             finally:
                 self._depth -= 1
-                self._scopes = before
+                self._scopes = outer_scopes
             return None
 
-        self._own.add(called)
+        self._defined_functions.add(called)
         return called
 
 
-def _loaded(target: ast.expr) -> ast.expr:
+def _load_expression(target: ast.expr) -> ast.expr:
     """Return an expression that reads the target of an assignment."""
     return ast.Name(target.id, ast.Load()) if isinstance(target, ast.Name) else target
 
 
-_KINDS: dict[type[ast.expr], Callable[[_Run, Any], Any]] = {
-    ast.Constant: _Run._constant,
-    ast.Name: _Run._name,
-    **dict.fromkeys((ast.List, ast.Tuple, ast.Set), _Run._sequence),
-    ast.Dict: _Run._dict,
-    ast.JoinedStr: _Run._joined,
-    ast.BinOp: _Run._operation,
-    ast.BoolOp: _Run._logic,
-    ast.UnaryOp: _Run._unary,
-    ast.Compare: _Run._comparison,
-    ast.IfExp: _Run._choice,
-    **dict.fromkeys((ast.ListComp, ast.GeneratorExp, ast.SetComp), _Run._comprehension),
-    ast.Subscript: _Run._part,
-    ast.Attribute: _Run._attribute,
-    ast.Lambda: _Run._lambda,
-    ast.Call: _Run._call,
+_EVALUATORS: dict[type[ast.expr], Callable[[_Interpreter, Any], Any]] = {
+    ast.Constant: _Interpreter._constant,
+    ast.Name: _Interpreter._name,
+    **dict.fromkeys((ast.List, ast.Tuple, ast.Set), _Interpreter._sequence),
+    ast.Dict: _Interpreter._dict,
+    ast.JoinedStr: _Interpreter._f_string,
+    ast.BinOp: _Interpreter._operation,
+    ast.BoolOp: _Interpreter._logic,
+    ast.UnaryOp: _Interpreter._unary,
+    ast.Compare: _Interpreter._comparison,
+    ast.IfExp: _Interpreter._conditional,
+    **dict.fromkeys((ast.ListComp, ast.GeneratorExp, ast.SetComp), _Interpreter._comprehension),
+    ast.Subscript: _Interpreter._subscript,
+    ast.Attribute: _Interpreter._attribute,
+    ast.Lambda: _Interpreter._lambda,
+    ast.Call: _Interpreter._call,
 }

@@ -7,7 +7,7 @@ from typing import Literal
 from linkwright.page.protocol.message import Record, ServerMessage
 
 Mark = Literal["added", "removed", "changed"]
-"""The difference of a link: in its own description or in that of the joint that moves it."""
+"""The kind of difference of a link, or of the joint that moves the link."""
 
 
 class ComparedRobot(Record):
@@ -22,7 +22,7 @@ class ComparedRobot(Record):
 
 
 class ComparedPlace(Record):
-    """A position in a source text, 1-based: as text for users, and the file for the Source panel."""
+    """A 1-based position in a source text: a text for users, and the file and line for the Source panel."""
 
     text: str
     file: str
@@ -54,8 +54,8 @@ class ComparedItem(Record):
 class ComparedDescriptions(ServerMessage):
     """The differences between two descriptions.
 
-    `joints` and `shapes` map names in the old description to names in the new one: `joints` to the joints that the old
-    ones follow, `shapes` to the links that have the same shapes.
+    `joints` maps joints of the old description to the joints of the new description that they follow. `shapes` maps
+    links of the old description to links of the new description with the same shapes.
     """
 
     old: ComparedRobot

@@ -15,9 +15,9 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 class TopicOffer(Record):
-    """The topics offered for a row: those with one of the types whose names contain one of the words.
+    """The topics offered for a row: topics of one of the types with a name that contains one of the words.
 
-    If there are no words, any name is offered.
+    If there are no words, topics with any name are offered.
     """
 
     messages: list[str]
@@ -30,8 +30,8 @@ class Property(Record):
     `id` is unique in the page and stable for the lifetime of a display. Colours are ``#rrggbb``. A `group` has no
     value; a row of any other kind may also have children (``Line Style`` > ``Line Width``).
 
-    A row with `details` represents a frame, link or joint, whose name it has. The page adds read-only rows below it,
-    such as RViz's ``Position`` and ``Orientation``, because the page knows the current pose.
+    A row with `details` has the name of a frame, link or joint. The page adds read-only rows below it, such as
+    ``Position`` and ``Orientation`` as in RViz, because the page knows the current pose.
 
     A `topic` without `topics` offers the topics that the display can show.
     """
@@ -54,7 +54,7 @@ class Property(Record):
 class StatusRow(Record):
     """A row below a display's Status.
 
-    `text` is usually a phrase, which each page receives in its own language.
+    `text` is usually a phrase, which is translated for each page.
     """
 
     name: str
@@ -65,7 +65,7 @@ class StatusRow(Record):
 class Place(Record):
     """A 1-based position in a source file, with the macro calls and includes that lead to it.
 
-    `trail` is ordered innermost first.
+    `trail` begins with the innermost call or include.
     """
 
     file: str
@@ -77,18 +77,18 @@ class Place(Record):
 class Display(Record):
     """A display of the Displays panel.
 
-    `cls` is RViz's class, such as ``rviz_default_plugins/Grid``. `drawing` is the class that determines how the page
-    draws
-    the display: the display's own class or, for a display of another package, the class that it resembles.
+    `cls` is RViz's class, such as ``rviz_default_plugins/Grid``. `drawing` is the class that the page draws: the class
+    of the display or, for a display of another package, a class that looks the same.
 
-    `group` is the ID of the display's group, a ``rviz_common/Group`` that precedes it. `enabled` is the display's own
-    check box; the display is drawn if the check boxes of all enclosing groups are also on.
+    `group` is the ID of the group that contains the display, a ``rviz_common/Group`` that precedes it. `enabled` is
+    the check box of the display. The display is drawn if the check boxes of all enclosing groups are also on.
 
     `supported` is false for a class that this program does not draw; such a display stays in the file and is listed as
     unsupported. Rows of particular classes:
 
     - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
-      ``Links``. A link's row is a ``bool`` (draw its shapes) if the link has shapes, or else a ``group``.
+      ``Links``. The row of a link with shapes is a ``bool`` (draw the shapes); the row of any other link is a
+      ``group``.
     - TF: a frame is drawn if it has a row below ``Frames`` and the row is on; frames excluded by the filters have no
       row.
 
@@ -164,7 +164,7 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 
 # --- server to page ------------------------------------------------------------------------------------------------
 class EditName(Record):
-    """An edit to undo or redo: its kind, and the name of the property or display."""
+    """An edit to undo or redo: the kind of the edit, and the name of the property or display."""
 
     kind: EditKind
     name: str
@@ -180,7 +180,7 @@ class Configuration(ServerMessage):
         undo: the edit that undo would revert, or None.
         redo: the edit that redo would repeat, or None.
         own: whether the page has its own configuration.
-        recent: files opened or saved before, newest first.
+        recent: the recently opened or saved files, newest first.
     """
 
     path: str | None
@@ -200,7 +200,7 @@ class DisplayClass(Record):
 
 
 class TopicChoice(Record):
-    """A topic of the graph, its message type, and the display classes that can show it, possibly none."""
+    """A topic of the graph, its message type, and the display classes that can show it, if any."""
 
     topic: str
     message: str
@@ -240,7 +240,7 @@ class ConfigurationSaved(ServerMessage):
 
 
 class ConfigurationRefused(ServerMessage):
-    """The rejection of a page's request, with the reason.
+    """The notice that a request of the page was refused, with the reason.
 
     If there is a question, the page may repeat the request after the user has confirmed it.
     """
@@ -280,9 +280,9 @@ class RemoveDisplays(PageMessage):
 
 
 class MoveDisplays(PageMessage):
-    """A request to move displays into a group, before one of its displays.
+    """A request to move displays into a group, before one of the displays in it.
 
-    A group of None means the top level, and a display of None means the end.
+    If `group` is None, the displays are moved to the top level; if `before` is None, they are moved to the end.
     """
 
     displays: list[str]
@@ -291,7 +291,7 @@ class MoveDisplays(PageMessage):
 
 
 class GroupDisplays(PageMessage):
-    """A request to move displays into a new group, at the position of the first of them."""
+    """A request to move displays into a new group at the position of the first display."""
 
     displays: list[str]
     name: str
@@ -302,7 +302,7 @@ class Undo(PageMessage):
 
 
 class Redo(PageMessage):
-    """A request to redo the edit that was last undone."""
+    """A request to redo the last undone edit."""
 
 
 class AskDisplayChoices(PageMessage):
@@ -363,15 +363,14 @@ class AskConfigurationText(PageMessage):
 
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
-"""RViz's and nav2's panels that the page has too; the names are the page's."""
+"""The panels of RViz and nav2 that the page also has, under their names in the page."""
 
 
 class Panels(ServerMessage):
     """The open panels of a configuration.
 
     Attributes:
-        opened: the number of configurations opened for this page's displays; when it changes, the page shows these
-            panels.
+        opened: the number of configurations opened so far; if it changes, the page shows these panels.
         origin: the name under which the browser stores the panels of a configuration that has no file.
         shown: the panels that are open, in the order of the file; None if the file does not list panels.
     """
@@ -382,6 +381,6 @@ class Panels(ServerMessage):
 
 
 class ShowPanels(PageMessage):
-    """The panels that are open after the user has opened or closed one; the file stores them."""
+    """The open panels, sent after the user has opened or closed a panel; the file stores them."""
 
     shown: list[PanelName]

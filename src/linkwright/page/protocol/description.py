@@ -11,7 +11,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class ArgumentChoice(Record):
-    """An argument set that some caller of the file uses.
+    """An argument set with which another file calls the file.
 
     `label` contains the values that differ from the other choices.
     """
@@ -23,7 +23,7 @@ class ArgumentChoice(Record):
 class ArgumentForm(ServerMessage):
     """The arguments that a file needs, in order, and their initial values.
 
-    Without a file there is no form.
+    If `file` is empty, there is no form.
     """
 
     file: str
@@ -36,7 +36,7 @@ NOTHING_ASKED = ArgumentForm(file="", names=[], values={}, choices=[])
 
 
 class GiveArguments(PageMessage):
-    """The user sets values for arguments of the form."""
+    """The values that the user has entered for arguments of the form."""
 
     values: dict[str, str]
 
@@ -64,10 +64,10 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """The positions of an element: in the expanded text and in its file, with the calls in between.
+    """The positions of an element in the expanded text and in its file, with the calls that led to it.
 
     `origin` is None if only the position in the expanded text is known. `calls` lists macro calls and includes,
-    innermost first; if there are very many, the outermost ones are omitted.
+    beginning with the innermost; if there are very many, the outermost are omitted.
     """
 
     expanded: SourceRange | None
@@ -76,10 +76,10 @@ class Written(Record):
 
 
 class LinkInertia(Record):
-    """A link's mass in kg, and its centre of mass in the link's frame in metres.
+    """The mass of a link in kg, its centre of mass in the link frame in metres, and its equivalent box.
 
-    `box` has the edge lengths, m, of the uniform box with the same inertia, and `quaternion` is the box's orientation
-    in the link. `box` is empty if no body can have this inertia.
+    `box` has the edge lengths in m of the uniform box with the same inertia, and `quaternion` is the orientation of
+    the box in the link. `box` is empty if no body can have this inertia.
     """
 
     mass: float
@@ -109,8 +109,8 @@ class JointMimic(Record):
 class JointDetails(Record):
     """A joint of the description, in SI units.
 
-    The origin is in the parent's frame, and the unit axis in the joint's frame. A value that is not set or not finite
-    is None.
+    The origin is in the frame of the parent, and the unit axis is in the frame of the joint. A value that is not set
+    or not finite is None.
     """
 
     name: str
@@ -138,7 +138,7 @@ class JointDetails(Record):
 class Description(ServerMessage):
     """The description of the robot of a RobotModel display; response to `AskDescription`.
 
-    Links are in file order. `files` are the files that the description was generated from, the main file first.
+    Links are in file order. `files` are the source files of the description, beginning with the main file.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -153,7 +153,7 @@ class Description(ServerMessage):
 
 
 class DescriptionChanged(ServerMessage):
-    """A notice that a display shows a new description; lists the links and joints that differ."""
+    """The notice that a display shows a new description, with the links and joints that have changed."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -213,7 +213,7 @@ class AskDescriptionText(PageMessage):
 
 
 class AskInertia(PageMessage):
-    """A request for the findings about masses and inertias, which the server takes a while to compute."""
+    """A request for the findings about masses and inertias, which take a while to compute."""
 
     display: str
 

@@ -25,8 +25,8 @@ class ImageBoxes(DataContent):
     `boxes` has shape (N, 5): x and y of the centre, width and height in pixels of the image, and the rotation of the
     box in radians clockwise. The other fields are as in `SolidBoxes`.
 
-    `of_image` is whether the boxes were detected in the image with the content's stamp; otherwise they are drawn over
-    the current image.
+    `of_image` is whether the boxes belong to the image with the same stamp. If not, they are drawn over the current
+    image.
     """
 
     boxes: Floats

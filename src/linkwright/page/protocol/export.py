@@ -9,7 +9,7 @@ from linkwright.page.protocol.views_and_tools import View
 
 
 class AskExport(PageMessage):
-    """A request to export the scene as a file; `view` is the page's view."""
+    """A request to export the scene as a file; `view` is the current view of the page."""
 
     format: Literal["html", "glb"]
     view: View

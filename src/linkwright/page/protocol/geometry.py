@@ -6,7 +6,7 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats
 
 
 class PointMarks(DataContent):
-    """PointStamped: points in the frame of the content, metres, shape (N, 3)."""
+    """The points of PointStamped in the frame of the content, metres, shape (N, 3)."""
 
     positions: Floats
 
@@ -14,8 +14,8 @@ class PointMarks(DataContent):
 class PoseMarks(DataContent):
     """Poses of Pose, PoseArray, PoseWithCovariance, Odometry and Path, in the frame of the content.
 
-    `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36), the rows of the 6 x 6 matrix
-    over x, y, z and the rotations about them; the shape is (0,) if there are no covariances.
+    `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36): the rows of the 6 x 6 matrix
+    over x, y, z and the rotations about these axes. The shape is (0,) if there are no covariances.
     """
 
     poses: Floats
@@ -23,7 +23,7 @@ class PoseMarks(DataContent):
 
 
 class ParticleMarks(DataContent):
-    """The particles of ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,)."""
+    """The particles of ParticleCloud: poses as in `PoseMarks`, and their weights, shape (N,)."""
 
     poses: Floats
     weights: Floats

@@ -25,11 +25,11 @@ class CameraModel(Record):
 
 
 class ImageFrame(DataContent):
-    """One image of Image or Camera.
+    """An image of the displays Image and Camera.
 
-    `width` and `height` are those of the message; `columns` and `rows` are the size of the data, which may be smaller.
-    The data contains 8-bit pixels row by row, or a file that browsers can decode. `quality` is the quality (1 to 95) of
-    a WebP file that was made from the image for a slow connection, or else 0.
+    `width` and `height` are the size of the image in the message; `columns` and `rows` are the size of the data, which
+    may be smaller. The data contains 8-bit pixels row by row, or a file that browsers can decode. `quality` is the
+    quality (1 to 95) of a WebP file that was made from the image for a slow connection, or 0 for other data.
     """
 
     width: int
@@ -45,7 +45,7 @@ class ImageFrame(DataContent):
 class ImageSize(PageMessage):
     """The size of an Image display's panel in pixels, 0 while the panel is hidden.
 
-    The page does not need images of a higher resolution.
+    The page needs no images with more pixels.
     """
 
     display: str
@@ -54,9 +54,9 @@ class ImageSize(PageMessage):
 
 
 class OccupancyMap(DataContent):
-    """The cells of Map, row by row from the origin's corner, each as the byte of its int8 value.
+    """The cells of Map, row by row from the corner at the origin, each as the byte of its int8 value.
 
-    `origin` is the pose of that corner in the frame of the message: x y z (metres) qx qy qz qw.
+    `origin` is the pose of this corner in the frame of the message: x y z (metres) qx qy qz qw.
     """
 
     width: int

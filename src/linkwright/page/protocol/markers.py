@@ -21,13 +21,13 @@ MarkerKind = Literal[
     "triangle_list",
     "arrow_strip",
 ]
-"""In the order of visualization_msgs' numbers; the last since Jazzy."""
+"""The kinds in the order of the numbers in visualization_msgs; the last one exists since Jazzy."""
 
 
 class MarkerMesh(Record):
     """The file of a mesh marker: an address, or the bytes contained in the message.
 
-    `embedded` is whether the mesh's own materials are used, tinted by the marker's colour.
+    `embedded` is whether the materials in the mesh file are used, tinted by the colour of the marker.
     """
 
     format: str
@@ -40,7 +40,7 @@ class MarkerShape(Record):
     """A marker with the fields of visualization_msgs/msg/Marker.
 
     `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame or, if `frame` is not empty, in
-    that frame, which the marker follows. `scale` is x, y, z; `color` is RGBA. `points` has shape (N, 3), `colors` (N,
+    this frame, which the marker follows. `scale` is x, y, z; `color` is RGBA. `points` has shape (N, 3), `colors` (N,
     4) or is empty, `uvs` (N, 2) or is empty. `texture` is the address of an image.
     """
 
@@ -60,7 +60,7 @@ class MarkerShape(Record):
 
 
 class MarkersChanged(DataContent):
-    """Marker and MarkerArray: new and changed markers, and the IDs of removed markers.
+    """The new and changed markers of Marker and MarkerArray, and the IDs of removed markers.
 
     If `everything` is set, all earlier markers are removed.
     """
@@ -71,7 +71,7 @@ class MarkersChanged(DataContent):
 
 
 OrientationMode = Literal["inherit", "fixed", "view_facing"]
-"""In the order of visualization_msgs' numbers, as are the modes below."""
+"""The modes in the order of the numbers in visualization_msgs, like `InteractionMode`."""
 
 InteractionMode = Literal[
     "none",
@@ -93,7 +93,7 @@ class InteractiveControl(Record):
 
     The control's axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode selects). The
     poses of `markers` are in the frame of the control, or in the frame of the interactive marker if
-    `independent_orientation`.
+    `independent_orientation` is true.
     """
 
     name: str
@@ -136,7 +136,7 @@ class InteractiveMarkerMoved(DataContent):
 
 
 class MarkerFeedback(PageMessage):
-    """The user acted on an interactive marker; poses and points are in the marker's frame.
+    """An action of the user on an interactive marker; poses and points are in the frame of the marker.
 
     `mouse_point` is the point of the marker under the mouse, or empty.
     """

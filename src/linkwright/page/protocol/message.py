@@ -1,8 +1,9 @@
 """The base classes of messages, and their encoding as text and as binary frames.
 
-Defining a message class registers the class, and its codec and the page's types are derived from it. All messages from
-pages are validated. The module of a message that few pages send can be imported when the first such message arrives,
-see `define_later`.
+Defining a message class registers it. Its codec and the types of the page are derived from the
+class. All messages from
+pages are validated. A module with messages that few pages send can be imported when the first of them arrives, see
+`define_later`.
 
 Binary frames to pages are little endian: transforms, content with large arrays, and chunks of these.
 
@@ -32,7 +33,7 @@ from linkwright.diagnostics.translation import translate_phrase
 
 
 def _tag(name: str) -> str:
-    """Return the tag of a class in JSON: ``SetJoint`` is ``set_joint``."""
+    """Return the tag of a class in JSON, such as ``set_joint`` for ``SetJoint``."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
@@ -44,8 +45,8 @@ class ServerMessage(Struct, tag_field="type", tag=_tag):
     """The base class of messages from the server to pages."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ()
-    """Fields that identify the subject of a message: of messages that wait for a slow page only the newest for each of
-    their values is sent; without any, the newest of the class."""
+    """The fields that identify the subject of a message. Of the messages that are queued for a slow page, only the
+    newest for each value of these fields is sent, or the newest of the class if there are no fields."""
 
 
 class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True):
@@ -56,7 +57,7 @@ class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True
 
 
 class DataContent(Struct, tag_field="kind", tag=_tag):
-    """The base class of a display's content with large arrays, which `pack_data` packs."""
+    """The base class of content of displays with large arrays, which `pack_data` packs."""
 
 
 def tag_of(message: Struct) -> str:
@@ -65,11 +66,11 @@ def tag_of(message: Struct) -> str:
 
 
 class BadMessageError(ValueError):
-    """Raised when a page sent data that is not a message of the protocol; the message gives the reason."""
+    """Raised if a page has sent data that is not a message of the protocol; the message gives the reason."""
 
 
 def plain(value: Any) -> Any:
-    """Return a value of a derived class, such as numpy's, as a plain string or number for JSON."""
+    """Return a string or number of a derived class, such as a NumPy float, as a plain value for JSON."""
     if isinstance(value, str):
         return str.__str__(value)
     if isinstance(value, float):
@@ -82,7 +83,7 @@ def plain(value: Any) -> Any:
 def encode(message: ServerMessage, language: str | None = None) -> str:
     """Return a message as JSON.
 
-    Surrogates, which represent bytes that are not UTF-8 in file names, become question marks.
+    Surrogates, which represent bytes of file names that are not UTF-8, are replaced by question marks.
 
     Args:
         message: the message.
@@ -91,8 +92,8 @@ def encode(message: ServerMessage, language: str | None = None) -> str:
     try:
         return _encoder(language).encode(message).decode()
     except UnicodeEncodeError:
-        built = msgspec.to_builtins(message, enc_hook=partial(_to_plain_or_localized, language=language))
-        text = json.dumps(built, ensure_ascii=False, separators=(",", ":"))
+        plain_message = msgspec.to_builtins(message, enc_hook=partial(_to_plain_or_localized, language=language))
+        text = json.dumps(plain_message, ensure_ascii=False, separators=(",", ":"))
         return text.encode("utf-8", "replace").decode()
 
 
@@ -107,7 +108,7 @@ def _to_plain_or_localized(value: Any, language: str | None) -> Any:
 
 
 def redundancy_key(message: ServerMessage) -> str:
-    """Return the key by which a message replaces earlier ones in an outbox.
+    """Return the key with which a message replaces earlier messages in an outbox.
 
     There is one key for each class, or for each value of the fields in the class's `NEWEST_OF`.
     """
@@ -122,16 +123,16 @@ def decode(text: str) -> PageMessage:
     """
     try:
         try:
-            return _decoded(text)
+            return _decode_defined(text)
         except msgspec.ValidationError:
-            if not _define(text):
+            if not _import_module(text):
                 raise
-            return _decoded(text)
+            return _decode_defined(text)
     except (msgspec.DecodeError, ValueError, RecursionError) as error:
         raise BadMessageError(str(error)) from None
 
 
-def _decoded(text: str) -> PageMessage:
+def _decode_defined(text: str) -> PageMessage:
     message: PageMessage = _decoder(len(PageMessage.__subclasses__())).decode(text)
     return message
 
@@ -145,16 +146,16 @@ def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
     by_tag: dict[str, type[PageMessage]] = {}
     for cls in PageMessage.__subclasses__():
         tag = str(cls.__struct_config__.tag)
-        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot replace a message class
+        if by_tag.get(tag, cls).__module__ == cls.__module__:  # so that another package cannot replace a message class
             by_tag[tag] = cls
     return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # made of a tuple
 
 
-_LATER: dict[str, str] = {}
-"""The modules of messages that are imported with the first message, by its name in JSON."""
+_MODULES_BY_TAG: dict[str, str] = {}
+"""The modules that are imported when the first message of a class arrives, by the tag of the class."""
 
 
-class _Head(Struct):
+class _TypeField(Struct):
     """The field of a message that identifies its class."""
 
     type: str
@@ -172,12 +173,12 @@ def define_later(address: str) -> None:
         address: the address of the message class, as ``module:class``.
     """
     module, _, name = address.partition(":")
-    _LATER.setdefault(_tag(name), module)
+    _MODULES_BY_TAG.setdefault(_tag(name), module)
 
 
-def _define(text: str) -> bool:
-    """Import the class of a page's message; return False if the class is already imported or unknown."""
-    module = _LATER.pop(msgspec.json.decode(text, type=_Head).type, None)
+def _import_module(text: str) -> bool:
+    """Import the module of a message; return False if the module is already imported or not registered."""
+    module = _MODULES_BY_TAG.pop(msgspec.json.decode(text, type=_TypeField).type, None)
     if module is None:
         return False
     import_module(module)
@@ -185,7 +186,7 @@ def _define(text: str) -> bool:
 
 
 PROTOCOL_VERSION = 5
-"""Increased on every change that an older page would misread; the page reloads itself if it differs."""
+"""Increased for every incompatible change; a page with another version reloads itself."""
 
 
 class Hello(ServerMessage):
@@ -198,15 +199,15 @@ class Hello(ServerMessage):
 
 
 class ProgramIsLate(ServerMessage):
-    """Whether the program, and not the connection, causes most of the delay that the page observes."""
+    """Whether most of the delay that the page observes is caused by the program, not by the connection."""
 
     late: bool
 
 
 class Received(PageMessage):
-    """The number of messages that the page has received, by which it acknowledges them.
+    """The acknowledgement of messages: the number of messages that the page has received.
 
-    It is sent after the first message and after each large one.
+    It is sent after the first message and after each large message.
     """
 
     count: int
@@ -228,17 +229,17 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
     """Return a binary frame with the poses and ages of all frames.
 
     The header is four uint32 (kind 1, revision of the frame table, number of frames N, 0) and a float64 stamp in
-    seconds; then float32 N x 7 (x y z qx qy qz qw in the Fixed Frame, NaN where there is no transform) and N float32
-    (seconds since each frame's last transform; 0 for static frames). Everything is little endian.
+    seconds; then float32 N x 7 (x y z qx qy qz qw in the Fixed Frame, NaN if there is no transform) and N float32
+    (seconds since the last transform of each frame; 0 for static frames). All numbers are little endian.
 
     Args:
-        revision: the revision of the `FrameTable` that names the rows.
-        stamp: the time of the newest transform, seconds.
+        revision: the revision of the `FrameTable` with the names of the rows.
+        stamp: the time of the newest transform, in seconds since the epoch.
         poses: the poses, shape (N, 7).
         ages: the ages, shape (N,).
 
     Raises:
-        ValueError: when the shapes do not agree.
+        ValueError: the shapes do not match.
     """
     count = len(poses)
     if poses.shape != (count, 7) or ages.shape != (count,):
@@ -264,18 +265,20 @@ _HEADER = struct.Struct("<IIII")
 _ALIGNMENT = 8
 
 Floats = NDArray[np.float32]
-"""An array of any shape, flat in the page, as a Float32Array."""
+"""An array of any shape, which is a flat Float32Array in the page."""
 
 Bytes = NDArray[np.uint8]
-"""Bytes; a Uint8Array in the page."""
+"""An array of any shape, which is a flat Uint8Array in the page."""
 
-_TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1")}
-_EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (name, _) in _TYPES.items()}
-"""The placeholder of empty arrays, of which simple markers have three each."""
+_ARRAY_TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1")}
+_EMPTY_PLACEHOLDERS: dict[str, dict[str, list[Any]]] = {
+    kind: {"$": [name, 0, 0]} for kind, (name, _) in _ARRAY_TYPES.items()
+}
+"""The placeholders of empty arrays, which are shared because each simple marker has three of them."""
 
 
 class DisplayForgotten(ServerMessage):
-    """The removal of a display's content: the content under a key, or all of it."""
+    """The removal of content of a display: the content under a key, or all content if the key is None."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key")
 
@@ -297,11 +300,11 @@ def pack_data(
     Args:
         display: the display's ID.
         content: the content.
-        key: the key of this content among the display's contents; newer content with the same key replaces it.
+        key: the key of the content; it replaces earlier content of the display with the same key.
         frame: the frame that the content is in; empty for the Fixed Frame.
-        pose: the pose of that frame in the Fixed Frame at the time of the content, x, y, z, qx, qy, qz, qw; None if the
-            content follows the frame.
-        stamp: the time of the content, seconds.
+        pose: the pose of the frame in the Fixed Frame at the time of the content, x, y, z, qx, qy, qz, qw; None if the
+            content moves with the frame.
+        stamp: the time of the content, in seconds since the epoch.
     """
     arrays = _Arrays()
     header = {
@@ -312,7 +315,7 @@ def pack_data(
         "pose": None if pose is None else [float(number) for number in pose],
         "content": content,
     }
-    text = _json(header, arrays)
+    text = _header_json(header, arrays)
     parts = [_HEADER.pack(DATA_KIND, len(text), 0, 0), text, _padding(_HEADER.size + len(text))]
     return b"".join([*parts, *arrays.parts])
 
@@ -333,30 +336,30 @@ class _Arrays:
         self.parts.clear()
         self._length = 0
 
-    def put_aside(self, value: Any) -> Any:
-        """Return the JSON form of a value: an array is added and replaced by its placeholder."""
+    def encode_value(self, value: Any) -> Any:
+        """Return the JSON form of a value; for an array, add the array and return its placeholder."""
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
         """Add an array and return its placeholder in the header."""
         if array.size == 0:
-            return _EMPTY[array.dtype.kind]
-        name, wire = _TYPES[array.dtype.kind]
+            return _EMPTY_PLACEHOLDERS[array.dtype.kind]
+        name, dtype = _ARRAY_TYPES[array.dtype.kind]
         reference = {"$": [name, self._length, array.size]}
-        data = np.ascontiguousarray(array, dtype=wire).tobytes()
+        data = np.ascontiguousarray(array, dtype=dtype).tobytes()
         padding = _padding(len(data))
         self.parts += [data, padding]
         self._length += len(data) + len(padding)
         return reference
 
 
-def _json(header: dict[str, Any], arrays: _Arrays) -> bytes:
-    """Return the header as JSON; surrogates, which file names may contain, become question marks."""
+def _header_json(header: dict[str, Any], arrays: _Arrays) -> bytes:
+    """Return the header as JSON; surrogates, which file names may contain, are replaced by question marks."""
     try:
-        return msgspec.json.encode(header, enc_hook=arrays.put_aside)
+        return msgspec.json.encode(header, enc_hook=arrays.encode_value)
     except UnicodeEncodeError:
         arrays.clear()
-        header = msgspec.to_builtins(header, enc_hook=arrays.put_aside)
+        header = msgspec.to_builtins(header, enc_hook=arrays.encode_value)
         return json.dumps(header, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "replace")
 
 
@@ -367,17 +370,17 @@ def _padding(length: int) -> bytes:
 PIECE_KIND = 4
 
 
-def pack_piece(frame: bytes, number: int, offset: int, size: int) -> bytes:
+def pack_chunk(frame: bytes, number: int, offset: int, size: int) -> bytes:
     """Return a binary frame with a chunk of another frame.
 
-    The chunk is four uint32, little endian (kind 4, number, offset, length of the whole frame), and the bytes from the
-    offset on. The page processes the whole frame when it has received the last chunk; a chunk with offset 0 begins
-    another frame.
+    The result consists of four little-endian uint32 (kind 4, number, offset, length of the complete frame) and the
+    bytes from the offset on. The page processes the frame when it has received the last chunk. A chunk with offset 0
+    begins another frame.
 
     Args:
         frame: the complete frame.
-        number: the number of the transfer, which all chunks of the frame share and which differs for the next frame.
-        offset: the offset of the chunk, bytes.
-        size: the maximum size of the chunk, bytes.
+        number: the number of the transfer, which is the same for all chunks of a frame and differs for the next frame.
+        offset: the offset of the chunk in the frame, in bytes.
+        size: the maximum size of the chunk, in bytes.
     """
     return _HEADER.pack(PIECE_KIND, number, offset, len(frame)) + frame[offset : offset + size]

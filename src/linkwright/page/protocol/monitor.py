@@ -1,8 +1,8 @@
 """The live panels: topics, plots, the node graph, parameters, the log and the teleop pad.
 
 A frame with the samples of plots is four uint32 (kind 3, number of series N, 0, 0); then for each series two uint32
-(its ID, number of samples M) and 3 x M float64: the times of reception and the header stamps, both in seconds since the
-epoch (NaN without a header), and the values. Everything is little endian.
+(its ID, number of samples M) and 3 x M float64: the receive times and the stamps in the headers, both in seconds since
+the epoch (NaN without a header), and the values. All numbers are little endian.
 
 Parameter values are sent as texts, one for each element, which preserves 64-bit integers and infinities.
 """
@@ -21,7 +21,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class TopicRow(Record):
-    """A topic of the graph; several `types` mean that the nodes disagree about its type."""
+    """A topic of the graph; `types` has several items if nodes use different types for the topic."""
 
     name: str
     types: list[str]
@@ -32,8 +32,8 @@ class TopicRow(Record):
 class TopicTraffic(Record):
     """The traffic of a measured topic: the rate in Hz, and bytes per second.
 
-    Both values are None until two messages have arrived. `error` is the reason why the topic cannot be measured or
-    shown.
+    Both values are None until the topic has been measured for long enough. `error` is the reason why the topic cannot
+    be measured or shown.
     """
 
     topic: str
@@ -81,7 +81,7 @@ class TopicMessage(ServerMessage):
 
 
 class WatchTopics(PageMessage):
-    """The topics that the page lists, measures and shows with their messages from now on."""
+    """The topics that the page measures and shows with messages from now on, and whether it lists all topics."""
 
     listed: bool
     measured: list[str]
@@ -94,9 +94,9 @@ _SERIES = struct.Struct("<II")
 
 
 class PlotField(Record):
-    """A field that can be plotted, as the path that follows the topic's name.
+    """A field that can be plotted, with its path in the message.
 
-    `kind` is the type of the field's values.
+    `kind` is the type of the values of the field.
     """
 
     path: str
@@ -112,9 +112,9 @@ class PlotSeries(Record):
 
 
 class SeriesState(Record):
-    """The reason why a series cannot have values.
+    """The state of a series: the reason why it cannot have values, or None.
 
-    The reason is None if the series has values or is waiting for its first message.
+    `error` is None if the series has values or is waiting for its first message.
     """
 
     id: int
@@ -140,23 +140,23 @@ class SeriesStates(ServerMessage):
 
 
 class AskFields(PageMessage):
-    """A request for the fields of a topic, from which the user is choosing; None after the choice."""
+    """A request for the fields of a topic, from which the user selects one; None after the selection."""
 
     topic: str | None
 
 
 class WatchSeries(PageMessage):
-    """All series that the page plots from now on, and how many seconds of the past the page shows."""
+    """All series that the page plots from now on, and the duration that it shows, in seconds."""
 
     series: list[PlotSeries]
     seconds: float = 30.0
 
 
 def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
-    """Return a binary frame with the samples of plots; its layout is described in this module.
+    """Return a binary frame with the samples of plots, in the layout that this module describes.
 
     Args:
-        series: IDs, each with an array of shape (3, M): received (s), stamp (s), value.
+        series: the IDs of series, each with an array of shape (3, M): receive times in s, stamps in s, values.
     """
     parts = [_HEADER.pack(SAMPLES_KIND, len(series), 0, 0)]
     for identity, samples in series:
@@ -181,7 +181,7 @@ class NodeGraph(ServerMessage):
 
 
 class WatchNodeGraph(PageMessage):
-    """Whether the page subscribes to the node graph."""
+    """Whether the page receives the node graph from now on."""
 
     watched: bool
 
@@ -203,7 +203,7 @@ ParameterKind = Literal[
 class ParameterRow(Record):
     """A parameter of a node.
 
-    `minimum`, `maximum` and `step` describe the parameter's range, as text; they are empty if it has no range.
+    `minimum`, `maximum` and `step` are the range of the parameter as text; they are empty if there is no range.
     """
 
     name: str
@@ -226,7 +226,7 @@ class ParameterNodes(ServerMessage):
 class NodeParameters(ServerMessage):
     """The parameters of a node, sorted by name, sent when the page selects the node and on every change.
 
-    `error` is the reason if the node does not respond.
+    `error` is the reason why the parameters are not known, or None.
     """
 
     node: str
@@ -235,7 +235,7 @@ class NodeParameters(ServerMessage):
 
 
 class ParameterResult(ServerMessage):
-    """The outcome of `SetParameter`; `reason` is the node's reason for a refusal."""
+    """The outcome of `SetParameter`; `reason` is the reason why the parameter was not set."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("node", "name")
 
@@ -255,7 +255,7 @@ class ParameterDump(ServerMessage):
 
 
 class WatchParameters(PageMessage):
-    """The requests of a page from now on: the list of nodes, and the parameters of one node."""
+    """Whether the page receives the list of nodes from now on, and the node with the parameters that it shows."""
 
     listed: bool
     node: str | None
@@ -279,9 +279,8 @@ class DumpParameters(PageMessage):
 class LogLine(Record):
     """A log record.
 
-    `level` is as in rcl_interfaces/msg/Log: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
-
-    `time` is in seconds.
+    `level` is as in rcl_interfaces/msg/Log: 10 debug, 20 info, 30 warning, 40 error, 50 fatal. `time` is in seconds
+    since the epoch.
     """
 
     level: int
@@ -304,7 +303,7 @@ class LogLines(ServerMessage):
 
 
 class WatchLog(PageMessage):
-    """Whether the page subscribes to new log records."""
+    """Whether the page receives new log records from now on."""
 
     watched: bool
 
@@ -324,7 +323,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The message type of a teleop pad, the number of subscribers, and the reason if it cannot publish."""
+    """The message type of a teleop pad, its number of subscribers, and the reason why it cannot publish."""
 
     topic: str
     kind: str

@@ -1,4 +1,4 @@
-"""The nav2 panel: the states of nav2's nodes and goal, and commands to the nodes."""
+"""The nav2 panel: the states of the nodes of nav2 and of the goal, and commands to the nodes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 ManagerState = Literal["unknown", "inactive", "active"]
-"""The state of a lifecycle manager's nodes; unknown if there is none."""
+"""The state of the nodes of a lifecycle manager; ``unknown`` if there is no manager."""
 
 GoalState = Literal["none", "active", "canceling", "succeeded", "canceled", "aborted"]
 
@@ -21,7 +21,7 @@ class WatchNavigation(PageMessage):
 
 
 class CommandNavigation(PageMessage):
-    """A command of the user: one for both lifecycle managers, or one that cancels all goals."""
+    """A command of the user, which is for both lifecycle managers or cancels all goals."""
 
     command: NavigationCommand
 
@@ -33,7 +33,7 @@ class NavigationState(ServerMessage):
         navigation: the state of lifecycle_manager_navigation.
         localization: the state of lifecycle_manager_localization.
         goal: the state of the last goal of ``navigate_to_pose``.
-        eta: the remaining time, seconds; like the next three, None if there is no feedback.
+        eta: the remaining time in seconds. This value and the next three are None if there is no feedback.
         distance: the remaining distance, metres.
         taken: the elapsed time, seconds.
         recoveries: the number of recoveries so far.
@@ -57,7 +57,7 @@ class GoalOutcome(ServerMessage):
 
     Attributes:
         reason: the last error of the node that aborted the goal, or the reason why it was not sent; empty if unknown.
-        failed: whether the goal failed; false again when another goal has been accepted.
+        failed: whether the goal failed; false as soon as another goal is accepted.
     """
 
     reason: str

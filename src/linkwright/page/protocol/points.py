@@ -10,9 +10,9 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMes
 class CloudPoints(DataContent):
     """The points of PointCloud2 and similar messages, in the frame of the message, metres, shape (N, 3).
 
-    `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the display's own colour.
-    `translucent` is whether any alpha is less than 255. `pixel` is the width of a point per metre of depth in the
-    frame; 0 if points have the display's size. For a slow connection, only every `step`-th point is sent.
+    `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the colour of the
+    display. `translucent` is whether any alpha is less than 255. `pixel` is the width of a point in m per metre of its
+    depth, or 0 if points have the size of the display. For a slow connection, only every `step`-th point is sent.
     """
 
     positions: Floats
@@ -23,7 +23,7 @@ class CloudPoints(DataContent):
 
 
 class CellGrid(DataContent):
-    """The cells of GridCells: centres, shape (N, 3), and side lengths, metres, in the message's frame."""
+    """The cells of GridCells in the frame of the message: centres, shape (N, 3), and side lengths, metres."""
 
     positions: Floats
     width: float

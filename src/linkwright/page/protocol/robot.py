@@ -15,8 +15,7 @@ class JointControl(Record):
     """A row of the Joints panel.
 
     `mimic` is the name of the joint that this joint follows, with position = multiplier * position of that joint +
-    offset.
-    The user cannot move a mimic joint.
+    offset. The user cannot move a mimic joint.
     """
 
     name: str
@@ -36,7 +35,7 @@ class Joints(ServerMessage):
 
 
 class JointPositions(ServerMessage):
-    """The positions of the Joints panel's joints, rad or m, including mimic joints."""
+    """The positions of the joints in the Joints panel, rad or m, including mimic joints."""
 
     positions: dict[str, float]
 
@@ -49,7 +48,7 @@ class SetJoint(PageMessage):
 
 
 class SetJoints(PageMessage):
-    """Positions of several joints, rad or m: a pose was recalled, or a sweep advances."""
+    """New positions of several joints, rad or m, when a pose is restored or a sweep advances."""
 
     positions: dict[str, float]
 
@@ -65,7 +64,7 @@ class CenterJoints(PageMessage):
 ShapeKind = Literal[
     "box", "cylinder", "capsule", "sphere", "mesh", "ellipsoid", "cone", "plane", "polyline", "heightmap"
 ]
-"""The kinds of shapes; those from ``ellipsoid`` on occur only in worlds."""
+"""The kinds of shapes; ``ellipsoid`` and the following kinds occur only in worlds."""
 
 
 class Submesh(Record):
@@ -92,15 +91,16 @@ class Surface(Record):
 
 
 class Shape(Record):
-    """A shape to draw, posed in its link's frame.
+    """A shape to draw, with its pose in the frame of the link.
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
     for a mesh. `url` and `format` (the file extension, lower case) are set for a mesh. `color` is None if the URDF
-    gives no colour; then a mesh keeps its own materials, and another shape is RViz's red. With `repaints`, colour and
-    texture replace the mesh's own.
+    gives no colour; then a mesh has the materials in its file, and any other shape is red as in RViz. If `repaints` is
+    true, colour and texture replace the materials of a mesh.
 
     In worlds, `size` is the radii of an ellipsoid; radius, length of a cone (tip up); x, y of a plane; the height of a
-    polyline, whose `outlines` (x, y, x, y, ...) cut holes into each other. For a heightmap, `size` is x, y, z, the
+    polyline. The `outlines` of a polyline (x, y, x, y, ...) cut holes into each
+    other. For a heightmap, `size` is x, y, z, the
     offset of its centre, and the edge length of its texture; `heights` are fractions of z, shape (rows, columns),
     in rows along x from the minimum x and y.
     """
@@ -123,7 +123,7 @@ class Shape(Record):
 
 
 class LinkScene(Record):
-    """A link to draw, and the frame whose pose the link has."""
+    """A link to draw, which is placed at the pose of a frame."""
 
     name: str
     frame: str
@@ -135,7 +135,7 @@ class LinkScene(Record):
 
 
 class JointScene(Record):
-    """A joint, posed in its parent link's frame; `axis` is in the joint's own frame. SI units.
+    """A joint with its pose in the frame of the parent link; `axis` is in the frame of the joint. SI units.
 
     `lower` and `upper` are None if the joint has no limit, or if the limit is not finite.
     """
@@ -176,7 +176,7 @@ class MeshStatus(PageMessage):
 
 
 class AskProvenance(PageMessage):
-    """A request for the source positions of a RobotModel display's link, which the user has selected."""
+    """A request for the source positions of a link that the user has selected in a RobotModel display."""
 
     display: str
     link: str

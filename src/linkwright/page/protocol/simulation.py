@@ -1,6 +1,6 @@
 """Simulated worlds: the state and control of a simulation, and modelling. Metres, seconds, newtons.
 
-Modelling a world means editing the models and lights of its file in a page.
+Modelling means that users edit the models and lights of the file of a world in a page.
 
 Poses are x, y, z in metres and roll, pitch, yaw in radians, in the world frame. Sizes of shapes are in metres: x, y, z
 of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is at its centre,
@@ -22,8 +22,9 @@ NewKind = Literal[
 class WorldEntity(Record):
     """A model or light of the world.
 
-    `shape`, `size` and `colour` are set for a model that is one simple shape, and otherwise None or empty. `address` is
-    set for a model that an ``<include>`` names. `parts` are the names of the models that are grouped in this model.
+    `shape`, `size` and `colour` are set for a model that consists of one simple shape; for others they are None or
+    empty. `address` is set for a model from an
+    ``<include>``. `parts` are the names of the models that are grouped in this model.
     """
 
     name: str
@@ -40,7 +41,7 @@ class WorldEntity(Record):
 class ModellingState(ServerMessage):
     """Whether the world can be edited and is being edited, and its models and lights.
 
-    `file` is None for a world without a file of its own; such a world is saved to a file that the user names. While no
+    `file` is None for a world without a separate file, which is saved to a file that the user names. While no
     user edits the world, `entities` may be empty.
     """
 
@@ -72,7 +73,7 @@ class ModelChoices(ServerMessage):
 
 
 class EntityChange(Record):
-    """A change of a model or light; fields that are None are left unchanged."""
+    """A change of a model or light; fields that are None do not change."""
 
     name: str
     pose: list[float] | None
@@ -137,7 +138,7 @@ class UndoWorld(PageMessage):
 
 
 class RedoWorld(PageMessage):
-    """A request to redo the change that was undone last."""
+    """A request to redo the last undone change."""
 
 
 class SaveWorld(PageMessage):
@@ -174,7 +175,7 @@ class SimulationNotice(ServerMessage):
 
 
 class ModelAdded(ServerMessage):
-    """The confirmation that the model that the page requested is in the world."""
+    """The confirmation that a model that the page requested was added to the world."""
 
     name: str
 
@@ -204,7 +205,7 @@ class DeleteModel(PageMessage):
 class DragModel(PageMessage):
     """A request to move a model by an offset in the world frame.
 
-    The offset is relative to the model's pose at the last message whose `begins` was true.
+    The offset is relative to the pose of the model at the last message with a true `begins`.
     """
 
     model: str

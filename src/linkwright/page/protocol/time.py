@@ -10,7 +10,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 class TimelineTopic(Record):
     """A topic of a recording, with the number of its messages.
 
-    `counts` are the numbers of messages in equal parts of the recording; the list is empty if they are unknown.
+    `counts` are the numbers of messages in equal intervals of the recording; the list is empty if they are unknown.
     """
 
     name: str
@@ -22,8 +22,8 @@ class TimelineTopic(Record):
 class Timeline(ServerMessage):
     """The displayed recording: its name, its start and end, and its topics.
 
-    With `live`, the timeline covers the last minutes. It then has no name, and `HistoryExtent` reports its changing
-    start and end.
+    If `live` is true, the timeline covers the last minutes. It then has no name, and `HistoryExtent` contains its
+    changing start and end.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Timeline(ServerMessage):
 
 
 class HistoryExtent(ServerMessage):
-    """The extent of the stored last minutes: first and last time, size in bytes, and maximum size."""
+    """The extent of the stored last minutes: start and end, size in bytes, and maximum size in bytes."""
 
     start: float
     end: float
@@ -46,8 +46,8 @@ class Playhead(ServerMessage):
     """The position in a recording, which is sent a few times per second while `playing`.
 
     `live` is whether the present is shown, in a timeline of the last minutes. `seeks` counts the seeks of all users, so
-    that a page can wait until its previous seek is done. `problem` is the reason why playback stopped if the recording
-    cannot be read; otherwise it is empty.
+    that a page can wait until its previous seek is done. `problem` is the reason why the recording cannot be read
+    further, or empty.
     """
 
     position: float
@@ -72,14 +72,14 @@ class SeekTime(PageMessage):
 
 
 class StepTime(PageMessage):
-    """A request to jump to the next or previous displayed message, of any topic or of a single one."""
+    """A request to jump to the next or previous message, of the displayed topics or of a single topic."""
 
     forward: bool
     topic: str = ""
 
 
 class GoLive(PageMessage):
-    """A request to return from the last minutes to the present."""
+    """A request to show the present again instead of the last minutes."""
 
 
 class SetPlayback(PageMessage):
@@ -108,7 +108,7 @@ class RecordingState(ServerMessage):
 
     `possible` is false while a recording is shown. `path` is the path of the recording being written, empty if there is
     none. `length` is in seconds, `size` in bytes. `saved` is the fraction of the last minutes that is already written,
-    or null if they are not being saved. `problem` is the reason why the last recording failed or ended early.
+    or None if they are not being saved. `problem` is the reason why the last recording failed or ended early.
     `files` are the recordings that this program has made, newest first.
     """
 
@@ -135,7 +135,7 @@ class StopRecording(PageMessage):
 
 
 class SaveMinutes(PageMessage):
-    """A request to save the last minutes, or the part of them between two times."""
+    """A request to save the last minutes, or only the messages between two times."""
 
     start: float | None
     end: float | None
@@ -156,9 +156,10 @@ class TimeState(ServerMessage):
 class Clock(ServerMessage):
     """The current clocks in seconds, for pages that watch them.
 
-    `ros_start` and `wall_start` are the times from which elapsed times are counted. While `running`, ROS time advances
-    at the speed of the wall clock, and the page advances it itself. A simulated or paused clock is sent again whenever
-    it has changed.
+    `ros_start` and `wall_start` are the times from which elapsed times are counted. If `running` is true, ROS time
+    advances at the speed of the wall clock, and the page advances
+    it. Other clocks are sent again when they have
+    changed.
     """
 
     ros: float

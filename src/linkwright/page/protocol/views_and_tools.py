@@ -21,7 +21,7 @@ class View(Record):
 
 
 class ViewClass(Record):
-    """A class of views: its property rows, whose IDs are the names of values, and RViz's defaults.
+    """A class of views: its property rows, with the names of values as IDs, and the defaults of RViz.
 
     The defaults include values without a row.
     """
@@ -32,7 +32,7 @@ class ViewClass(Record):
 
 
 class ViewClasses(ServerMessage):
-    """All types of views; sent before the first view."""
+    """All classes of views, sent before the first view."""
 
     classes: list[ViewClass]
 
@@ -40,9 +40,8 @@ class ViewClasses(ServerMessage):
 class ViewState(ServerMessage):
     """The view with which a page shows a configuration; afterwards the page controls its camera.
 
-    `revision` is the number of configurations opened so far. If it is unchanged, a page that reconnects keeps its
-    camera.
-    `whole_robot` is whether no user has chosen this view, so that the page fits the camera to the robot.
+    `revision` is the number of configurations opened so far. A page that reconnects keeps its camera if the number has
+    not changed. `whole_robot` is whether no user has chosen this view, so that the page fits the camera to the robot.
     """
 
     view: View
@@ -66,7 +65,7 @@ class SavedViews(ServerMessage):
 class ViewChanged(PageMessage):
     """The page's current view, sent at most a few times per second while it changes.
 
-    The file stores the view that any page sent last.
+    The last view that any page has sent is stored in the file.
     """
 
     view: View
@@ -75,8 +74,8 @@ class ViewChanged(PageMessage):
 class RobotMeasured(PageMessage):
     """The size of the drawn robots, measured by a page whose camera the user has not moved.
 
-    It consists of the diagonal of their bounding box in m, and the height of the ground below them, in the Fixed Frame,
-    m.
+    It consists of the diagonal of their bounding box in m, and the height of the ground below them in the Fixed Frame
+    in m.
     """
 
     diagonal: float
@@ -113,7 +112,7 @@ class Tool(Record):
 
 
 class ToolClass(Record):
-    """A type of tool that can be added."""
+    """A class of tools that can be added."""
 
     cls: str
     name: str
@@ -122,7 +121,7 @@ class ToolClass(Record):
 class Tools(ServerMessage):
     """The tools in the order of the toolbar, sent at first and after each change.
 
-    The first tool is the default one.
+    The first tool is the default tool.
     """
 
     tools: list[Tool]
@@ -130,7 +129,7 @@ class Tools(ServerMessage):
 
 
 class ToolPropertyChanged(ServerMessage):
-    """A tool's new property value, set by any page, or the current value after a refused one."""
+    """The value of a tool property after any page has set it, or after a value was refused."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 

@@ -1,7 +1,8 @@
-"""The Voice panel: sound from pages' microphones, recognized commands, answers, and typed commands.
+"""The Voice panel: sound from the microphones of pages, recognized commands, answers, and typed commands.
 
 Sound is sent in little-endian binary frames: four uint32 (kind 5, number of samples N, number of samples that the
-browser lost in or before them, 0), and N int16 samples, mono at 16 kHz. A frame contains a tenth of a second, or less
+browser lost in or before these samples,
+0), and N int16 samples, mono at 16 kHz. A frame contains a tenth of a second, or less
 at the end of the sound.
 """
 
@@ -18,13 +19,13 @@ from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 SOUND_KIND = 5
 SOUND_RATE = 16_000
-"""Samples a second."""
+"""The number of samples per second."""
 
 MOST_SAMPLES = 1600
 """The largest number of samples in a frame."""
 
 MOST_LOST_SAMPLES = 5 * SOUND_RATE
-"""The most lost samples that a frame may report; a page that lost more reports this number."""
+"""The largest number of lost samples in a frame; a page that lost more samples reports this number."""
 
 _HEADER = struct.Struct("<IIII")
 
@@ -35,7 +36,7 @@ class SoundBlock:
 
     Attributes:
         samples: mono 16-bit PCM at 16 kHz, shape (n,).
-        lost: the seconds missing in or before the samples, because the browser's machine was too busy.
+        lost: the duration in seconds of the lost sound in or before the samples, if the machine was too busy.
     """
 
     samples: NDArray[np.int16]
@@ -43,7 +44,7 @@ class SoundBlock:
 
 
 def unpack_sound(frame: bytes) -> SoundBlock | None:
-    """Return the sound in a page's binary frame, or None if the frame does not contain sound."""
+    """Return the sound in a binary frame of a page, or None if it is not a valid frame with sound."""
     if len(frame) < _HEADER.size:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
@@ -72,15 +73,15 @@ TalkMode = Literal["off", "ready", "held", "open"]
 class Talk(PageMessage):
     """The mode of the page's microphone.
 
-    The microphone is off; or ready, without publishing sound yet; or its sound is published, either while a button is
-    held or continuously.
+    The microphone is off, or ready without publishing sound, or it publishes sound while a button is held or
+    continuously.
     """
 
     mode: TalkMode
 
 
 class SayCommand(PageMessage):
-    """A command that the user has typed, handled like a spoken one."""
+    """A command that the user has typed, which is handled like a spoken command."""
 
     text: str
 
@@ -92,8 +93,8 @@ class VoiceState(ServerMessage):
     """The page whose sound is published, and the subscribers in the graph.
 
     Attributes:
-        talking: the page whose sound is published. One page talks at a time: the first with its button held, or else
-            the first that listens continuously.
+        talking: the page whose sound is published. One page talks at a time: the first page with its button held or,
+            if there is none, the first that talks continuously.
         sound_listeners: the number of subscribers to sound.
         text_listeners: the number of subscribers to commands as text.
         cut: whether the page has to start again, because it sent sound faster than real time or reported too much loss.

@@ -1,4 +1,4 @@
-"""Words that the user enrols in the Voice panel: each is recorded three times, and stored in the user's file."""
+"""Words that the user enrols in the Voice panel, which are recorded three times and stored in a file of the user."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class EnrolledWord(Record):
 
 
 class WatchWords(PageMessage):
-    """Whether the page receives the words from now on, at first and after every change."""
+    """Whether the page receives the words, initially and after every change."""
 
     watched: bool
 
@@ -23,7 +23,7 @@ class WatchWords(PageMessage):
 class BeginTake(PageMessage):
     """The start of the recording of a word.
 
-    The sound until `EndTake` is the word, said once; it is not published.
+    The sound until `EndTake` contains the word once, and is not published.
     """
 
     name: str
@@ -84,10 +84,10 @@ class TakeJudged(ServerMessage):
     Attributes:
         number: the number of the recording.
         name: the word.
-        code: the code of the finding for which the recording was refused; None if it was accepted.
+        code: the code of the finding that refused the recording; None if it was accepted.
         text: the text of that finding.
         peak: the peak amplitude, 0 to 1.
-        seconds: the length of the recording.
+        seconds: the duration of the recording, in seconds.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)

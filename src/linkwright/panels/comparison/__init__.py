@@ -1,1 +1,1 @@
-"""Two descriptions in one scene: the old robot together with the new one, and a list of the differences."""
+"""The comparison of two descriptions: the old and the new robot in one scene, and a list of differences."""

@@ -1,4 +1,4 @@
-"""The older of two descriptions as a robot in the graph, posed like the newer robot."""
+"""Publishes the older of two descriptions as a robot with the joint positions of the newer robot."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ from linkwright.graph import (
     Node,
 )
 from linkwright.messages import JointState, String, TFMessage, TransformBatch
-from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.nodes.robot_state_publisher import MOVING_TYPES, RobotTransforms
 from linkwright.urdf import Robot
 
 PREFIX = "old"
-"""The TF Prefix of its frames."""
+"""The TF Prefix of the frames of the old robot."""
 TOPIC = "/old/robot_description"
-"""The topic of its description."""
+"""The topic of the description of the old robot."""
 
 
 class OldRobot:
     """Publishes a description, and its transforms with the joint positions of another robot.
 
-    Joints that both robots have follow the other robot. Joints that only the old robot has are at zero, or in the
+    Joints that both robots have follow the joints of the other
+    robot. Joints that only the old robot has are at zero, or in the
     middle of their limits if the limits exclude zero.
 
     Args:
-        node: the node that publishes, which other programs need not see.
+        node: the node that publishes.
         listener: the node that receives the other robot's joint states.
     """
 
@@ -43,12 +44,12 @@ class OldRobot:
         self._listener = listener
         self._text = node.create_publisher(String, TOPIC, DESCRIPTION_QOS)
         self._fixed = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
-        self._moving = node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
         self._positions: dict[str, float] = {}
         self._transforms: RobotTransforms | None = None
-        self._leaders: dict[str, str] = {}
-        self._zeros: dict[str, float] = {}
-        listener.create_subscription(JointState, "joint_states", self._moved, SENSOR_DATA_QOS)
+        self._followed_joints: dict[str, str] = {}
+        self._zero_positions: dict[str, float] = {}
+        listener.create_subscription(JointState, "joint_states", self._on_joint_states, SENSOR_DATA_QOS)
 
     def publish(self, text: str) -> None:
         """Publish a description; call `place` to publish the poses of its links."""
@@ -62,76 +63,76 @@ class OldRobot:
             new: the robot whose joint states are received.
             comparison: the links and joints that correspond.
         """
-        now = self._listener.get_clock().now_ns()
+        now_ns = self._listener.get_clock().now_ns()
         self._transforms = RobotTransforms(old, f"{PREFIX}/")
-        self._leaders = joints_that_follow(old, new, comparison.joints)
-        self._zeros = _positions_at_zero(old, self._leaders)
-        fixed = self._transforms.fixed(now)
-        parent, pose = _anchor(old, new, comparison.links)
+        self._followed_joints = followed_joints(old, new, comparison.joints)
+        self._zero_positions = _initial_positions(old, self._followed_joints)
+        fixed_batch = self._transforms.fixed(now_ns)
+        parent, pose = _attach_root(old, new, comparison.links)
         batch = TransformBatch(
-            (*fixed.parents, parent),
-            (*fixed.children, f"{PREFIX}/{old.root}"),
-            now,
-            np.vstack([fixed.poses, pose[np.newaxis]]),
+            (*fixed_batch.parents, parent),
+            (*fixed_batch.children, f"{PREFIX}/{old.root}"),
+            now_ns,
+            np.vstack([fixed_batch.poses, pose[np.newaxis]]),
         )
         self._fixed.publish(TFMessage(batch=batch))
-        self._publish_moving(now)
+        self._publish_moving(now_ns)
 
-    def _moved(self, message: JointState) -> None:
+    def _on_joint_states(self, message: JointState) -> None:
         self._positions.update(zip(message.name, message.position, strict=False))
         self._publish_moving(message.header.stamp.nanoseconds)
 
     def _publish_moving(self, stamp_ns: int) -> None:
-        if self._transforms is None or not self._zeros:
+        if self._transforms is None or not self._zero_positions:
             return
-        known, leaders = self._positions, self._leaders
-        positions = [known.get(leaders.get(name, ""), zero) for name, zero in self._zeros.items()]
-        batch = self._transforms.recipe(tuple(self._zeros)).batch(positions, stamp_ns)
-        self._moving.publish(TFMessage(batch=batch))
+        joint_positions, leaders = self._positions, self._followed_joints
+        positions = [joint_positions.get(leaders.get(name, ""), zero) for name, zero in self._zero_positions.items()]
+        batch = self._transforms.recipe(tuple(self._zero_positions)).batch(positions, stamp_ns)
+        self._tf_publisher.publish(TFMessage(batch=batch))
 
 
-def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[str, str]:
-    """Return the joints of the old robot that follow one of the new robot: new names by old names.
+def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
+    """Return the new names of the joints that the joints of the old robot follow, by their old names.
 
     A joint and the joint that it follows are both revolute, or both prismatic.
     """
     return {
-        name: twin
-        for name, twin in same.items()
-        if {old.joints[name].type, new.joints[twin].type} <= MOVING_TYPES
-        and (old.joints[name].type == "prismatic") == (new.joints[twin].type == "prismatic")
+        name: new_name
+        for name, new_name in same_names.items()
+        if {old.joints[name].type, new.joints[new_name].type} <= MOVING_TYPES
+        and (old.joints[name].type == "prismatic") == (new.joints[new_name].type == "prismatic")
     }
 
 
-def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
+def _initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
     """Return the initial positions of the movable joints by name, in rad or m.
 
     Joints that mimic another movable joint are omitted.
     """
-    zeros = {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).ranges.values()}
-    moving = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
-    given = {joint.name for joint in moving if joint.mimic is None or joint.name in leaders}
+    zeros = {joint.name: joint.zero for joint in make_layout(robot, JointSettings()).ranges.values()}
+    movable_joints = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
+    independent_joints = {joint.name for joint in movable_joints if joint.mimic is None or joint.name in leaders}
     return {
         joint.name: zeros.get(joint.name, 0.0)
-        for joint in moving
-        if joint.name in given or joint.mimic is None or joint.mimic.joint not in given
+        for joint in movable_joints
+        if joint.name in independent_joints or joint.mimic is None or joint.mimic.joint not in independent_joints
     }
 
 
-def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
-    """Return the frame of the new robot to which the old root is attached, and the root's pose in it.
+def _attach_root(old: Robot, new: Robot, same_names: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
+    """Return the frame of the new robot that the old root is attached to, and the pose of the root in it.
 
-    The common link nearest to the old root coincides in both robots, with the joints between that link and the root at
-    zero.
+    The common link that is nearest to the old root has the same pose in both robots. The joints between this link and
+    the root are assumed to be at zero.
     """
-    below: dict[str, list[tuple[str, NDArray[np.float64]]]] = {}
+    children: dict[str, list[tuple[str, NDArray[np.float64]]]] = {}
     for joint in old.joints.values():
-        below.setdefault(joint.parent, []).append((joint.child, row_from_pose(joint.origin)))
-    start = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-    waiting = deque([(old.root, start)])
-    while waiting:
-        link, pose = waiting.popleft()
-        if link in same:
-            return same[link], invert(pose)
-        waiting += [(child, compose(pose, origin)) for child, origin in below.get(link, ())]
-    return new.root, start
+        children.setdefault(joint.parent, []).append((joint.child, row_from_pose(joint.origin)))
+    identity = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    pending = deque([(old.root, identity)])
+    while pending:
+        link, pose = pending.popleft()
+        if link in same_names:
+            return same_names[link], invert(pose)
+        pending += [(child, compose(pose, origin)) for child, origin in children.get(link, ())]
+    return new.root, identity

@@ -1,4 +1,4 @@
-"""Editing of a robot in the page: previews of minimal text changes, which are written on request.
+"""Editing of a robot in the page, with a preview of the smallest text change and writing on request.
 
 All pages share one history. Requests are handled one after the other in a thread, because an edit is verified by
 expanding the description again.
@@ -21,36 +21,36 @@ from linkwright.panels.editing.parts import files_of, parts_of, request_of
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.urdf import Robot
 
-_AXES = "xyz"
+_AXIS_NAMES = "xyz"
 
 
 class EditingFeature(PageFeature):
-    """Sends pages the editable parts, previews edits, and writes them."""
+    """Sends the editable parts to pages, previews edits, and writes edits to the files."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._history = EditHistory()
         self._writing = asyncio.Lock()
-        self._plans: dict[Page, tuple[int, EditPlan]] = {}
-        self._newest: dict[Page, int] = {}
-        self._watching: set[Page] = set()
+        self._previewed_plans: dict[Page, tuple[int, EditPlan]] = {}
+        self._newest_numbers: dict[Page, int] = {}
+        self._editing_pages: set[Page] = set()
         self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._worker: asyncio.Task[None] | None = None
 
     def receive(self, page: Page, message: Any) -> None:
         """Queue a request; requests are handled in order."""
         if isinstance(message, editing.PreviewEdit):
-            self._newest[page] = message.number
-        self._watching.add(page)
+            self._newest_numbers[page] = message.number
+        self._editing_pages.add(page)
         self._waiting.put_nowait((page, message))
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
     def page_closed(self, page: Page) -> None:
         """Discard the preview of a page."""
-        self._watching.discard(page)
-        self._plans.pop(page, None)
-        self._newest.pop(page, None)
+        self._editing_pages.discard(page)
+        self._previewed_plans.pop(page, None)
+        self._newest_numbers.pop(page, None)
 
     def close(self) -> None:
         """Stop handling requests."""
@@ -61,31 +61,31 @@ class EditingFeature(PageFeature):
         while True:
             page, message = await self._waiting.get()
             try:
-                await self._do(page, message)
+                await self._handle_request(page, message)
             except (EditRefusedError, LinkwrightError) as error:
-                found = error.diagnostic if isinstance(error, EditRefusedError) else error.diagnostics[0]
-                self._refuse(page, message, found)
+                diagnostic = error.diagnostic if isinstance(error, EditRefusedError) else error.diagnostics[0]
+                self._refuse(page, message, diagnostic)
             except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
                 self.context.node.get_logger().error(f"The robot cannot be edited: {type(error).__name__}: {error}")
                 self._refuse(page, message, Diagnostic("EDIT105", Phrase(f"{type(error).__name__}: {error}")))
 
-    async def _do(self, page: Page, message: PageMessage) -> None:
+    async def _handle_request(self, page: Page, message: PageMessage) -> None:
         if isinstance(message, editing.AskEditableParts):
-            page.send(self._parts(page, message))
+            page.send(self._editable_parts(page, message))
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
             return
         if not page.is_here:
             raise EditRefusedError(elsewhere())
         if isinstance(message, editing.PreviewEdit):
-            if self._newest.get(page) == message.number:
+            if self._newest_numbers.get(page) == message.number:
                 await self._preview(page, message)
             return
         history = self._history
         if isinstance(message, editing.ApplyEdit):
-            number, plan = self._plans.pop(page, (-1, EditPlan({}, {})))
+            number, plan = self._previewed_plans.pop(page, (-1, EditPlan({}, {})))
             if number != message.number:
                 raise EditRefusedError(
-                    Diagnostic("EDIT101", phrase("this edit was not previewed before it was applied"))
+                    Diagnostic("EDIT101", phrase("this edit cannot be applied, because it was not previewed"))
                 )
             files = await self.write(plan)
         else:
@@ -107,62 +107,65 @@ class EditingFeature(PageFeature):
         return files
 
     def _send_history(self) -> None:
-        for page in self._watching:
+        for page in self._editing_pages:
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
 
     async def _preview(self, page: Page, message: editing.PreviewEdit) -> None:
-        robot, known = self._known_robot(page, message.display)
-        why_not = _refusal_reason(robot, known)
-        if known is None or why_not is not None:
-            raise EditRefusedError(Diagnostic("EDIT101", why_not or phrase("there is no robot")))
-        for given in (message.xyz, message.rpy):
-            if given is not None and len(given) != len(_AXES):
+        robot, description = self._robot_and_description(page, message.display)
+        refusal_reason = _refusal_reason(robot, description)
+        if description is None or refusal_reason is not None:
+            raise EditRefusedError(Diagnostic("EDIT101", refusal_reason or phrase("there is no robot")))
+        for values in (message.xyz, message.rpy):
+            if values is not None and len(values) != len(_AXIS_NAMES):
                 raise EditRefusedError(
                     Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
                 )
-        plan = await asyncio.to_thread(_planned, known, message)
-        self._plans[page] = message.number, plan
-        page.send(editing.EditPreview(message.number, files_of(plan), list(plan.also), None))
+        plan = await asyncio.to_thread(_plan_request, description, message)
+        self._previewed_plans[page] = message.number, plan
+        page.send(editing.EditPreview(message.number, files_of(plan), list(plan.side_effects), None))
 
-    def _parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
-        robot, known = self._known_robot(page, message.display)
-        why_not = _refusal_reason(robot, known) if page.is_here else elsewhere().message
+    def _editable_parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
+        robot, description = self._robot_and_description(page, message.display)
+        refusal_reason = _refusal_reason(robot, description) if page.is_here else elsewhere().message
         parts = [] if robot is None else parts_of(robot, message.link)
-        problem = "" if why_not is None else item_of(Diagnostic("EDIT101", why_not)).message
+        problem = "" if refusal_reason is None else item_of(Diagnostic("EDIT101", refusal_reason)).message
         return editing.EditableParts(message.display, message.link, problem, parts)
 
-    def _known_robot(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
-        """Return the robot of a display, and its description if that was read from a file of this machine."""
-        found = next(
-            (robot_model for robot_model in self.managers.of(page).robot_models() if robot_model.id == display), None
+    def _robot_and_description(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
+        """Return the robot of a display, and its description if the library has it with the same text."""
+        display_model = next(
+            (candidate for candidate in self.managers.of(page).robot_models() if candidate.id == display), None
         )
-        if found is None or found.robot is None:
+        if display_model is None or display_model.robot is None:
             return None, None
-        known = self.context.library.description(found.text)
-        return found.robot, known if known is not None and known.text == found.text else None
+        description = self.context.library.description(display_model.text)
+        return (
+            display_model.robot,
+            description if description is not None and description.text == display_model.text else None,
+        )
 
-    def _refuse(self, page: Page, message: PageMessage, why: Diagnostic) -> None:
+    def _refuse(self, page: Page, message: PageMessage, diagnostic: Diagnostic) -> None:
         if isinstance(message, editing.PreviewEdit):
-            self._plans.pop(page, None)
-            page.send(editing.EditPreview(message.number, [], [], item_of(why)))
+            self._previewed_plans.pop(page, None)
+            page.send(editing.EditPreview(message.number, [], [], item_of(diagnostic)))
         else:
-            page.send(editing.EditWritten([], item_of(why)))
+            page.send(editing.EditWritten([], item_of(diagnostic)))
 
 
-def _planned(known: Description, message: editing.PreviewEdit) -> EditPlan:
-    """Return the plan of an edit for the current files."""
-    return plan_edit(read_again(known), request_of(message), Workspace(Path(known.name)).refusal)
+def _plan_request(description: Description, message: editing.PreviewEdit) -> EditPlan:
+    """Return the plan of an edit, computed from the current content of the files."""
+    return plan_edit(read_again(description), request_of(message), Workspace(Path(description.name)).refusal)
 
 
-def _refusal_reason(robot: Robot | None, known: Description | None) -> Phrase | None:
+def _refusal_reason(robot: Robot | None, description: Description | None) -> Phrase | None:
     if robot is None:
         return phrase("there is no robot")
-    if known is not None and known.document.root.tag == "sdf":
+    if description is not None and description.document.root.tag == "sdf":
         return phrase(
             "this robot is described in SDF, but only URDF and xacro can be edited: run `linkwright "
             "convert FILE --to urdf`"
         )
-    if known is None or known.name.startswith("<"):
+    if description is None or description.name.startswith("<"):
         return phrase(
             "this description was received as text, so its file is unknown: open it with `linkwright view FILE`"
         )
@@ -171,5 +174,5 @@ def _refusal_reason(robot: Robot | None, known: Description | None) -> Phrase | 
 
 def elsewhere() -> Diagnostic:
     """Return the finding that a page on another machine may not write files (EDIT109)."""
-    message = phrase("files are written only from pages that are open on the machine with the files")
-    return Diagnostic("EDIT109", message, hint=phrase("open the page there, or through an SSH tunnel"))
+    message = phrase("files can be edited only in pages that are open on the machine with the files")
+    return Diagnostic("EDIT109", message, hint=phrase("open the page on that machine, or through an SSH tunnel"))

@@ -30,37 +30,37 @@ class Format:
     write: Callable[[Snapshot], bytes]
 
 
-def _html(snapshot: Snapshot) -> bytes:
+def _write_html(snapshot: Snapshot) -> bytes:
     from linkwright.panels.export.html import html_of
 
     return html_of(snapshot)
 
 
-def _glb(snapshot: Snapshot) -> bytes:
+def _write_glb(snapshot: Snapshot) -> bytes:
     from linkwright.panels.export.gltf import glb_of
 
     return glb_of(snapshot)
 
 
 FORMATS = {
-    "html": Format("text/html; charset=utf-8", _html),
-    "glb": Format("model/gltf-binary", _glb),
+    "html": Format("text/html; charset=utf-8", _write_html),
+    "glb": Format("model/gltf-binary", _write_glb),
 }
-"""By the extension of the file."""
+"""The formats by the extension of the file."""
 
 
 def format_of(name: str) -> Format | None:
-    """Return the format for a file name, by its suffix; None if there is no such format."""
+    """Return the format for the extension of a file name, or None if it is not supported."""
     return FORMATS.get(name.rpartition(".")[2].lower()) if "." in name else None
 
 
-def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
+def export_snapshot(snapshot: Snapshot, extension: str) -> bytes:
     """Return the content of the exported file.
 
     Raises:
         LinkwrightError: the file cannot be created.
     """
-    return FORMATS[ending].write(snapshot)
+    return FORMATS[extension].write(snapshot)
 
 
 class ExportFeature(PageFeature):
@@ -68,19 +68,19 @@ class ExportFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._working: dict[Page, asyncio.Task[None]] = {}
+        self._export_tasks: dict[Page, asyncio.Task[None]] = {}
 
     def receive(self, page: Page, message: AskExport) -> None:
         """Start an export, unless an export of the page is already running."""
-        if message.format not in FORMATS or page in self._working:
+        if message.format not in FORMATS or page in self._export_tasks:
             return
         task = asyncio.get_running_loop().create_task(self._make(page, message))
-        self._working[page] = task
-        task.add_done_callback(lambda _: self._working.pop(page, None))
+        self._export_tasks[page] = task
+        task.add_done_callback(lambda _: self._export_tasks.pop(page, None))
 
     def close(self) -> None:
         """Cancel running exports."""
-        for task in self._working.values():
+        for task in self._export_tasks.values():
             task.cancel()
 
     async def _make(self, page: Page, message: AskExport) -> None:
@@ -93,10 +93,10 @@ class ExportFeature(PageFeature):
         except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
             self.context.node.get_logger().error(
                 f"The export failed:\n{traceback.format_exc()}"
-            )  # rclpy's logger, not the one of the standard library
+            )  # the logger is rclpy's, which has no `exception` method
             page.send(ExportFailed(f"{type(error).__name__}: {error}"))
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
         file = Download(f"{name}.{message.format}", FORMATS[message.format].content_type, data)
-        outside = [display_path(path) for path in snapshot.outside]
-        page.send(ExportReady(self.context.downloads.put(file), file.name, outside))
+        outside_paths = [display_path(path) for path in snapshot.outside]
+        page.send(ExportReady(self.context.downloads.put(file), file.name, outside_paths))

@@ -29,39 +29,39 @@ _MAGIC, _VERSION = 0x46546C67, 2
 _JSON, _BINARY = 0x4E4F534A, 0x004E4942
 _FLOAT, _UNSIGNED_SHORT, _UNSIGNED_INT = 5126, 5123, 5125
 _VERTICES, _INDICES = 34962, 34963
-_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_ACCESSOR_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
 
 
 class GltfFile:
-    """A glTF file under construction, whose parts are identified by indices.
+    """A glTF file under construction; its entries are identified by indices.
 
     Args:
         generator: the name of the program that creates the file.
     """
 
     def __init__(self, generator: str) -> None:
-        self._parts: dict[str, list[dict[str, Any]]] = {}
+        self._lists: dict[str, list[dict[str, Any]]] = {}
         self._binary = bytearray()
         self._generator = generator
 
     def add(self, kind: str, **content: Any) -> int:
         """Add an entry to a list of the document, and return the entry's index.
 
-        The list is ``nodes``, ``meshes``, ``materials`` or another one. Values of None are omitted.
+        The list is for example ``nodes``, ``meshes`` or ``materials``. Values of None are omitted.
         """
-        entries = self._parts.setdefault(kind, [])
+        entries = self._lists.setdefault(kind, [])
         entries.append({name: value for name, value in content.items() if value is not None})
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """Return an entry that was added before; changes of the returned dict change the document."""
-        return self._parts[kind][index]
+        """Return an entry of a list; changes of the returned dict change the document."""
+        return self._lists[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
         """Add an array of shape (N, 2 to 4) as float32, and return its index.
 
-        With `bounded`, the array's minimum and maximum are added, which glTF requires for positions.
+        If `bounded` is true, the minimum and maximum of the array are added, which glTF requires for positions.
         """
         array = np.ascontiguousarray(values, dtype="<f4")
         bounds: dict[str, Any] = {}
@@ -69,39 +69,39 @@ class GltfFile:
             bounds = {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
         return self.add(
             "accessors",
-            bufferView=self._view(array.tobytes(), _VERTICES),
+            bufferView=self._add_view(array.tobytes(), _VERTICES),
             componentType=_FLOAT,
             count=len(array),
-            type=_TYPES[array.shape[1]],
+            type=_ACCESSOR_TYPES[array.shape[1]],
             **bounds,
         )
 
     def indices(self, values: NDArray[Any]) -> int:
-        """Add the vertex indices of triangles; return the index of the array."""
-        short = values.size == 0 or int(values.max()) < 0xFFFF
-        array = np.ascontiguousarray(values, dtype="<u2" if short else "<u4").reshape(-1)
+        """Add the vertex indices of triangles, and return the index of the array."""
+        is_short = values.size == 0 or int(values.max()) < 0xFFFF
+        array = np.ascontiguousarray(values, dtype="<u2" if is_short else "<u4").reshape(-1)
         return self.add(
             "accessors",
-            bufferView=self._view(array.tobytes(), _INDICES),
-            componentType=_UNSIGNED_SHORT if short else _UNSIGNED_INT,
+            bufferView=self._add_view(array.tobytes(), _INDICES),
+            componentType=_UNSIGNED_SHORT if is_short else _UNSIGNED_INT,
             count=array.size,
             type="SCALAR",
         )
 
     def texture(self, data: bytes, content_type: str) -> int:
         """Add a PNG or JPEG file as a repeating texture, and return the texture's index."""
-        if not self._parts.get("samplers"):
+        if not self._lists.get("samplers"):
             self.add("samplers", magFilter=_LINEAR, minFilter=_LINEAR_MIPMAPS, wrapS=_REPEAT, wrapT=_REPEAT)
-        image = self.add("images", bufferView=self._view(data), mimeType=content_type)
+        image = self.add("images", bufferView=self._add_view(data), mimeType=content_type)
         return self.add("textures", source=image, sampler=0)
 
     def binary(self, roots: list[int]) -> bytes:
-        """Return the content of the .glb file, whose scene has these root nodes."""
+        """Return the content of the .glb file with these root nodes in its scene."""
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": self._generator},
             "scene": 0,
             "scenes": [{"nodes": roots}],
-            **self._parts,
+            **self._lists,
         }
         if self._binary:
             document["buffers"] = [{"byteLength": len(self._binary)}]
@@ -112,7 +112,7 @@ class GltfFile:
         body = b"".join(chunks)
         return struct.pack("<III", _MAGIC, _VERSION, 12 + len(body)) + body
 
-    def _view(self, data: bytes, target: int | None = None) -> int:
+    def _add_view(self, data: bytes, target: int | None = None) -> int:
         self._binary += b"\0" * (-len(self._binary) % 4)
         index = self.add("bufferViews", buffer=0, byteOffset=len(self._binary), byteLength=len(data), target=target)
         self._binary += data
@@ -124,15 +124,15 @@ def _chunk(kind: int, data: bytes, padding: bytes) -> bytes:
     return struct.pack("<II", len(data), kind) + data
 
 
-_RVIZ_RED = (1.0, 0.0, 0.0)
+_DEFAULT_COLOR = (1.0, 0.0, 0.0)
 _Y_UP = [-sqrt(0.5), 0.0, 0.0, sqrt(0.5)]
-"""The rotation from our z up to glTF's y up."""
+"""The rotation from z up, as in ROS, to y up, as in glTF: x, y, z, w."""
 
 
 def glb_of(snapshot: Snapshot) -> bytes:
     """Return the visuals of a robot in its current pose, as a .glb file.
 
-    Colours are those of the page, converted to glTF's linear values.
+    The colours of the page are converted to the linear values of glTF.
 
     Raises:
         LinkwrightError: VIEW204, a mesh cannot be read; INR104 or VIEW205, a library for it is not installed.
@@ -141,12 +141,12 @@ def glb_of(snapshot: Snapshot) -> bytes:
 
 
 @dataclass(frozen=True, slots=True)
-class _Look:
+class _Appearance:
     color: tuple[float, float, float]
     alpha: float
     image: bytes | None
     double_sided: bool
-    by_vertex: bool
+    has_vertex_colors: bool
 
 
 class _RobotWriter:
@@ -154,9 +154,9 @@ class _RobotWriter:
         self._snapshot = snapshot
         self._files = FileSet(snapshot.meshes)
         self._gltf = GltfFile(f"Linkwright {__version__}")
-        self._parts: dict[str, list[MeshPart]] = {}
+        self._lists: dict[str, list[MeshPart]] = {}
         self._geometries: dict[tuple[Any, ...], dict[str, Any]] = {}
-        self._materials: dict[_Look, int] = {}
+        self._materials: dict[_Appearance, int] = {}
         self._meshes: dict[tuple[Any, ...], int] = {}
         self._textures: dict[bytes, int] = {}
 
@@ -170,8 +170,8 @@ class _RobotWriter:
             child.update(translation=[x, y, z], rotation=list(normalized(*quaternion)))
             child["extras"] = {"joint": joint.name, "type": joint.type, "axis": list(joint.axis)}
             self._gltf.entry("nodes", nodes[joint.parent]).setdefault("children", []).append(nodes[joint.child])
-        top = self._gltf.add("nodes", name=robot.name, rotation=_Y_UP, children=[nodes[robot.root]])
-        return self._gltf.binary([top])
+        root_node = self._gltf.add("nodes", name=robot.name, rotation=_Y_UP, children=[nodes[robot.root]])
+        return self._gltf.binary([root_node])
 
     def _joint_poses(self) -> Mapping[str, list[float]]:
         joints = list(self._snapshot.robot.joints.values())
@@ -180,14 +180,14 @@ class _RobotWriter:
         return {joint.name: pose.tolist() for joint, pose in zip(joints, poses, strict=True)}
 
     def _link(self, link: LinkScene) -> int:
-        shapes = [self._shape(link, index, shape) for index, shape in enumerate(link.visuals)]
+        shapes = [self._add_shape(link, index, shape) for index, shape in enumerate(link.visuals)]
         return self._gltf.add("nodes", name=link.name, children=shapes or None)
 
-    def _shape(self, link: LinkScene, index: int, shape: Shape) -> int:
+    def _add_shape(self, link: LinkScene, index: int, shape: Shape) -> int:
         return self._gltf.add(
             "nodes",
             name=shape.name or f"{link.name} visual {index}",
-            mesh=self._mesh(link, shape),
+            mesh=self._add_mesh(link, shape),
             translation=shape.position,
             rotation=list(normalized(*shape.quaternion)),
             scale=shape.size if shape.kind == "mesh" and shape.size != [1.0, 1.0, 1.0] else None,
@@ -195,18 +195,20 @@ class _RobotWriter:
 
     # --- geometry ----------------------------------------------------------------------------------------------
 
-    def _mesh(self, link: LinkScene, shape: Shape) -> int:
+    def _add_mesh(self, link: LinkScene, shape: Shape) -> int:
         source = (shape.url,) if shape.kind == "mesh" else (shape.kind, *shape.size)
-        drawn = []
-        for number, part in enumerate(self._parts_of(link, shape)):
-            look = _look(shape, part, self._texture(shape))
-            drawn.append({**self._geometry((*source, number), part), "material": self._material(look)})
-        key = (*source, *(primitive["material"] for primitive in drawn))
+        primitives = []
+        for number, part in enumerate(self._mesh_parts(link, shape)):
+            appearance = _look(shape, part, self._texture_file(shape))
+            primitives.append(
+                {**self._add_geometry((*source, number), part), "material": self._add_material(appearance)}
+            )
+        key = (*source, *(primitive["material"] for primitive in primitives))
         if key not in self._meshes:
-            self._meshes[key] = self._gltf.add("meshes", name=_mesh_name(shape), primitives=drawn)
+            self._meshes[key] = self._gltf.add("meshes", name=_mesh_name(shape), primitives=primitives)
         return self._meshes[key]
 
-    def _parts_of(self, link: LinkScene, shape: Shape) -> list[MeshPart]:
+    def _mesh_parts(self, link: LinkScene, shape: Shape) -> list[MeshPart]:
         if shape.kind == "box":
             return [MeshPart(box(shape.size), None)]
         if shape.kind == "cylinder":
@@ -216,21 +218,23 @@ class _RobotWriter:
         if shape.kind == "sphere":
             return [MeshPart(sphere(*shape.size), None)]
         assert shape.url is not None
-        if shape.url not in self._parts:
-            self._parts[shape.url] = self._read(link, shape.url)
-        return self._parts[shape.url]
+        if shape.url not in self._lists:
+            self._lists[shape.url] = self._read(link, shape.url)
+        return self._lists[shape.url]
 
     def _read(self, link: LinkScene, url: str) -> list[MeshPart]:
         try:
             path = self._files.path(url)
         except FileRefusedError:
-            raise _unreadable(link, urlsplit(url).path, phrase("it does not exist, or cannot be read")) from None
+            raise _unreadable_mesh_error(
+                link, urlsplit(url).path, phrase("it does not exist or cannot be read")
+            ) from None
         try:
             return read_parts(path, resolver=_NeighbourFiles(self._files, url))
         except BadMeshError as error:
-            raise _unreadable(link, display_path(path), error.why) from None
+            raise _unreadable_mesh_error(link, display_path(path), error.reason) from None
 
-    def _geometry(self, key: tuple[Any, ...], part: MeshPart) -> dict[str, Any]:
+    def _add_geometry(self, key: tuple[Any, ...], part: MeshPart) -> dict[str, Any]:
         if key not in self._geometries:
             triangles = part.triangles
             attributes = {"POSITION": self._gltf.vertices(triangles.positions, bounded=True)}
@@ -239,46 +243,46 @@ class _RobotWriter:
             if triangles.coordinates is not None:
                 attributes["TEXCOORD_0"] = self._gltf.vertices(triangles.coordinates)
             if triangles.colors is not None:
-                attributes["COLOR_0"] = self._gltf.vertices(_linear(triangles.colors))
+                attributes["COLOR_0"] = self._gltf.vertices(_linear_colors(triangles.colors))
             indices = self._gltf.indices(triangles.indices)
             self._geometries[key] = {"attributes": attributes, "indices": indices}
         return self._geometries[key]
 
     # --- materials ---------------------------------------------------------------------------------------------
 
-    def _texture(self, shape: Shape) -> bytes | None:
-        """Return the texture that the URDF sets, as PNG or JPEG, or None if there is none."""
+    def _texture_file(self, shape: Shape) -> bytes | None:
+        """Return the texture that the URDF sets, as PNG or JPEG; None if it has none or cannot be read."""
         if shape.texture is None:
             return None
         try:
             return _as_png(self._files.path(shape.texture))
         except (FileRefusedError, OSError, ValueError):
-            return None  # like the page, which draws the shape untextured
+            return None  # the page also draws the shape without a texture
 
-    def _material(self, look: _Look) -> int:
-        if look not in self._materials:
-            red, green, blue, _ = _linear(np.array([[*look.color, 1.0]]))[0].tolist()
+    def _add_material(self, appearance: _Appearance) -> int:
+        if appearance not in self._materials:
+            red, green, blue, _ = _linear_colors(np.array([[*appearance.color, 1.0]]))[0].tolist()
             surface: dict[str, Any] = {
-                "baseColorFactor": [red, green, blue, look.alpha],
+                "baseColorFactor": [red, green, blue, appearance.alpha],
                 "metallicFactor": 0.0,
                 "roughnessFactor": 0.9,
             }
-            if look.image is not None:
-                if look.image not in self._textures:
-                    kind = "image/jpeg" if look.image.startswith(b"\xff\xd8") else "image/png"
-                    self._textures[look.image] = self._gltf.texture(look.image, kind)
-                surface["baseColorTexture"] = {"index": self._textures[look.image]}
-            self._materials[look] = self._gltf.add(
+            if appearance.image is not None:
+                if appearance.image not in self._textures:
+                    content_type = "image/jpeg" if appearance.image.startswith(b"\xff\xd8") else "image/png"
+                    self._textures[appearance.image] = self._gltf.texture(appearance.image, content_type)
+                surface["baseColorTexture"] = {"index": self._textures[appearance.image]}
+            self._materials[appearance] = self._gltf.add(
                 "materials",
                 pbrMetallicRoughness=surface,
-                alphaMode="BLEND" if look.alpha < 1.0 else None,
-                doubleSided=look.double_sided or None,
+                alphaMode="BLEND" if appearance.alpha < 1.0 else None,
+                doubleSided=appearance.double_sided or None,
             )
-        return self._materials[look]
+        return self._materials[appearance]
 
 
 class _NeighbourFiles:
-    """Provides trimesh with the files next to a mesh, under the same access rules as for pages."""
+    """Gives trimesh access to the files next to a mesh, with the same restrictions as for pages."""
 
     def __init__(self, files: FileSet, url: str) -> None:
         self._files = files
@@ -298,21 +302,21 @@ class _NeighbourFiles:
         return []
 
 
-def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
-    """Return the appearance of a mesh part: the mesh's own material, or else the URDF's.
+def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appearance:
+    """Return the appearance of a mesh part: the material in the mesh file or, if it has none, in the URDF.
 
-    The opacity is always the URDF's.
+    The opacity is always taken from the URDF.
     """
     is_mesh = shape.kind == "mesh"
     alpha = shape.color[3] if shape.color else 1.0
-    own = part.own
-    if own is None:
-        grey = is_mesh and not (shape.format or "").startswith("stl")
-        bare = (UNCOLOURED,) * 3 if grey else _RVIZ_RED
-        red, green, blue = (1.0, 1.0, 1.0) if texture else tuple(shape.color[:3]) if shape.color else bare
-        own = FileMaterial((red, green, blue), texture)
-    image = own.image if part.triangles.coordinates is not None else None
-    return _Look(own.color, float(alpha), image, is_mesh, part.triangles.colors is not None)
+    material = part.file_material
+    if material is None:
+        is_grey = is_mesh and not (shape.format or "").startswith("stl")
+        default_color = (UNCOLOURED,) * 3 if is_grey else _DEFAULT_COLOR
+        red, green, blue = (1.0, 1.0, 1.0) if texture else tuple(shape.color[:3]) if shape.color else default_color
+        material = FileMaterial((red, green, blue), texture)
+    image = material.image if part.triangles.coordinates is not None else None
+    return _Appearance(material.color, float(alpha), image, is_mesh, part.triangles.colors is not None)
 
 
 def _as_png(path: Path) -> bytes:
@@ -331,11 +335,11 @@ def _as_png(path: Path) -> bytes:
     return file.getvalue()
 
 
-def _linear(colors: Any) -> Any:
-    """Convert sRGB colours to glTF's linear values; alpha is unchanged."""
-    seen = np.asarray(colors, dtype=np.float64)
-    linear = np.where(seen <= 0.04045, seen / 12.92, ((seen + 0.055) / 1.055) ** 2.4)
-    linear[..., 3] = seen[..., 3]
+def _linear_colors(colors: Any) -> Any:
+    """Convert sRGB colours to the linear values of glTF, with unchanged alpha."""
+    srgb = np.asarray(colors, dtype=np.float64)
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    linear[..., 3] = srgb[..., 3]
     return linear
 
 
@@ -343,8 +347,8 @@ def _mesh_name(shape: Shape) -> str:
     return urlsplit(shape.url).path.rpartition("/")[2] if shape.url else shape.kind
 
 
-def _unreadable(link: LinkScene, name: str, why: Phrase) -> LinkwrightError:
-    hint = phrase("export the mesh again, or leave it out")
+def _unreadable_mesh_error(link: LinkScene, name: str, why: Phrase) -> LinkwrightError:
+    hint = phrase("export the mesh again, or remove it from the robot")
     return LinkwrightError(
         Diagnostic(
             "VIEW204",

@@ -1,6 +1,6 @@
-"""Writes a robot as one HTML file with all scripts, styles, meshes and textures.
+"""Writes a robot as one HTML file that contains all scripts, styles, meshes and textures.
 
-The page fetches nothing.
+The page fetches no other files.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from linkwright.page.files import without_secrets
 from linkwright.page.protocol.message import encode
 from linkwright.page.protocol.robot import RobotScene
 from linkwright.page.server import PAGE_FOLDER
-from linkwright.panels.export.snapshot import FileSet, Snapshot, addresses
+from linkwright.panels.export.snapshot import FileSet, Snapshot, mesh_addresses
 
 _PAGE = """\
 <!doctype html>
@@ -54,7 +54,13 @@ def html_of(snapshot: Snapshot) -> bytes:
         style = (folder / "export.css").read_text(encoding="utf-8")
     except OSError:
         hint = phrase("run `make page` in a checkout of Linkwright")
-        raise LinkwrightError(Diagnostic("VIEW202", phrase("the page for exports was not built"), hint=hint)) from None
+        raise LinkwrightError(
+            Diagnostic(
+                "VIEW202",
+                phrase("robots cannot be exported as HTML, because the page for exports was not built"),
+                hint=hint,
+            )
+        ) from None
     script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
     program = f"Linkwright {__version__}"
     text = _PAGE.format(
@@ -62,21 +68,21 @@ def html_of(snapshot: Snapshot) -> bytes:
         program=program,
         title=html.escape(snapshot.name),
         style=style.replace("</style", "<\\/style"),
-        recorded=_recorded(snapshot, program),
+        recorded=_recorded_json(snapshot, program),
         script=script,
     )
     return text.encode()
 
 
 def _script(folder: Path) -> str:
-    packed = folder / "export.js.gz"  # missing after a plain `npm run build`
-    if packed.is_file():
-        return gzip.decompress(packed.read_bytes()).decode()
+    compressed_script = folder / "export.js.gz"  # `npm run build` alone does not create it
+    if compressed_script.is_file():
+        return gzip.decompress(compressed_script.read_bytes()).decode()
     return (folder / "export.js").read_text(encoding="utf-8")
 
 
 def _policy(script: str) -> str:
-    """Return a content security policy that allows only this script; images and meshes are in the page."""
+    """Return a content security policy that allows this script and the images and meshes inside the page."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data: blob:; "
@@ -84,12 +90,12 @@ def _policy(script: str) -> str:
     )
 
 
-def _recorded(snapshot: Snapshot, program: str) -> str:
+def _recorded_json(snapshot: Snapshot, program: str) -> str:
     """Return the messages, binary frames and files for the page, as JSON that can be embedded in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
-    files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
+    files = FileSet(snapshot.meshes).collect([*mesh_addresses(robots), *snapshot.marker_meshes])
     messages = without_secrets(",".join(encode(message) for message in snapshot.messages))
-    rest = {
+    other_values = {
         "program": program,
         "display": snapshot.scene.display,
         "awaits_size": snapshot.awaits_size,
@@ -97,5 +103,5 @@ def _recorded(snapshot: Snapshot, program: str) -> str:
         "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
         "files": {without_secrets(address): base64.b64encode(data).decode() for address, data in files.items()},
     }
-    text = f'{{"messages":[{messages}],{json.dumps(rest)[1:]}'
+    text = f'{{"messages":[{messages}],{json.dumps(other_values)[1:]}'
     return text.replace("<", "\\u003c")

@@ -1,4 +1,4 @@
-"""Snapshots of a viewer's scene, with the files needed to draw it, for pages without a server."""
+"""Snapshots of the scene of a viewer and the files to draw it, for pages without a server."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
 from linkwright.geometry.arrays import quaternion_inverse, quaternion_multiply, rotate
-from linkwright.geometry.single import quaternion_of
-from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.geometry.single import pose_quaternion
+from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.packages import enclosing_package
 from linkwright.page.files import FileRefusedError, MeshFolders
 from linkwright.page.outbox import ScaledData
@@ -42,17 +42,17 @@ if TYPE_CHECKING:
 
 
 Pose = NDArray[np.float64]
-"""x, y, z (metres), qx, qy, qz, qw; shape (7,)."""
+"""A pose: x, y, z in metres, qx, qy, qz, qw; shape (7,)."""
 
 
-def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
+def current_positions(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
     """Return the positions (rad or m) of the movable joints by name, computed from link poses.
 
     Joints whose links have no known pose are omitted.
 
     Args:
         robot: the description.
-        poses: the poses by link name, all in one frame.
+        poses: the poses of the links by name, all in the same frame.
     """
     positions = {}
     for joint in robot.joints.values():
@@ -66,29 +66,29 @@ def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
 
 
 def _position(joint: Joint, parent: Pose, child: Pose) -> float:
-    back = quaternion_inverse(parent[3:])
+    inverse_parent = quaternion_inverse(parent[3:])
     axis = np.asarray(joint.axis, dtype=np.float64)
     length = float(np.linalg.norm(axis))
     if length == 0.0:
         return 0.0
     axis = axis / length
-    origin = np.asarray(quaternion_of(joint.origin), dtype=np.float64)
+    origin = np.asarray(pose_quaternion(joint.origin), dtype=np.float64)
     if joint.type == "prismatic":
-        shift = rotate(back, child[:3] - parent[:3]) - np.asarray(joint.origin.xyz)
-        return float(np.dot(rotate(quaternion_inverse(origin), shift), axis))
-    turn = quaternion_multiply(quaternion_inverse(origin), quaternion_multiply(back, child[3:]))
-    angle = 2.0 * atan2(float(np.dot(turn[:3], axis)), float(turn[3]))
+        translation = rotate(inverse_parent, child[:3] - parent[:3]) - np.asarray(joint.origin.xyz)
+        return float(np.dot(rotate(quaternion_inverse(origin), translation), axis))
+    relative_rotation = quaternion_multiply(quaternion_inverse(origin), quaternion_multiply(inverse_parent, child[3:]))
+    angle = 2.0 * atan2(float(np.dot(relative_rotation[:3], axis)), float(relative_rotation[3]))
     angle = (angle + pi) % (2.0 * pi) - pi
-    return _within(joint, angle)
+    return _within_limits(joint, angle)
 
 
-def _within(joint: Joint, angle: float) -> float:
-    """Return the angle, or an equivalent angle within the joint's limits if there is one."""
+def _within_limits(joint: Joint, angle: float) -> float:
+    """Return the angle, or an equivalent angle within the limits of the joint if there is one."""
     if joint.type == "continuous" or joint.limit is None:
         return angle
-    for turned in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
-        if joint.limit.lower - 1e-3 <= turned <= joint.limit.upper + 1e-3:
-            return turned
+    for equivalent_angle in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
+        if joint.limit.lower - 1e-3 <= equivalent_angle <= joint.limit.upper + 1e-3:
+            return equivalent_angle
     return angle
 
 
@@ -98,16 +98,16 @@ _MATERIAL_FILE = re.compile(r"^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
 _MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
 
 
-def addresses(scenes: Iterable[RobotScene]) -> list[str]:
+def mesh_addresses(scenes: Iterable[RobotScene]) -> list[str]:
     """Return the addresses of the meshes and textures of robots, without duplicates."""
     links = chain.from_iterable(scene.links for scene in scenes)
     shapes = chain.from_iterable((*link.visuals, *link.collisions) for link in links)
-    named = chain.from_iterable((shape.url, shape.texture) for shape in shapes)
-    return list(dict.fromkeys(address for address in named if address is not None))
+    addresses_or_none = chain.from_iterable((shape.url, shape.texture) for shape in shapes)
+    return list(dict.fromkeys(address for address in addresses_or_none if address is not None))
 
 
 class FileSet:
-    """Reads files by the path of their address, under the same access rules as for pages.
+    """Reads files by their address, with the same restrictions as for pages.
 
     Args:
         meshes: the folders that may be read.
@@ -122,20 +122,20 @@ class FileSet:
         Raises:
             FileRefusedError: the file may not be read, or does not exist.
         """
-        found = _ADDRESS.fullmatch(urlsplit(address).path)
-        if found is None:
+        match = _ADDRESS.fullmatch(urlsplit(address).path)
+        if match is None:
             raise FileRefusedError(404, "no such file")
-        return self._meshes.file(found[1], unquote(found[2]))
+        return self._meshes.file(match[1], unquote(match[2]))
 
-    def collect(self, wanted: Iterable[str]) -> dict[str, bytes]:
-        """Return the contents of files and of the files that their meshes name, by path of address.
+    def collect(self, addresses_to_read: Iterable[str]) -> dict[str, bytes]:
+        """Return the contents of files, and of the files that these files refer to, by the path of their address.
 
         Missing files are omitted.
         """
         contents: dict[str, bytes] = {}
-        waiting = [urlsplit(address).path for address in wanted]
-        while waiting:
-            address = waiting.pop()
+        pending = [urlsplit(address).path for address in addresses_to_read]
+        while pending:
+            address = pending.pop()
             if address in contents:
                 continue
             try:
@@ -144,59 +144,59 @@ class FileSet:
             except (FileRefusedError, OSError):
                 continue
             folder = address.rpartition("/")[0]
-            waiting += [f"{folder}/{name}" for name in named_files(path.suffix.lower(), contents[address])]
+            pending += [f"{folder}/{name}" for name in referenced_files(path.suffix.lower(), contents[address])]
         return contents
 
 
-def named_files(ending: str, data: bytes) -> list[str]:
+def referenced_files(suffix: str, data: bytes) -> list[str]:
     """Return the files that a mesh or material file refers to, as relative paths.
 
     Args:
-        ending: the suffix of the file in lower case, such as ``.dae``.
+        suffix: the suffix of the file in lower case, such as ``.dae``.
         data: the content of the file.
     """
     names: list[str] = []
-    if ending == ".dae":
+    if suffix == ".dae":
         names = _COLLADA_IMAGE.findall(data.decode("utf-8", "replace"))
-    elif ending == ".obj":
+    elif suffix == ".obj":
         names = _MATERIAL_FILE.findall(data.decode("utf-8", "replace"))
-    elif ending == ".mtl":
-        # Options with numbers may precede the file name, which then cannot contain spaces.
+    elif suffix == ".mtl":
+        # Options may precede the file name, which then cannot contain spaces.
         lines = _MATERIAL_MAP.findall(data.decode("utf-8", "replace"))
         names = [line.split()[-1] if line.startswith("-") else line for line in lines]
-    elif ending == ".gltf":
+    elif suffix == ".gltf":
         try:
             document = json.loads(data)
-            parts = [*document.get("buffers", ()), *document.get("images", ())]
-            names = [str(part["uri"]) for part in parts if "uri" in part]
+            entries = [*document.get("buffers", ()), *document.get("images", ())]
+            names = [str(part["uri"]) for part in entries if "uri" in part]
         except (ValueError, AttributeError, TypeError):
             return []
     return [name for name in names if not name.startswith(("data:", "/", "file:", "http:", "https:"))]
 
 
-_TAKEN = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
-"""Messages that are included unchanged: they contain nothing about the program's machine."""
+_UNCHANGED_MESSAGES = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
+"""Messages that are included unchanged, because they reveal nothing about the machine of the program."""
 
-_PATHS = frozenset({"Description File"})
-"""Properties that are paths of the program's machine."""
+_PATH_PROPERTIES = frozenset({"Description File"})
+"""Properties with paths on the machine of the program."""
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A robot, and all messages from which pages draw it.
+    """A robot, and all messages that a page needs to draw it.
 
     Attributes:
         name: the name of the robot.
         robot: the description of the robot.
-        scene: the robot's links as pages draw them.
+        scene: the links of the robot in the form for pages.
         positions: the joint positions by name, rad or m.
-        messages: the messages that a page needs, the frame table last.
-        frames: binary frames, the transforms first.
-        meshes: finds the files that `scene` names.
-        problems: the findings on shapes that cannot be drawn.
-        marker_meshes: addresses of the meshes that markers show.
+        messages: the messages that a page needs; the frame table is the last one.
+        frames: the binary frames, beginning with the transforms.
+        meshes: finds the files that `scene` refers to.
+        problems: the findings about shapes that cannot be drawn.
+        marker_meshes: the addresses of the meshes of markers.
         outside: the included files that are neither in a package nor below the description's folder.
-        awaits_size: whether grid and axes are to be scaled to the size of the robot, which a page measures.
+        awaits_size: whether a page must measure the robot and fit the sizes of grid and axes.
         spacing: the typical distance in m between the frames of a link and its parent; None if unknown.
     """
 
@@ -215,7 +215,7 @@ class Snapshot:
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
-    """Return a snapshot of a configuration as it is currently shown.
+    """Return a snapshot of the current state of a configuration.
 
     Args:
         viewer: the viewer that shows the configuration.
@@ -227,14 +227,14 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     """
     models = [model for model in manager.robot_models() if model.enabled and model.scene.links]
     if not models:
-        raise no_robot()
-    opening, frames = viewer.opening_messages(manager)
+        raise no_robot_error()
+    opening_messages, frames = viewer.opening_messages(manager)
     if view is not None:
-        opening = [
+        opening_messages = [
             ViewState(view, server_message.revision) if isinstance(server_message, ViewState) else server_message
-            for server_message in opening
+            for server_message in opening_messages
         ]
-    snapshot = take_snapshot(models[0], opening, frames, viewer.context.meshes)
+    snapshot = take_snapshot(models[0], opening_messages, frames, viewer.context.meshes)
     files = viewer.context.library.files
     outside = [path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)]
     return dataclasses.replace(
@@ -247,38 +247,40 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
 
 
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
-    """Return the files of a description that recipients of the export may not be meant to see.
+    """Return the files of a description that recipients of an export should perhaps not see.
 
-    Includes, ``load_yaml`` and ``file://`` can read any file of the machine, as under ROS.
+    As in ROS, includes, ``load_yaml`` and ``file://`` can read any file of the machine.
 
     Args:
-        read: the files from which the text was made, the main file first.
-        scene: names the meshes and textures.
+        read: the source files of the text, beginning with the main file.
+        scene: the links, which refer to meshes and textures.
         meshes: the folders from which meshes and textures may be read.
 
     Returns:
         The files that are neither in a package nor below the folder of the main file.
     """
     files = FileSet(meshes)
-    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # paths may contain `..`
-    for address in addresses([scene]):
+    file_paths = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # paths may contain `..`
+    for address in mesh_addresses([scene]):
         with suppress(FileRefusedError):
-            found[files.path(address)] = None
-    home = read[0].absolute().parent if read else None
+            file_paths[files.path(address)] = None
+    main_folder = read[0].absolute().parent if read else None
     return [
-        path for path in found if not (home and path.is_relative_to(home)) and enclosing_package(path.parent) is None
+        path
+        for path in file_paths
+        if not (main_folder and path.is_relative_to(main_folder)) and enclosing_package(path.parent) is None
     ]
 
 
 def take_snapshot(
     model: RobotModelDisplay, opening: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
 ) -> Snapshot:
-    """Return a snapshot of a robot, with those messages that a page needs without a server.
+    """Return a snapshot of a robot, with the messages that a page needs without a server.
 
     Args:
         model: the display of the robot whose joints can be moved.
-        opening: the messages to a page that opens.
-        payloads: the binary frames to that page.
+        opening: the messages for a page that opens.
+        payloads: the binary frames for this page.
         meshes: the folders that the page may read from.
 
     Raises:
@@ -286,11 +288,11 @@ def take_snapshot(
     """
     robot, scene = model.robot, model.scene
     if robot is None:
-        raise no_robot()
-    frames = [frame for payload in payloads if isinstance(frame := _complete(payload), bytes)]
+        raise no_robot_error()
+    frames = [frame for payload in payloads if isinstance(frame := _full_content(payload), bytes)]
     table = next(message for message in opening if isinstance(message, FrameTable))
     poses = _poses(table, frames)
-    positions = positions_now(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
+    positions = current_positions(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
     messages: list[ServerMessage] = []
     for message in opening:
         if isinstance(message, Tree):
@@ -299,9 +301,9 @@ def take_snapshot(
             messages.append(replace(message, links=[replace(link, place=None) for link in message.links]))
         elif isinstance(message, ComparedDescriptions):
             messages.append(without_paths(message))
-        elif isinstance(message, _TAKEN):
+        elif isinstance(message, _UNCHANGED_MESSAGES):
             messages.append(message)
-    controls = _controls(robot)
+    controls = _joint_controls(robot)
     messages[-1:-1] = [
         Joints(controls),
         JointPositions({control.name: positions.get(control.name, 0.0) for control in controls}),
@@ -313,11 +315,11 @@ def take_snapshot(
 
 
 def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
-    """Return the findings on shapes of a robot that cannot be drawn."""
+    """Return the findings about shapes of a robot that cannot be drawn."""
     return [
         Diagnostic(
             "VIEW203",
-            phrase("link '{link}' is incomplete: {text}", link=link, text=foreign(text)),
+            phrase("link '{link}' is exported incompletely: {text}", link=link, text=foreign(text)),
             severity=Severity.WARNING,
         )
         for link, texts in model.file_problems.items()
@@ -325,14 +327,14 @@ def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
     ]
 
 
-def no_robot() -> LinkwrightError:
-    """Return the error VIEW201: there is no robot to export."""
+def no_robot_error() -> LinkwrightError:
+    """Return the error VIEW201, which says that there is no robot to export."""
     hint = phrase("wait until the robot is drawn, or enable its RobotModel display")
-    return LinkwrightError(Diagnostic("VIEW201", phrase("there is no robot to export"), hint=hint))
+    return LinkwrightError(Diagnostic("VIEW201", phrase("no robot can be exported, because none is shown"), hint=hint))
 
 
-def _complete(payload: Payload) -> bytes | str | None:
-    """Return the full content of a payload as for a new page, or None if it is empty."""
+def _full_content(payload: Payload) -> bytes | str | None:
+    """Return the full content of a payload, as a new page receives it; None if it is empty."""
     if isinstance(payload, ScaledData):
         return payload.full_frame
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
@@ -354,7 +356,7 @@ def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.f
 
 
 def _without_details(tree: Tree) -> Tree:
-    """Return the displays without status and paths, which reveal details of this machine."""
+    """Return a tree of displays without status and paths, which would reveal details of this machine."""
     displays: list[Display] = [
         replace(display, status=[], level="ok", properties=_without_paths(display.properties))
         for display in tree.displays
@@ -364,22 +366,22 @@ def _without_details(tree: Tree) -> Tree:
 
 def _without_paths(properties: Sequence[Property]) -> list[Property]:
     return [
-        replace(row, value="" if row.name in _PATHS else row.value, children=_without_paths(row.children))
+        replace(row, value="" if row.name in _PATH_PROPERTIES else row.value, children=_without_paths(row.children))
         for row in properties
     ]
 
 
-def _controls(robot: Robot) -> list[JointControl]:
+def _joint_controls(robot: Robot) -> list[JointControl]:
     """Return a slider for each movable joint, as in joint_state_publisher_gui."""
-    layout = layout_of(robot, JointSettings())
+    layout = make_layout(robot, JointSettings())
     controls = []
     for joint in layout.ranges.values():
         if joint.lower == joint.upper:
             continue
-        follows = layout.dependent.get(joint.name)
+        mimic_rule = layout.dependent.get(joint.name)
         kind = cast("Any", joint.kind)  # movable joints are of these three kinds
         control = JointControl(joint.name, kind, joint.lower, joint.upper, joint.zero)
-        if follows is not None:
-            control = replace(control, mimic=follows.parent, multiplier=follows.factor, offset=follows.offset)
+        if mimic_rule is not None:
+            control = replace(control, mimic=mimic_rule.parent, multiplier=mimic_rule.factor, offset=mimic_rule.offset)
         controls.append(control)
     return controls

@@ -1,8 +1,9 @@
 """Paths to a number in a message: ``position[2]``, ``position[elbow]``, ``twist.twist.linear.x``.
 
-Names select fields of nested messages. Brackets select an element of an array, by its index or by its name. The names
-of an array's elements are taken from a list of names in the same message (``name`` of a JointState, ``joint_names`` of
-a JointTrajectory and its points), by index. A nested message contains its own name (``name`` of a DiagnosticStatus,
+Names select fields of nested messages. Brackets select an element of an array by its index or name. The names of
+elements are the items of a list of names in the same or an enclosing message (``name`` of a JointState,
+``joint_names`` of a JointTrajectory and its points). If the elements are messages, their names are in a
+field (``name`` of a DiagnosticStatus,
 ``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are in seconds.
 """
 
@@ -20,15 +21,15 @@ from linkwright.page.protocol.monitor import PlotField
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 NAME_LISTS = ("name", "names", "joint_names")
-"""Fields that name the elements of the arrays beside them, or of those of messages below."""
+"""Fields with the names of the elements of arrays in the same message or in nested messages."""
 
 NAME_FIELDS = ("name", "child_frame_id")
-"""Fields with the name of a message that is an element of an array."""
+"""Fields that contain the name of a message that is an element of an array."""
 
 SECONDS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 """Messages that represent a number of seconds."""
 
-_STEP = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
+_STEP_PATTERN = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
 
 
 class FieldPathError(ValueError):
@@ -54,55 +55,55 @@ class FieldPath:
     def __init__(self, text: str) -> None:
         self.text = text
         self._steps: list[_Step] = []
-        at = 0
+        offset = 0
         while True:
-            found = _STEP.match(text, at)
-            if found is None:
+            match = _STEP_PATTERN.match(text, offset)
+            if match is None:
                 raise FieldPathError(f"'{text}' is not a field; write a path such as 'position[0]' or 'twist.linear.x'")
-            keys = re.findall(r"\[([^\]]+)\]", found[2])
-            self._steps.append(_Step(found[1], tuple(int(key) if key.isdecimal() else key for key in keys)))
-            at = found.end()
-            if at == len(text):
+            keys = re.findall(r"\[([^\]]+)\]", match[2])
+            self._steps.append(_Step(match[1], tuple(int(key) if key.isdecimal() else key for key in keys)))
+            offset = match.end()
+            if offset == len(text):
                 return
-            if text[at] != ".":
-                raise FieldPathError(f"'{text}' is not a field; there must be a dot before '{text[at:]}'")
-            at += 1
+            if text[offset] != ".":
+                raise FieldPathError(f"'{text}' is not a field; there must be a dot before '{text[offset:]}'")
+            offset += 1
 
     def check(self, message_class: type[Message]) -> None:
-        """Check that the path leads to a number in messages of a class.
+        """Raise if the path does not lead to a number in messages of a class.
 
         Raises:
             FieldPathError: the path does not lead to a number.
         """
         cls: type[Message] | None = message_class
-        kind: FieldType | None = None
-        for number, step in enumerate(self._steps):
+        field_type: FieldType | None = None
+        for position, step in enumerate(self._steps):
             if cls is None:
-                raise FieldPathError(f"'{self._steps[number - 1].name}' has no fields")
+                raise FieldPathError(f"'{self._steps[position - 1].name}' has no fields")
             kinds = {field.name: field.type for field in definition_of(cls).fields}
-            kind = kinds.get(step.name)
-            if kind is None:
-                near = did_you_mean(step.name, kinds) or phrase("its fields are {kinds}", kinds=", ".join(kinds))
-                raise FieldPathError(f"{cls.TYPE_NAME} has no field '{step.name}'; {near}")
-            self._check_keys(step, kind)
-            cls = None if kind.primitive is not None else get_message(kind.base)
-        assert kind is not None
-        if not is_number(kind):
-            raise FieldPathError(f"'{self.text}' is not a number but a {kind.base}")
+            field_type = kinds.get(step.name)
+            if field_type is None:
+                suggestion = did_you_mean(step.name, kinds) or phrase("its fields are {kinds}", kinds=", ".join(kinds))
+                raise FieldPathError(f"{cls.TYPE_NAME} has no field '{step.name}'; {suggestion}")
+            self._check_keys(step, field_type)
+            cls = None if field_type.primitive is not None else get_message(field_type.base)
+        assert field_type is not None
+        if not is_number(field_type):
+            raise FieldPathError(f"'{self.text}' is not a number but a {field_type.base}")
 
     def value(self, message: Any) -> float | None:
         """Return the number in a message, or None if the message has no such element."""
         owners = []
-        found = message
+        element = message
         for step in self._steps:
-            owners.append(found)
-            found = getattr(found, step.name)
+            owners.append(element)
+            element = getattr(element, step.name)
             for key in step.keys:
-                index = key if isinstance(key, int) else _index_of(key, found, owners)
-                if index is None or index >= len(found):
+                index = key if isinstance(key, int) else _index_of(key, element, owners)
+                if index is None or index >= len(element):
                     return None
-                found = found[index]
-        return _number(found)
+                element = element[index]
+        return _number(element)
 
     @staticmethod
     def _check_keys(step: _Step, kind: FieldType) -> None:
@@ -125,7 +126,7 @@ def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
     """Return the names of an array's elements in order, or None if they have no names.
 
     Args:
-        owners: the nested messages from the outermost to the one that contains the array.
+        owners: the nested messages, from the outermost message to the message that contains the array.
         values: the array.
     """
     if len(values) and isinstance(values[0], Message):
@@ -152,9 +153,9 @@ def _number(value: Any) -> float:
     return float(value[0]) if isinstance(value, bytes) else float(value)
 
 
-_MOST_FIELDS = 500
-_MOST_ELEMENTS = 64
-"""The largest number of an array's elements offered; users can type others."""
+_MAX_FIELDS = 500
+_MAX_ELEMENTS = 64
+"""The number of elements of an array that are offered; users can enter the index of any other element."""
 
 
 def plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:
@@ -162,39 +163,39 @@ def plot_fields(message_class: type[Message], message: Message | None = None) ->
 
     Args:
         message_class: the type.
-        message: an example, from which the lengths and element names of arrays are taken. Without an example, only the
-            first element of a variable-length array is offered.
+        message: an example with the lengths and element names of arrays; None to offer only the first element of each
+            array.
     """
-    found: list[PlotField] = []
-    for path, kind in _numbers(message_class, message, "", []):
-        found.append(PlotField(path, kind))
-        if len(found) == _MOST_FIELDS:
+    fields: list[PlotField] = []
+    for path, type_name in _number_fields(message_class, message, "", []):
+        fields.append(PlotField(path, type_name))
+        if len(fields) == _MAX_FIELDS:
             break
-    return found
+    return fields
 
 
-def _numbers(
+def _number_fields(
     cls: type[Message], message: Message | None, prefix: str, owners: Sequence[Any]
 ) -> Iterator[tuple[str, str]]:
     for field in definition_of(cls).fields:
         path = f"{prefix}{field.name}"
         value = None if message is None else getattr(message, field.name)
-        inner = [*owners, message]
+        nested_owners = [*owners, message]
         if field.type.container is Container.ONE:
-            yield from _value(field, value, path, inner)
+            yield from _value(field, value, path, nested_owners)
         elif value is None:
-            yield from _value(field, None, f"{path}[0]", inner)
+            yield from _value(field, None, f"{path}[0]", nested_owners)
         else:
-            yield from _elements(field, value, path, inner)
+            yield from _element_fields(field, value, path, nested_owners)
 
 
-def _elements(field: Field, values: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
+def _element_fields(field: Field, values: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
     if not is_number(field.type) and field.type.primitive is not None:
         return
     names = element_names(owners, values)
-    plain = names is None or len(set(names)) < len(names) or any(_is_awkward(name) for name in names)
-    for index in range(min(len(values), _MOST_ELEMENTS)):
-        key = str(index) if plain or names is None else names[index]
+    uses_indices = names is None or len(set(names)) < len(names) or any(_is_awkward(name) for name in names)
+    for index in range(min(len(values), _MAX_ELEMENTS)):
+        key = str(index) if uses_indices or names is None else names[index]
         yield from _value(field, values[index], f"{path}[{key}]", owners)
 
 
@@ -203,9 +204,9 @@ def _value(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterat
         primitive = field.type.primitive
         yield path, "seconds" if primitive is None else primitive.idl_name
     elif field.type.primitive is None:
-        yield from _numbers(get_message(field.type.base), value, f"{path}.", owners)
+        yield from _number_fields(get_message(field.type.base), value, f"{path}.", owners)
 
 
 def _is_awkward(name: str) -> bool:
-    """Return whether a name cannot be written in brackets, because it would be ambiguous."""
+    """Return whether a name would be ambiguous in brackets, so that the index is used instead."""
     return not name or name.isdecimal() or "[" in name or "]" in name

@@ -14,39 +14,39 @@ from linkwright.panels.monitor.topic_tap import Paced, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 _TOPIC = "/rosout"
-_PERIOD = 0.1
-_MOST_WAITING = 1000
-"""Records that wait for one page; of more only the newest are sent."""
+_SEND_PERIOD = 0.1
+_MAX_QUEUED = 1000
+"""The largest number of queued records for a page; if there are more, only the newest are sent."""
 
-_KEPT = 1000
-"""Past records for a page that starts to watch."""
+_MAX_PAST = 1000
+"""The number of past records that a page receives when it starts to watch."""
 
 
-class _Reader:
+class _PageQueue:
     """The log records that are queued for one page; the message is created when the outbox sends it."""
 
     key = "log_lines"
 
-    def __init__(self, past: Iterable[LogLine]) -> None:
-        self._waiting = deque(past, maxlen=_MOST_WAITING)
-        self._missed = 0
+    def __init__(self, past_lines: Iterable[LogLine]) -> None:
+        self._waiting = deque(past_lines, maxlen=_MAX_QUEUED)
+        self._dropped_count = 0
 
     def __len__(self) -> int:
         return len(self._waiting)
 
     def add(self, line: LogLine) -> None:
         """Queue a record, and drop the oldest one if too many are queued."""
-        if len(self._waiting) == _MOST_WAITING:
-            self._missed += 1
+        if len(self._waiting) == _MAX_QUEUED:
+            self._dropped_count += 1
         self._waiting.append(line)
 
     def since(self, seen: int) -> tuple[str | None, int]:
         """Return a message with all queued records; see `Changes`."""
         if not self._waiting:
             return None, seen
-        message = LogLines(list(self._waiting), self._missed)
+        message = LogLines(list(self._waiting), self._dropped_count)
         self._waiting.clear()
-        self._missed = 0
+        self._dropped_count = 0
         return encode(message), seen
 
 
@@ -55,41 +55,41 @@ class LogFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._readers: dict[Page, _Reader] = {}
-        self._watching: set[Page] = set()
-        self._past: deque[LogLine] = deque(maxlen=_KEPT)
+        self._queues: dict[Page, _PageQueue] = {}
+        self._watching_pages: set[Page] = set()
+        self._past_lines: deque[LogLine] = deque(maxlen=_MAX_PAST)
         self._tap: TopicTap | None = None
-        self._turn = Paced(self._send, _PERIOD)
+        self._sender = Paced(self._send, _SEND_PERIOD)
 
     def opening(self) -> list[ServerMessage]:
-        """Subscribe for the first page; no messages are returned."""
+        """Subscribe if this is the first page, and return no messages."""
         if self._tap is None:
             self._tap = TopicTap(self.context, _TOPIC, self._receive)
         return []
 
     def receive(self, page: Page, message: WatchLog) -> None:
-        """Start, pause or stop sending records to a page; records that arrive in a pause are sent after it."""
+        """Start, pause or resume sending records to a page; records that arrive during a pause are sent after it."""
         if not message.watched:
-            self._watching.discard(page)
+            self._watching_pages.discard(page)
             return
-        self._watching.add(page)
-        if page not in self._readers:
-            self._readers[page] = _Reader(self._past)
-        self._turn.ask()
+        self._watching_pages.add(page)
+        if page not in self._queues:
+            self._queues[page] = _PageQueue(self._past_lines)
+        self._sender.ask()
 
     def page_closed(self, page: Page) -> None:
         """Discard the page's records, and unsubscribe after the last page has closed."""
-        self._watching.discard(page)
-        self._readers.pop(page, None)
+        self._watching_pages.discard(page)
+        self._queues.pop(page, None)
         if len(self.context.pages) == 0:
             self.close()
 
     def close(self) -> None:
         """Unsubscribe."""
-        self._readers.clear()
-        self._watching.clear()
-        self._past.clear()
-        self._turn.cancel()
+        self._queues.clear()
+        self._watching_pages.clear()
+        self._past_lines.clear()
+        self._sender.cancel()
         if self._tap is not None:
             self._tap.close()
             self._tap = None
@@ -104,13 +104,13 @@ class LogFeature(PageFeature):
             function=message.function,
             line=message.line,
         )
-        self._past.append(line)
-        for reader in self._readers.values():
-            reader.add(line)
-        self._turn.ask()
+        self._past_lines.append(line)
+        for queue in self._queues.values():
+            queue.add(line)
+        self._sender.ask()
 
     def _send(self) -> None:
-        for page in self._watching:
-            reader = self._readers[page]
-            if len(reader):
-                page.outbox.put(reader.key, reader)
+        for page in self._watching_pages:
+            queue = self._queues[page]
+            if len(queue):
+                page.outbox.put(queue.key, queue)

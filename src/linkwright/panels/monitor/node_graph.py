@@ -11,42 +11,42 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class NodeGraphFeature(PageFeature):
-    """Sends the nodes and topics to pages that watch them, at first and after every change."""
+    """Sends the nodes and topics to pages that watch them, initially and after every change."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._sent: dict[Page, NodeGraph] = {}
+        self._sent_graphs: dict[Page, NodeGraph] = {}
 
     def receive(self, page: Page, message: WatchNodeGraph) -> None:
         """Start or stop sending the graph to a page."""
         if not message.watched:
             self.page_closed(page)
             return
-        self._sent[page] = current = node_graph(self.context.node.graph)
-        page.send(current)
+        self._sent_graphs[page] = graph = node_graph(self.context.node.graph)
+        page.send(graph)
         self.context.graph_changes.watch(self._publish)
 
     def page_closed(self, page: Page) -> None:
         """Stop sending the graph to the page."""
-        self._sent.pop(page, None)
-        if not self._sent:
+        self._sent_graphs.pop(page, None)
+        if not self._sent_graphs:
             self.context.graph_changes.unwatch(self._publish)
 
     def close(self) -> None:
         """Stop sending the graph to any page."""
-        self._sent.clear()
+        self._sent_graphs.clear()
         self.context.graph_changes.unwatch(self._publish)
 
     def _publish(self) -> None:
-        current = node_graph(self.context.node.graph)
-        for page, sent in self._sent.items():
-            if current != sent:
-                self._sent[page] = current
-                page.send(current)
+        graph = node_graph(self.context.node.graph)
+        for page, sent_graph in self._sent_graphs.items():
+            if graph != sent_graph:
+                self._sent_graphs[page] = graph
+                page.send(graph)
 
 
 def node_graph(graph: GraphQueries) -> NodeGraph:
-    """Return the current nodes and topics; nodes with the same name count as one, as everywhere in ROS."""
+    """Return the current nodes and topics; nodes with the same name count as one node, as in ROS."""
     topics: dict[str, GraphTopic] = {}
     for endpoint in graph.endpoints():
         if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
@@ -55,10 +55,10 @@ def node_graph(graph: GraphQueries) -> NodeGraph:
         if endpoint.type_name not in topic.types:
             topic.types.append(endpoint.type_name)
         if endpoint.node is not None:
-            ends = topic.publishers if endpoint.kind is EndpointKind.PUBLISHER else topic.subscribers
+            node_names = topic.publishers if endpoint.kind is EndpointKind.PUBLISHER else topic.subscribers
             name = join(endpoint.node.namespace, endpoint.node.name)
-            if name not in ends:
-                ends.append(name)
+            if name not in node_names:
+                node_names.append(name)
     for topic in topics.values():
         for names in (topic.types, topic.publishers, topic.subscribers):
             names.sort()

@@ -26,26 +26,28 @@ from linkwright.page.protocol.monitor import (
 )
 from linkwright.panels.monitor.topic_tap import Paced, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.rviz.parameter_answers import NoAnswerError, answer, services_ready
+from linkwright.rviz.parameter_answers import NoAnswerError, answer, wait_for_services
 
-_KINDS: dict[ParameterType, ParameterKind] = {kind: cast("ParameterKind", kind.name.lower()) for kind in ParameterType}
-_TYPES = {text: kind for kind, text in _KINDS.items()}
-_ARTICLES = {
+_KIND_NAMES: dict[ParameterType, ParameterKind] = {
+    kind: cast("ParameterKind", kind.name.lower()) for kind in ParameterType
+}
+_TYPES_BY_KIND = {text: kind for kind, text in _KIND_NAMES.items()}
+_EXPECTED_TEXTS = {
     "bool": phrase("true or false"),
     "integer": phrase("an integer"),
     "double": phrase("a number"),
     "byte": phrase("a byte, 0 to 255"),
 }
 _BOOLS = {"true": True, "false": False}
-_LONGS = range(-(2**63), 2**63)
+_INT64_RANGE = range(-(2**63), 2**63)
 
 
 def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
-    """Return the page's row for a parameter.
+    """Return the row of a parameter for pages.
 
     Args:
-        descriptor: rcl_interfaces/msg/ParameterDescriptor.
-        value: rcl_interfaces/msg/ParameterValue.
+        descriptor: a rcl_interfaces/msg/ParameterDescriptor.
+        value: a rcl_interfaces/msg/ParameterValue.
     """
     limits = [*descriptor.floating_point_range, *descriptor.integer_range]
     minimum, maximum, step = ("", "", "")
@@ -71,8 +73,8 @@ def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
     plain = plain_value(value)
     kind = ParameterType(value.type)
     if kind is ParameterType.NOT_SET:
-        return _KINDS[kind], []
-    return _KINDS[kind], [_text(element) for element in (plain if kind.is_array else [plain])]
+        return _KIND_NAMES[kind], []
+    return _KIND_NAMES[kind], [_text(element) for element in (plain if kind.is_array else [plain])]
 
 
 def parameter_of(request: SetParameter) -> Parameter:
@@ -81,7 +83,7 @@ def parameter_of(request: SetParameter) -> Parameter:
     Raises:
         ValueError: a text is not a value of the parameter's kind; the message quotes the text.
     """
-    kind = _TYPES[request.kind]
+    kind = _TYPES_BY_KIND[request.kind]
     if kind is ParameterType.NOT_SET:
         return Parameter(request.name, kind)
     element = request.kind.removesuffix("_array")
@@ -111,8 +113,8 @@ def _value(kind: str, text: str) -> Any:
         if kind == "byte":
             return bytes([number])
     except (ValueError, KeyError):
-        raise ValueError(f"'{text}' is not {_ARTICLES[kind]}") from None
-    if number not in _LONGS:
+        raise ValueError(f"'{text}' is not {_EXPECTED_TEXTS[kind]}") from None
+    if number not in _INT64_RANGE:
         raise ValueError(f"{text} is more than 64 bits can hold")
     return number
 
@@ -126,7 +128,7 @@ class RemoteNode:
     Args:
         node: the node that creates the clients.
         name: the full name of the node that has the parameters.
-        publish: called with all parameters at the start and after every change.
+        publish: called with all parameters after the first request and after every change.
     """
 
     def __init__(self, node: Node, name: str, publish: Callable[[NodeParameters], None]) -> None:
@@ -136,11 +138,11 @@ class RemoteNode:
         self._client = AsyncParameterClient(node, name)
         self._rows: dict[str, ParameterRow] = {}
         self._tasks: set[asyncio.Task[None]] = set()
-        self._turn = Paced(self._publish_rows, _PUBLISH_PERIOD)
+        self._publisher = Paced(self._publish_rows, _PUBLISH_PERIOD)
 
     def close(self) -> None:
         """Cancel requests, and destroy the clients."""
-        self._turn.cancel()
+        self._publisher.cancel()
         for task in self._tasks:
             task.cancel()
         self._client.destroy()
@@ -150,7 +152,7 @@ class RemoteNode:
         self._run(self._refresh())
 
     def apply_event(self, event: Any) -> None:
-        """Apply the node's rcl_interfaces/msg/ParameterEvent to the known parameters."""
+        """Apply a rcl_interfaces/msg/ParameterEvent of the node to the known parameters."""
         for parameter in event.deleted_parameters:
             self._rows.pop(parameter.name, None)
         for parameter in event.changed_parameters:
@@ -160,26 +162,28 @@ class RemoteNode:
         if any(parameter.name not in self._rows for parameter in event.new_parameters):
             self.refresh()
         elif self.known is not None:
-            self._turn.ask()
+            self._publisher.ask()
 
-    def set(self, request: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
-        """Set a parameter, and call `answer` with the result."""
-        self._run(self._set(request, answer))
+    def set(self, request: SetParameter, on_result: Callable[[ParameterResult], None]) -> None:
+        """Set a parameter, and call the callback with the result."""
+        self._run(self._set(request, on_result))
 
-    def dump(self, answer: Callable[[ParameterDump], None]) -> None:
-        """Call `answer` with a parameter file that contains all parameters."""
-        self._run(self._dump(answer))
+    def dump(self, on_result: Callable[[ParameterDump], None]) -> None:
+        """Call the callback with a parameter file that contains all parameters."""
+        self._run(self._dump(on_result))
 
-    def _run(self, work: Any) -> None:
-        task = asyncio.get_running_loop().create_task(work)
+    def _run(self, coroutine: Any) -> None:
+        task = asyncio.get_running_loop().create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
     async def _refresh(self) -> None:
         try:
-            names = await self._names()
-            values = (await self._answer(self._client.get_parameters(names))).values if names else []
-            descriptors = (await self._answer(self._client.describe_parameters(names))).descriptors if names else []
+            names = await self._parameter_names()
+            values = (await self._response_to(self._client.get_parameters(names))).values if names else []
+            descriptors = (
+                (await self._response_to(self._client.describe_parameters(names))).descriptors if names else []
+            )
         except NoAnswerError as error:
             self.known = NodeParameters(self.name, [], str(error))
             self._publish(self.known)
@@ -192,37 +196,37 @@ class RemoteNode:
         self.known = NodeParameters(self.name, [self._rows[name] for name in sorted(self._rows)], None)
         self._publish(self.known)
 
-    async def _set(self, request: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
+    async def _set(self, request: SetParameter, on_result: Callable[[ParameterResult], None]) -> None:
         try:
-            await services_ready(self._client)
-            response = await self._answer(self._client.set_parameters([parameter_of(request)]))
+            await wait_for_services(self._client)
+            response = await self._response_to(self._client.set_parameters([parameter_of(request)]))
         except (ValueError, NoAnswerError) as error:
-            answer(ParameterResult(self.name, request.name, False, str(error)))
+            on_result(ParameterResult(self.name, request.name, False, str(error)))
             return
         result = response.results[0]
-        answer(ParameterResult(self.name, request.name, result.successful, result.reason))
+        on_result(ParameterResult(self.name, request.name, result.successful, result.reason))
 
-    async def _dump(self, answer: Callable[[ParameterDump], None]) -> None:
+    async def _dump(self, on_result: Callable[[ParameterDump], None]) -> None:
         file = f"{self.name.strip('/').replace('/', '__')}.yaml"
         try:
-            names = await self._names()
-            values = (await self._answer(self._client.get_parameters(names))).values if names else []
+            names = await self._parameter_names()
+            values = (await self._response_to(self._client.get_parameters(names))).values if names else []
         except NoAnswerError as error:
-            answer(ParameterDump(self.name, file, "", str(error)))
+            on_result(ParameterDump(self.name, file, "", str(error)))
             return
-        plain = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
-        answer(ParameterDump(self.name, file, parameter_file_text(self.name, plain), None))
+        plain_values = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
+        on_result(ParameterDump(self.name, file, parameter_file_text(self.name, plain_values), None))
 
-    async def _names(self) -> list[str]:
-        await services_ready(self._client)
-        return sorted((await self._answer(self._client.list_parameters())).result.names)
+    async def _parameter_names(self) -> list[str]:
+        await wait_for_services(self._client)
+        return sorted((await self._response_to(self._client.list_parameters())).result.names)
 
-    async def _answer(self, future: Awaitable[Any]) -> Any:
+    async def _response_to(self, future: Awaitable[Any]) -> Any:
         return await answer(self._client, future)
 
 
-_EVENTS = "/parameter_events"
-_LIST = "/list_parameters"
+_EVENTS_TOPIC = "/parameter_events"
+_LIST_SUFFIX = "/list_parameters"
 
 
 @dataclass(slots=True)
@@ -233,16 +237,16 @@ class _Request:
 
 
 class ParametersFeature(PageFeature):
-    """Shows pages the parameters of nodes, and sets them."""
+    """Sends the parameters of nodes to pages, and sets parameters."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._requests: dict[Page, _Request] = {}
         self._nodes: dict[str, RemoteNode] = {}
-        self._events: TopicTap | None = None
+        self._event_tap: TopicTap | None = None
 
     def receive(self, page: Page, message: WatchParameters | SetParameter | DumpParameters) -> None:
-        """Handle a request; a page can set and dump the parameters only of a node that it watches."""
+        """Handle a request; a page can set and dump parameters only of the node that it watches."""
         if isinstance(message, WatchParameters):
             self._watch(page, message)
             return
@@ -266,8 +270,8 @@ class ParametersFeature(PageFeature):
 
     def _watch(self, page: Page, message: WatchParameters) -> None:
         name = message.node
-        known = self._nodes.get(name) if name is not None else None
-        if name is not None and known is None:
+        watched_node = self._nodes.get(name) if name is not None else None
+        if name is not None and watched_node is None:
             try:
                 self._nodes[name] = RemoteNode(self.context.node, name, self._publish)
             except LinkwrightError as error:
@@ -276,11 +280,11 @@ class ParametersFeature(PageFeature):
         self._requests[page] = _Request(message.listed, name)
         self._update_subscriptions()
         if message.listed:
-            self._send_lists()
-        if known is None and name is not None:
+            self._send_node_lists()
+        if watched_node is None and name is not None:
             self._nodes[name].refresh()
-        elif known is not None and known.known is not None:
-            page.send(known.known)
+        elif watched_node is not None and watched_node.known is not None:
+            page.send(watched_node.known)
 
     def _update_subscriptions(self) -> None:
         """Open the clients and subscriptions that pages need, and close all others."""
@@ -288,15 +292,15 @@ class ParametersFeature(PageFeature):
         names = {request.node for request in requests if request.node is not None}
         for name in self._nodes.keys() - names:
             self._nodes.pop(name).close()
-        if names and self._events is None:
-            self._events = TopicTap(self.context, _EVENTS, self._receive)
-        elif not names and self._events is not None:
-            self._events.close()
-            self._events = None
+        if names and self._event_tap is None:
+            self._event_tap = TopicTap(self.context, _EVENTS_TOPIC, self._receive)
+        elif not names and self._event_tap is not None:
+            self._event_tap.close()
+            self._event_tap = None
         if any(request.listed for request in requests):
-            self.context.graph_changes.watch(self._send_lists)
+            self.context.graph_changes.watch(self._send_node_lists)
         else:
-            self.context.graph_changes.unwatch(self._send_lists)
+            self.context.graph_changes.unwatch(self._send_node_lists)
 
     def _receive(self, event: Any, _: MessageInfo) -> None:
         node = self._nodes.get(event.node)
@@ -308,24 +312,26 @@ class ParametersFeature(PageFeature):
             if request.node == parameters.node:
                 page.send(parameters)
 
-    def _send_lists(self) -> None:
+    def _send_node_lists(self) -> None:
         services = (name for name, _ in self.context.node.get_service_names_and_types())
-        listed = ParameterNodes([name.removesuffix(_LIST) for name in services if name.endswith(_LIST)])
+        node_list = ParameterNodes(
+            [name.removesuffix(_LIST_SUFFIX) for name in services if name.endswith(_LIST_SUFFIX)]
+        )
         for page, request in self._requests.items():
-            if request.listed and request.sent != listed:
-                back = self._reappeared_node(request, listed)
-                request.sent = listed
-                page.send(listed)
-                if back is not None:
-                    back.refresh()
+            if request.listed and request.sent != node_list:
+                reappeared_node = self._reappeared_node(request, node_list)
+                request.sent = node_list
+                page.send(node_list)
+                if reappeared_node is not None:
+                    reappeared_node.refresh()
 
-    def _reappeared_node(self, request: _Request, listed: ParameterNodes) -> RemoteNode | None:
-        """Return the node that the page watches if it was not in the list sent before, or None."""
+    def _reappeared_node(self, request: _Request, node_list: ParameterNodes) -> RemoteNode | None:
+        """Return the node that a page watches if it is listed again after it was missing, or None."""
         if (
             request.sent is None
             or request.node is None
             or request.node in request.sent.nodes
-            or request.node not in listed.nodes
+            or request.node not in node_list.nodes
         ):
             return None
         return self._nodes[request.node]

@@ -1,4 +1,4 @@
-"""Samples of numeric fields for the page's plots, sent in batches."""
+"""Sends samples of numeric fields to pages, in batches, for their plots."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.panels.timeline import TimelineFeature
 from linkwright.rviz.context import ViewerContext
 
-MOST_SENT = 256
-"""Samples of a series in one frame; thirty frames a second hold a topic of 7 kHz in full."""
+MAX_SENT = 256
+"""The largest number of samples of a series in a frame; 30 frames a second are enough for a topic at 7 kHz."""
 
-_MOST_WAITING = 4096
+_MAX_QUEUED = 4096
 
 
 class SampleQueue:
@@ -48,61 +48,61 @@ class SampleQueue:
         return len(self._values)
 
     def add(self, received: float, stamp: float, value: float) -> None:
-        """Add a sample: receive time and header stamp (NaN if there is none) in seconds, and the value."""
+        """Add a sample: receive time and stamp (NaN if there is none) in seconds since the epoch, and the value."""
         self._received.append(received)
         self._stamps.append(stamp)
         self._values.append(value)
-        if len(self._values) >= _MOST_WAITING:
-            thinned_out = thinned(self._array(), MOST_SENT).tolist()
-            self._received, self._stamps, self._values = thinned_out
+        if len(self._values) >= _MAX_QUEUED:
+            thinned_samples = thin_out(self._array(), MAX_SENT).tolist()
+            self._received, self._stamps, self._values = thinned_samples
 
     def take(self) -> NDArray[np.float64]:
-        """Empty the queue, and return its samples, shape (3, M), thinned out to fit a frame."""
-        taken = thinned(self._array(), MOST_SENT)
+        """Remove all samples from the queue and return them, shape (3, M), thinned out to fit a frame."""
+        samples = thin_out(self._array(), MAX_SENT)
         self._received, self._stamps, self._values = [], [], []
-        return taken
+        return samples
 
     def _array(self) -> NDArray[np.float64]:
         return np.array([self._received, self._stamps, self._values], dtype=np.float64)
 
 
-def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
-    """Return a subset of the samples, of limited size, whose plot looks the same.
+def thin_out(samples: NDArray[Any], max_count: int) -> NDArray[Any]:
+    """Return a limited number of samples that give nearly the same plot as all samples.
 
     The samples are divided into consecutive groups of equal size. The minimum and the maximum of each group are
-    selected, in their order.
+    selected, in their original order.
 
     Args:
         samples: array, shape (3, M); the values are in the last row.
-        most: the maximum number of samples to return, which must be even.
+        max_count: the maximum number of samples to return, which must be even.
     """
     count = samples.shape[1]
-    if count <= most:
+    if count <= max_count:
         return samples
     values = samples[-1]
-    unknown = np.isnan(values)
-    edges = np.linspace(0, count, most // 2 + 1).astype(np.int64)
-    chosen: set[int] = set()
-    for start, stop in pairwise(edges):
-        share, gap = values[start:stop], unknown[start:stop]
-        chosen.add(int(start + np.argmin(np.where(gap, np.inf, share))))
-        chosen.add(int(start + np.argmax(np.where(gap, -np.inf, share))))
-    return samples[:, sorted(chosen)]
+    is_unknown = np.isnan(values)
+    boundaries = np.linspace(0, count, max_count // 2 + 1).astype(np.int64)
+    selected: set[int] = set()
+    for start, stop in pairwise(boundaries):
+        group, is_gap = values[start:stop], is_unknown[start:stop]
+        selected.add(int(start + np.argmin(np.where(is_gap, np.inf, group))))
+        selected.add(int(start + np.argmax(np.where(is_gap, -np.inf, group))))
+    return samples[:, sorted(selected)]
 
 
-_PERIOD = 1 / 30
+_SEND_PERIOD = 1 / 30
 
-_MOST_PAST = 2048
-"""Samples of a series from before the time that is shown: two for each column of pixels."""
+_MAX_PAST_SAMPLES = 2048
+"""The largest number of past samples of a series, about two for each column of pixels."""
 
-_MOST_PAST_BYTES = 64 << 20
-"""The most bytes of messages that are read for past samples."""
+_MAX_PAST_BYTES = 64 << 20
+"""The largest total size in bytes of the messages that are read for past samples."""
 
 _QUIET = 0.1
-"""Seconds without another jump of time before the past is read: dragging the timeline makes many jumps."""
+"""Seconds without a jump of time before past samples are read, because dragging causes many jumps."""
 
-_LONGEST_PAST = 600.0
-"""Seconds of the past that a page may ask for."""
+_MAX_PAST_SECONDS = 600.0
+"""The longest duration of past samples that a page may request, in seconds."""
 
 
 @dataclass(slots=True)
@@ -122,10 +122,10 @@ class _Series:
     def take(self) -> NDArray[np.float64]:
         """Return the samples to send, shape (3, M), and remove them from the queue.
 
-        If there are past samples, they precede the queued ones, and the page restarts the series.
+        If there are past samples, they precede the queued samples, and the page restarts the series.
         """
-        waiting, past, self.past = self.queue.take(), self.past, None
-        return waiting if past is None else np.hstack([past, waiting])
+        queued_samples, past, self.past = self.queue.take(), self.past, None
+        return queued_samples if past is None else np.hstack([past, queued_samples])
 
     def forget(self) -> None:
         """Discard the queued and the past samples, because the displayed time has jumped."""
@@ -133,13 +133,13 @@ class _Series:
         self.queue.take()
 
 
-class _Channel:
-    """A topic with all the series that plot its values."""
+class _PlottedTopic:
+    """A topic and all series that plot its values."""
 
-    def __init__(self, context: ViewerContext, topic: str, came: Callable[[], None]) -> None:
-        self._came = came
+    def __init__(self, context: ViewerContext, topic: str, on_samples: Callable[[], None]) -> None:
+        self._on_samples = on_samples
         self.series: list[_Series] = []
-        self.tap = TopicTap(context, topic, self._receive, changed=self._class_changed)
+        self.tap = TopicTap(context, topic, self._receive, changed=self._on_class_change)
 
     def add(self, series: _Series) -> None:
         """Begin to add samples of the topic to a series."""
@@ -150,13 +150,13 @@ class _Channel:
         """Stop adding samples to a series."""
         self.series.remove(series)
 
-    def _class_changed(self) -> None:
+    def _on_class_change(self) -> None:
         for series in self.series:
             self._check(series)
-        self._came()
+        self._on_samples()
 
     def _check(self, series: _Series) -> None:
-        """Set the error of a series, or clear it if the path leads to a number in the topic's messages."""
+        """Set the error of a series, or clear it if the path leads to a number in the messages of the topic."""
         if series.path is None:
             return
         error = self.tap.error
@@ -178,32 +178,32 @@ class _Channel:
             sample = values[text]
             if sample is not None:
                 series.queue.add(*sample)
-        self._came()
+        self._on_samples()
 
     def set_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
-        """Add the samples from before the displayed time to the series without errors.
+        """Add samples from before the displayed time to all series without an error.
 
         Args:
-            seconds: returns how many seconds of samples a series needs.
+            seconds: returns the duration in seconds of the past samples that a series needs.
             timeline: provides the recorded messages.
         """
         cls = self.tap.message_class
-        feeding = [series for series in self.series if series.error is None and series.path is not None]
-        if cls is None or not feeding:
+        valid_series = [series for series in self.series if series.error is None and series.path is not None]
+        if cls is None or not valid_series:
             return
-        longest = max(map(seconds, feeding))
-        messages = timeline.before({self.tap.topic}, longest, _MOST_PAST_BYTES)
-        for series in feeding:
+        longest_duration = max(map(seconds, valid_series))
+        messages = timeline.before({self.tap.topic}, longest_duration, _MAX_PAST_BYTES)
+        for series in valid_series:
             assert series.path is not None
             samples = past_samples(series.path, cls, messages)
             if samples.shape[1] > 0:
-                series.forget()  # the past samples include the queued ones
-                series.past = thinned(samples, _MOST_PAST)
-        self._came()
+                series.forget()  # the past samples include the queued samples
+                series.past = thin_out(samples, _MAX_PAST_SAMPLES)
+        self._on_samples()
 
 
-class _Plots:
-    """The series of a page. The frame with their samples is created when the outbox sends it."""
+class _PagePlots:
+    """The series that a page plots; the frame with their samples is created when the outbox sends it."""
 
     key = "samples"
 
@@ -218,88 +218,94 @@ class _Plots:
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """Return a frame with all queued samples; see `Changes`."""
-        ready = [(identity, series.take()) for identity, series in self.series.items() if series.has_samples()]
-        return pack_samples(ready) if ready else None, seen
+        samples_by_series = [
+            (identity, series.take()) for identity, series in self.series.items() if series.has_samples()
+        ]
+        return pack_samples(samples_by_series) if samples_by_series else None, seen
 
 
 class PlotsFeature(PageFeature):
-    """Sends pages the values that they plot; subscribes to a topic while a page plots a series of it."""
+    """Sends the values of plots to pages; subscribes to a topic only while a page plots a series of it."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._pages: dict[Page, _Plots] = {}
-        self._channels: dict[str, _Channel] = {}
-        self._questions: dict[Page, TopicTap] = {}
-        self._turn = Paced(self._send, _PERIOD)
+        self._pages: dict[Page, _PagePlots] = {}
+        self._channels: dict[str, _PlottedTopic] = {}
+        self._field_taps: dict[Page, TopicTap] = {}
+        self._sender = Paced(self._send, _SEND_PERIOD)
         self._timeline = viewer.add_feature(TimelineFeature)
-        self._timeline.jumped.append(self._jumped)
-        self._reading: asyncio.TimerHandle | None = None
+        self._timeline.on_jump.append(self._on_jump)
+        self._read_timer: asyncio.TimerHandle | None = None
 
     def receive(self, page: Page, message: AskFields | WatchSeries) -> None:
         """Send the fields of a topic, or replace the series that a page plots."""
         if isinstance(message, WatchSeries):
             self._watch(page, message.series, message.seconds)
         else:
-            self._stop_asking(page)
+            self._close_field_tap(page)
             if message.topic is not None:
-                self._ask(page, message.topic)
+                self._send_fields(page, message.topic)
 
     def page_closed(self, page: Page) -> None:
         """Discard the page's series."""
-        self._stop_asking(page)
+        self._close_field_tap(page)
         self._watch(page, [], 0.0)
         self._pages.pop(page, None)
 
     def close(self) -> None:
         """End all subscriptions."""
-        for page in {*self._pages, *self._questions}:
+        for page in {*self._pages, *self._field_taps}:
             self.page_closed(page)
-        self._turn.cancel()
-        self._timeline.jumped.remove(self._jumped)
-        if self._reading is not None:
-            self._reading.cancel()
+        self._sender.cancel()
+        self._timeline.on_jump.remove(self._on_jump)
+        if self._read_timer is not None:
+            self._read_timer.cancel()
 
     # --- series ------------------------------------------------------------------------------------------------
 
     def _watch(self, page: Page, requested: list[PlotSeries], seconds: float) -> None:
-        plots = self._pages.setdefault(page, _Plots())
-        longer = plots.seconds < seconds <= _LONGEST_PAST
-        plots.seconds = seconds if 0 < seconds <= _LONGEST_PAST else plots.seconds
-        have = plots.series
-        asked = {series.id: series for series in requested}
-        new = {identity: series for identity, series in asked.items() if self._is_new(have, series)}
-        for identity in [identity for identity in have if identity not in asked or identity in new]:
-            self._drop(have.pop(identity))
-        for identity, series in new.items():
-            have[identity] = self._add(series)
-        if requested and (new or longer):
-            self._read_past_soon()
+        plots = self._pages.setdefault(page, _PagePlots())
+        is_longer = plots.seconds < seconds <= _MAX_PAST_SECONDS
+        plots.seconds = seconds if 0 < seconds <= _MAX_PAST_SECONDS else plots.seconds
+        plotted_series = plots.series
+        requested_by_id = {series.id: series for series in requested}
+        new_series = {
+            identity: series for identity, series in requested_by_id.items() if self._is_new(plotted_series, series)
+        }
+        for identity in [
+            identity for identity in plotted_series if identity not in requested_by_id or identity in new_series
+        ]:
+            self._drop(plotted_series.pop(identity))
+        for identity, series in new_series.items():
+            plotted_series[identity] = self._add(series)
+        if requested and (new_series or is_longer):
+            self._schedule_read()
         if requested:
             plots.sent = []
-            self._turn.ask()
+            self._sender.ask()
 
     # --- samples from before the displayed time ----------------------------------------------------------------
 
-    def _jumped(self) -> None:
+    def _on_jump(self) -> None:
         for plots in self._pages.values():
             for series in plots.series.values():
                 series.forget()
-        self._read_past_soon()
+        self._schedule_read()
 
-    def _read_past_soon(self) -> None:
-        if self._reading is not None:
-            self._reading.cancel()
-        self._reading = asyncio.get_running_loop().call_later(_QUIET, self._read_past)
+    def _schedule_read(self) -> None:
+        if self._read_timer is not None:
+            self._read_timer.cancel()
+        self._read_timer = asyncio.get_running_loop().call_later(_QUIET, self._read_past)
 
     def _read_past(self) -> None:
-        self._reading = None
+        self._read_timer = None
         seconds = {id(series): plots.seconds for plots in self._pages.values() for series in plots.series.values()}
         for channel in list(self._channels.values()):
             channel.set_past(lambda series: seconds.get(id(series), 0.0), self._timeline)
 
     @staticmethod
-    def _is_new(have: dict[int, _Series], series: PlotSeries) -> bool:
-        return series.id not in have or have[series.id].series != series
+    def _is_new(plotted_series: dict[int, _Series], series: PlotSeries) -> bool:
+        return series.id not in plotted_series or plotted_series[series.id].series != series
 
     def _add(self, requested: PlotSeries) -> _Series:
         try:
@@ -309,7 +315,7 @@ class PlotsFeature(PageFeature):
         series = _Series(requested, path, None)
         channel = self._channels.get(requested.topic)
         if channel is None:
-            channel = _Channel(self.context, requested.topic, self._turn.ask)
+            channel = _PlottedTopic(self.context, requested.topic, self._sender.ask)
             self._channels[requested.topic] = channel
         channel.add(series)
         return series
@@ -335,25 +341,25 @@ class PlotsFeature(PageFeature):
 
     # --- fields that can be plotted ----------------------------------------------------------------------------
 
-    def _ask(self, page: Page, topic: str) -> None:
-        """Send the fields that can be plotted, and send them again when a message shows the array lengths."""
+    def _send_fields(self, page: Page, topic: str) -> None:
+        """Send the fields that can be plotted, and send them again after a message, which has the array lengths."""
 
         def receive(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
-            self._stop_asking(page)
+            self._close_field_tap(page)
 
-        tap = TopicTap(self.context, topic, receive, changed=lambda: page.send(self._answer(tap)))
-        self._questions[page] = tap
-        page.send(self._answer(tap))
+        tap = TopicTap(self.context, topic, receive, changed=lambda: page.send(self._fields_message(tap)))
+        self._field_taps[page] = tap
+        page.send(self._fields_message(tap))
 
-    def _answer(self, tap: TopicTap) -> TopicFields:
+    def _fields_message(self, tap: TopicTap) -> TopicFields:
         cls = tap.message_class or self._class_without_publishers(tap)
         if tap.error is not None or cls is None:
             return TopicFields(tap.topic, "", [], tap.error)
         return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
 
     def _class_without_publishers(self, tap: TopicTap) -> Any:
-        """Return the message class that a topic's subscriptions expect, or None if they differ."""
+        """Return the message class of the subscriptions to a topic, or None if they have different classes."""
         from linkwright.messages import get_message
 
         types = self.context.node.graph.topics().get(tap.topic, [])
@@ -362,7 +368,7 @@ class PlotsFeature(PageFeature):
         except LinkwrightError:
             return None
 
-    def _stop_asking(self, page: Page) -> None:
-        tap = self._questions.pop(page, None)
+    def _close_field_tap(self, page: Page) -> None:
+        tap = self._field_taps.pop(page, None)
         if tap is not None:
             tap.close()

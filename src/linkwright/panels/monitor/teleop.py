@@ -1,6 +1,6 @@
 """The teleop pad: publishes the velocities of pages as Twist or TwistStamped.
 
-When a page sends no velocity for a while, zero is published.
+If a page sends no velocity for a while, a velocity of zero is published.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from linkwright.page.audience import Page
 from linkwright.page.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
-_SILENCE = 0.4
-"""Seconds without a velocity from a page that drives, after which the robot is stopped."""
+_STOP_DELAY = 0.4
+"""The robot is stopped after this many seconds without a velocity from the page."""
 
 
 class TeleopFeature(PageFeature):
-    """Publishes the velocities of pages' teleop pads, with a publisher for each open pad."""
+    """Publishes the velocities from the teleop pads of pages, with a publisher for each open pad."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -36,7 +36,7 @@ class TeleopFeature(PageFeature):
         self.page_closed(page)
         if message.target is not None:
             self._pads[page] = _Pad(self.context.node, message.target, page.send)
-            self.context.graph_changes.watch(self._review)
+            self.context.graph_changes.watch(self._update_types)
 
     def page_closed(self, page: Page) -> None:
         """Stop the robot that the page drives, and close its pad."""
@@ -44,14 +44,14 @@ class TeleopFeature(PageFeature):
         if pad is not None:
             pad.close()
         if not self._pads:
-            self.context.graph_changes.unwatch(self._review)
+            self.context.graph_changes.unwatch(self._update_types)
 
     def close(self) -> None:
         """Stop all robots."""
         for page in tuple(self._pads):
             self.page_closed(page)
 
-    def _review(self) -> None:
+    def _update_types(self) -> None:
         for pad in self._pads.values():
             pad.review()
 
@@ -64,18 +64,18 @@ class _Pad:
         self._target = target
         self._publish = publish
         self._topic: VelocityTopic | None = None
-        self._sent: TeleopState | None = None
-        self._silent: asyncio.TimerHandle | None = None
+        self._sent_state: TeleopState | None = None
+        self._stop_timer: asyncio.TimerHandle | None = None
         self.review()
 
     def drive(self, velocity: Drive) -> None:
-        """Publish a velocity; the robot is stopped unless another one follows soon."""
+        """Publish a velocity; the robot is stopped if no other velocity follows in time."""
         if self._topic is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
             return
-        self._cancel()
+        self._cancel_stop()
         self._topic.publish(velocity.linear, velocity.angular)
         if any(velocity.linear) or any(velocity.angular):
-            self._silent = asyncio.get_running_loop().call_later(_SILENCE, self._stop)
+            self._stop_timer = asyncio.get_running_loop().call_later(_STOP_DELAY, self._stop)
 
     def close(self) -> None:
         """Stop the robot, and destroy the publisher."""
@@ -84,39 +84,39 @@ class _Pad:
             self._topic.close()
 
     def review(self) -> None:
-        """Use the message type of the topic's subscriptions, and send their number to the page.
+        """Adopt the message type of the subscriptions to the topic, and send their number to the page.
 
         While the robot is moving, the type is not changed.
         """
         target = self._target
         try:
             if self._topic is None:
-                stamped = None if target.kind == "auto" else target.kind == "TwistStamped"
-                self._topic = VelocityTopic(self._node, target.topic, stamped, target.frame_id)
-            listeners = self._topic.review(may_change=self._silent is None)
+                is_stamped = None if target.kind == "auto" else target.kind == "TwistStamped"
+                self._topic = VelocityTopic(self._node, target.topic, is_stamped, target.frame_id)
+            subscription_count = self._topic.review(may_change=self._stop_timer is None)
         except LinkwrightError as error:
             self._set_state(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
             return
         topic = self._topic
-        if topic.foreign is not None:
-            self._cancel()
-            self._set_state(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign}"))
+        if topic.foreign_type is not None:
+            self._cancel_stop()
+            self._set_state(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign_type}"))
             return
-        self._set_state(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
+        self._set_state(TeleopState(topic.name, topic.type_name.rpartition("/")[2], subscription_count, None))
 
     def _stop(self) -> None:
         """Publish zero, unless the last velocity was already zero."""
-        if self._silent is not None:
-            self._cancel()
+        if self._stop_timer is not None:
+            self._cancel_stop()
             if self._topic is not None:
                 self._topic.stop()
 
-    def _cancel(self) -> None:
-        if self._silent is not None:
-            self._silent.cancel()
-            self._silent = None
+    def _cancel_stop(self) -> None:
+        if self._stop_timer is not None:
+            self._stop_timer.cancel()
+            self._stop_timer = None
 
     def _set_state(self, state: TeleopState) -> None:
-        if state != self._sent:
-            self._sent = state
+        if state != self._sent_state:
+            self._sent_state = state
             self._publish(state)

@@ -1,4 +1,4 @@
-"""A subscription to any topic, with the type and QoS of the topic's publishers."""
+"""Subscribes to any topic, with the message type and QoS of its publishers."""
 
 from __future__ import annotations
 
@@ -21,54 +21,53 @@ from linkwright.rviz.context import ViewerContext
 
 
 class Paced:
-    """Limits how often work is done that may be requested more often.
+    """Limits how often a function is called that may be requested more often.
 
     Args:
-        work: the function that does the work.
-        period: the minimum time between two calls, seconds.
+        work: the function to call.
+        period: the minimum time between two calls, in seconds.
     """
 
     def __init__(self, work: Callable[[], None], period: float) -> None:
         self._work = work
         self._period = period
         self._loop = asyncio.get_running_loop()
-        self._done_at = float("-inf")
+        self._last_call_time = float("-inf")
         self._due: asyncio.TimerHandle | None = None
 
     def ask(self) -> None:
-        """Request the work, which is done as soon as the period since the last time has passed."""
+        """Request a call, which follows as soon as the period since the last call has passed."""
         if self._due is None:
-            self._due = self._loop.call_at(max(self._loop.time(), self._done_at + self._period), self._do)
+            self._due = self._loop.call_at(max(self._loop.time(), self._last_call_time + self._period), self._call)
 
     def cancel(self) -> None:
-        """Cancel a request for which the work has not been done yet."""
+        """Cancel a requested call."""
         if self._due is not None:
             self._due.cancel()
             self._due = None
 
-    def _do(self) -> None:
+    def _call(self) -> None:
         self._due = None
-        self._done_at = self._loop.time()
+        self._last_call_time = self._loop.time()
         self._work()
 
 
-_DEPTH = 500
-"""The number of messages that may wait while the loop is busy."""
+_QUEUE_DEPTH = 500
+"""The number of messages that can be queued while the event loop is busy."""
 
 
 class TopicTap:
     """Receives the messages of a topic until it is closed.
 
     The topic need not exist yet. Like ``ros2 topic echo``, the subscription requests the strongest QoS that all
-    publishers offer. If a later publisher offers less, the topic is subscribed to again.
+    publishers offer. If a later publisher does not offer this QoS, the topic is subscribed to again.
 
     Args:
-        context: the context of the node that subscribes. The node has no remappings, so topics are named as in the
-            graph.
+        context: the context of the node that subscribes, which has no remappings.
         topic: the absolute name of the topic.
-        take: called with each message, or its bytes, and the message info.
-        raw: whether `take` is called with CDR bytes instead of messages.
-        changed: called when `error` or `message_class` has changed.
+        take: called with each message, or its bytes if `raw` is true, and the message info.
+        raw: whether messages are passed on as CDR bytes.
+        changed: called when `error` or `message_class` has changed; None for no callback.
     """
 
     def __init__(
@@ -82,7 +81,7 @@ class TopicTap:
     ) -> None:
         self.topic = topic
         self.error: str | None = None
-        """Why nothing can be received; None also while there is no publisher."""
+        """The reason why no messages can be received; None if there is no error, or no publisher yet."""
         self.message_class: Any = None
         """The class of the messages; None while it is not known."""
         self._node = context.node
@@ -93,20 +92,20 @@ class TopicTap:
         self._subscription: Subscription[Any] | None = None
         self._qos: QoSProfile | None = None
         self._changes.watch(self._look)
-        self._review()
+        self._update_subscription()
 
     def close(self) -> None:
         """Unsubscribe."""
         self._changes.unwatch(self._look)
-        self._leave()
+        self._unsubscribe()
 
     def _look(self) -> None:
-        before = self.error, self.message_class
-        self._review()
-        if (self.error, self.message_class) != before and self._changed is not None:
+        previous_state = self.error, self.message_class
+        self._update_subscription()
+        if (self.error, self.message_class) != previous_state and self._changed is not None:
             self._changed()
 
-    def _review(self) -> None:
+    def _update_subscription(self) -> None:
         publishers = [
             endpoint
             for endpoint in self._node.graph.endpoints()
@@ -117,23 +116,26 @@ class TopicTap:
             return  # the last known type remains valid until another publisher appears
         if len(types) > 1:
             self.error = f"the topic carries more than one type: {', '.join(types)}"
-            self._leave()
+            self._unsubscribe()
             return
-        offers = [publisher.qos for publisher in publishers]
-        if self._subscription is not None and self._fits(types[0], offers):
+        offered_profiles = [publisher.qos for publisher in publishers]
+        if self._subscription is not None and self._matches(types[0], offered_profiles):
             return
-        self._leave()
-        self._subscribe(types[0], offers)
+        self._unsubscribe()
+        self._subscribe(types[0], offered_profiles)
 
-    def _fits(self, type_name: str, offers: list[QoSProfile]) -> bool:
-        asked = self._qos
+    def _matches(self, type_name: str, offered_profiles: list[QoSProfile]) -> bool:
+        requested_qos = self._qos
         return (
             type_name == self.message_class.TYPE_NAME
-            and asked is not None
-            and all(qos_check_compatible(offer, asked)[0] is not QoSCompatibility.ERROR for offer in offers)
+            and requested_qos is not None
+            and all(
+                qos_check_compatible(offer, requested_qos)[0] is not QoSCompatibility.ERROR
+                for offer in offered_profiles
+            )
         )
 
-    def _subscribe(self, type_name: str, offers: list[QoSProfile]) -> None:
+    def _subscribe(self, type_name: str, offered_profiles: list[QoSProfile]) -> None:
         from linkwright.messages import get_message
 
         try:
@@ -143,8 +145,8 @@ class TopicTap:
             self.message_class = None
             return
         sensor_data = QoSPresetProfiles.get_from_short_key("sensor_data")
-        self._qos = fit(sensor_data, offers).profile
-        self._qos.depth = _DEPTH
+        self._qos = fit(sensor_data, offered_profiles).profile
+        self._qos.depth = _QUEUE_DEPTH
         self._subscription = Subscription(
             self._node.handle, self.message_class, self.topic, self._qos, self._receive, raw=self._raw
         )
@@ -154,7 +156,7 @@ class TopicTap:
     def _receive(self, message: Any, info: MessageInfo) -> None:
         self._take(message, info)
 
-    def _leave(self) -> None:
+    def _unsubscribe(self) -> None:
         if self._subscription is not None:
             self._node.destroy_subscription(self._subscription)
             self._subscription = None

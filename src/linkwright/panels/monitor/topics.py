@@ -27,55 +27,57 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.context import ViewerContext
 
-_MOST_ROWS = 1500
-"""Rows of one message; further rows are left out."""
-_MOST_ELEMENTS = 64
-_SHOWN_ELEMENTS = 8
-"""The number of an array's elements shown in its own row."""
-_LONGEST_TEXT = 400
+_MAX_ROWS = 1500
+"""The largest number of rows of a message; further rows are omitted."""
+_MAX_ELEMENTS = 64
+_MAX_INLINE_ELEMENTS = 8
+"""The number of elements that are shown in the row of an array."""
+_MAX_TEXT_LENGTH = 400
 
 
 def message_tree(message: Message) -> list[MessageField]:
     """Return the fields of a message, in order."""
-    return _Tree().fields(message)
+    return _TreeBuilder().fields(message)
 
 
-class _Tree:
+class _TreeBuilder:
     def __init__(self) -> None:
-        self._left = _MOST_ROWS
+        self._remaining_rows = _MAX_ROWS
 
     def fields(self, message: Message) -> list[MessageField]:
         rows = []
         for message_field in definition_of(type(message)).fields:
-            if self._left <= 0:
+            if self._remaining_rows <= 0:
                 break
             value = getattr(message, message_field.name)
             if message_field.type.container is Container.ONE:
-                rows.append(self._one(message_field.name, message_field, value))
+                rows.append(self._value_row(message_field.name, message_field, value))
             else:
-                rows.append(self._several(message_field, value))
+                rows.append(self._array_row(message_field, value))
         return rows
 
-    def _one(self, name: str, field: Field, value: Any) -> MessageField:
-        self._left -= 1
-        kind = field.type._replace(container=Container.ONE, size=None).to_idl_text()
+    def _value_row(self, name: str, field: Field, value: Any) -> MessageField:
+        self._remaining_rows -= 1
+        type_text = field.type._replace(container=Container.ONE, size=None).to_idl_text()
         if isinstance(value, Message):
-            return MessageField(name, kind, "", self.fields(value))
-        return MessageField(name, kind, _text(value))
+            return MessageField(name, type_text, "", self.fields(value))
+        return MessageField(name, type_text, _text(value))
 
-    def _several(self, field: Field, values: Any) -> MessageField:
-        self._left -= 1
-        kind = field.type.to_idl_text()
+    def _array_row(self, field: Field, values: Any) -> MessageField:
+        self._remaining_rows -= 1
+        type_text = field.type.to_idl_text()
         count = len(values)
         if field.type.primitive is None:
-            row = MessageField(field.name, kind, "")
+            row = MessageField(field.name, type_text, "")
         else:
-            shown = ", ".join(_text(value) for value in values[:_SHOWN_ELEMENTS])
-            row = MessageField(field.name, kind, f"[{shown}{', ...' if count > _SHOWN_ELEMENTS else ''}]")
-        for index in range(min(count, _MOST_ELEMENTS)):
-            if self._left <= 0:
+            element_texts = ", ".join(_text(value) for value in values[:_MAX_INLINE_ELEMENTS])
+            row = MessageField(
+                field.name, type_text, f"[{element_texts}{', ...' if count > _MAX_INLINE_ELEMENTS else ''}]"
+            )
+        for index in range(min(count, _MAX_ELEMENTS)):
+            if self._remaining_rows <= 0:
                 break
-            row.children.append(self._one(f"[{index}]", field, values[index]))
+            row.children.append(self._value_row(f"[{index}]", field, values[index]))
         row.omitted = count - len(row.children)
         return row
 
@@ -86,7 +88,7 @@ def _text(value: Any) -> str:
     if isinstance(value, bytes):
         return f"0x{value.hex()}"
     if isinstance(value, str):
-        return value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]}..."
+        return value if len(value) <= _MAX_TEXT_LENGTH else f"{value[:_MAX_TEXT_LENGTH]}..."
     return str(value)
 
 
@@ -94,8 +96,8 @@ _FIGURES_PERIOD = 1.0
 _MESSAGES_PERIOD = 0.2
 _WINDOW_MESSAGES = 2000
 _WINDOW_NS = 5_000_000_000
-_LEAST_MEASURED_NS = 500_000_000
-"""The least time that a topic is measured before its figures are sent: messages may arrive in bursts."""
+_MIN_MEASURED_NS = 500_000_000
+"""The minimum time of measuring before figures are sent, because messages may arrive in bursts."""
 
 
 @dataclass(slots=True)
@@ -107,7 +109,7 @@ class _Request:
     opened: frozenset[str] = frozenset()
     sent: TopicList | None = None
     due: set[str] = field(default_factory=set)
-    """Opened topics with news for this page."""
+    """The opened topics with new messages for this page."""
 
 
 class _Gauge:
@@ -121,24 +123,24 @@ class _Gauge:
         self.topic = topic
         self.window = TrafficWindow(_WINDOW_MESSAGES, _WINDOW_NS)
         self.last: tuple[bytes, float] | None = None
-        self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.measure_soon)
+        self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.send_figures_soon)
 
     def message(self) -> TopicMessage | None:
-        """Return the last message, or None if there is none or if its bytes cannot be decoded."""
+        """Return the last message, or None if there is none or it cannot be decoded."""
         from linkwright.messages import deserialize
 
         if self.last is None or self.tap.message_class is None:
             return None
-        data, received = self.last
+        data, receive_time = self.last
         try:
-            return TopicMessage(self.topic, received, message_tree(deserialize(data, self.tap.message_class)))
+            return TopicMessage(self.topic, receive_time, message_tree(deserialize(data, self.tap.message_class)))
         except LinkwrightError:
             self.tap.error = "a message of the topic could not be read"
             return None
 
     def traffic(self) -> TopicTraffic:
         figures = self.window.traffic(time.monotonic_ns())
-        if figures is None or figures.age_ns < _LEAST_MEASURED_NS:
+        if figures is None or figures.age_ns < _MIN_MEASURED_NS:
             return TopicTraffic(self.topic, None, None, self.tap.error)
         return TopicTraffic(self.topic, figures.messages_per_second, figures.bytes_per_second, self.tap.error)
 
@@ -149,25 +151,30 @@ class _Gauge:
 
 
 class TopicsFeature(PageFeature):
-    """Lists all topics, and subscribes only to those that a page measures."""
+    """Lists all topics, and subscribes only to topics that a page measures or shows."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._requests: dict[Page, _Request] = {}
         self._gauges: dict[str, _Gauge] = {}
-        self._figures = Paced(self._send_figures, _FIGURES_PERIOD)
-        self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
+        self._figures_sender = Paced(self._send_figures, _FIGURES_PERIOD)
+        self._messages_sender = Paced(self._send_messages, _MESSAGES_PERIOD)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
         """Replace the topics that a page lists, measures and expands."""
-        before = self._requests.get(page, _Request())
-        opened = frozenset(message.opened)
-        request = _Request(message.listed, frozenset(message.measured), opened, before.sent if message.listed else None)
-        request.due = {topic for topic in opened if topic in self._gauges and self._gauges[topic].last}
+        previous_request = self._requests.get(page, _Request())
+        opened_topics = frozenset(message.opened)
+        request = _Request(
+            message.listed,
+            frozenset(message.measured),
+            opened_topics,
+            previous_request.sent if message.listed else None,
+        )
+        request.due = {topic for topic in opened_topics if topic in self._gauges and self._gauges[topic].last}
         self._requests[page] = request
         self._update_subscriptions(page)
         if message.listed:
-            self._send_lists()
+            self._send_topic_lists()
 
     def page_closed(self, page: Page) -> None:
         """Discard the page's requests, and end the subscriptions that no other page needs."""
@@ -180,47 +187,47 @@ class TopicsFeature(PageFeature):
         self._update_subscriptions()
 
     def came(self, topic: str) -> None:
-        """Record that a topic has a new message, for the pages that show its messages."""
+        """Record that a topic has a new message, and send it soon to the pages that show its messages."""
         for request in self._requests.values():
             if topic in request.opened:
                 request.due.add(topic)
-                self._messages.ask()
+                self._messages_sender.ask()
 
-    def measure_soon(self) -> None:
-        """Request that measurements are sent as soon as the period since the last ones has passed."""
-        self._figures.ask()
+    def send_figures_soon(self) -> None:
+        """Send measurements as soon as the period since the last measurements has passed."""
+        self._figures_sender.ask()
 
     def _update_subscriptions(self, page: Page | None = None) -> None:
         """Open the subscriptions that pages need, and close all others.
 
-        `page` is a page whose requests have changed, which receives the list of topics.
+        `page` is a page with changed requests, which receives the last messages of its topics soon; or None.
         """
         requests = self._requests.values()
-        requested = set[str]().union(*(request.measured | request.opened for request in requests))
-        for topic in self._gauges.keys() - requested:
+        requested_topics = set[str]().union(*(request.measured | request.opened for request in requests))
+        for topic in self._gauges.keys() - requested_topics:
             self._gauges.pop(topic).tap.close()
-        for topic in sorted(requested - self._gauges.keys()):
+        for topic in sorted(requested_topics - self._gauges.keys()):
             self._gauges[topic] = _Gauge(self, self.context, topic)
         if any(request.listed for request in requests):
-            self.context.graph_changes.watch(self._send_lists)
+            self.context.graph_changes.watch(self._send_topic_lists)
         else:
-            self.context.graph_changes.unwatch(self._send_lists)
-        if not requested:
-            self._figures.cancel()
-            self._messages.cancel()
+            self.context.graph_changes.unwatch(self._send_topic_lists)
+        if not requested_topics:
+            self._figures_sender.cancel()
+            self._messages_sender.cancel()
             return
-        self._figures.ask()
+        self._figures_sender.ask()
         if page is not None and self._requests[page].due:
-            self._messages.ask()
+            self._messages_sender.ask()
 
-    def _send_lists(self) -> None:
-        listed = TopicList(self._rows())
+    def _send_topic_lists(self) -> None:
+        topic_list = TopicList(self._topic_rows())
         for page, request in self._requests.items():
-            if request.listed and request.sent != listed:
-                request.sent = listed
-                page.send(listed)
+            if request.listed and request.sent != topic_list:
+                request.sent = topic_list
+                page.send(topic_list)
 
-    def _rows(self) -> list[TopicRow]:
+    def _topic_rows(self) -> list[TopicRow]:
         rows: dict[str, TopicRow] = {}
         for endpoint in self.context.node.graph.endpoints():
             if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
@@ -237,16 +244,16 @@ class TopicsFeature(PageFeature):
 
     def _send_figures(self) -> None:
         for page, request in self._requests.items():
-            gauges = self._in_order(request.measured | request.opened)
+            gauges = self._sorted_gauges(request.measured | request.opened)
             if gauges:
                 page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
         if self._gauges:
-            self._figures.ask()
+            self._figures_sender.ask()
 
     def _send_messages(self) -> None:
         messages: dict[str, TopicMessage | None] = {}
         for page, request in self._requests.items():
-            for gauge in self._in_order(request.due):
+            for gauge in self._sorted_gauges(request.due):
                 if gauge.topic not in messages:
                     messages[gauge.topic] = gauge.message()
                 message = messages[gauge.topic]
@@ -254,5 +261,5 @@ class TopicsFeature(PageFeature):
                     page.send(message)
             request.due.clear()
 
-    def _in_order(self, topics: Iterable[str]) -> list[_Gauge]:
+    def _sorted_gauges(self, topics: Iterable[str]) -> list[_Gauge]:
         return [self._gauges[topic] for topic in sorted(topics)]

@@ -15,14 +15,14 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown, positive
 from linkwright.perception.nodes.lazy import LazySubscriptions
-from linkwright.perception.scans.projection import Pinhole, scan_of_depths
+from linkwright.perception.scans.projection import Pinhole, scan_from_depths
 
 _METRES_OF_16UC1 = 0.001
-_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_SECONDS_BETWEEN_ERRORS = 5.0
 
 
 class DepthImageToLaserScan(SingleNode):
-    """The running depthimage_to_laserscan_node.
+    """Converts depth images to laser scans.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
@@ -38,17 +38,20 @@ class DepthImageToLaserScan(SingleNode):
             self._scan_time: float = node.declare_parameter("scan_time", 0.033).value
             self._range_min: float = node.declare_parameter("range_min", 0.45).value
             self._range_max: float = node.declare_parameter("range_max", 10.0).value
-            self._height = int(positive(node, "scan_height", node.declare_parameter("scan_height", 1).value))
+            self._scan_height = int(positive(node, "scan_height", node.declare_parameter("scan_height", 1).value))
             self._frame: str = node.declare_parameter("output_frame", "camera_depth_frame").value
             log_unknown(node)
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/LaserScan"), "scan", 10)
-        self._lazy = LazySubscriptions(
+        self._subscriptions = LazySubscriptions(
             graph,
             node,
             [self._publisher],
             lambda: [
                 node.create_subscription(
-                    get_message("sensor_msgs/msg/CameraInfo"), "depth_camera_info", self._see_camera, SENSOR_DATA_QOS
+                    get_message("sensor_msgs/msg/CameraInfo"),
+                    "depth_camera_info",
+                    self._receive_camera_info,
+                    SENSOR_DATA_QOS,
                 ),
                 node.create_subscription(get_message("sensor_msgs/msg/Image"), "depth", self._receive, SENSOR_DATA_QOS),
             ],
@@ -56,10 +59,10 @@ class DepthImageToLaserScan(SingleNode):
 
     def close(self) -> None:
         """Close the node."""
-        self._lazy.close()
+        self._subscriptions.close()
         super().close()
 
-    def _see_camera(self, message: Any) -> None:
+    def _receive_camera_info(self, message: Any) -> None:
         focal_length, centre_column, centre_row = message.p[0], message.p[2], message.p[6]
         if not focal_length:
             focal_length, centre_column, centre_row = message.k[0], message.k[2], message.k[5]
@@ -68,13 +71,13 @@ class DepthImageToLaserScan(SingleNode):
 
     def _receive(self, image: Any) -> None:
         if self._camera is None:
-            self._complain("no camera_info with a focal length has arrived")
+            self._log_error("no camera_info with a focal length has arrived")
             return
         try:
-            depths = depths_of(image)
-            ranges, rays = scan_of_depths(depths, self._camera, self._height, self._range_min, self._range_max)
+            depths = read_depths(image)
+            ranges, rays = scan_from_depths(depths, self._camera, self._scan_height, self._range_min, self._range_max)
         except ValueError as error:
-            self._complain(str(error))
+            self._log_error(str(error))
             return
         scan = get_message("sensor_msgs/msg/LaserScan")()
         scan.header.stamp = image.header.stamp
@@ -84,31 +87,31 @@ class DepthImageToLaserScan(SingleNode):
         scan.ranges = ranges
         self._publisher.publish(scan)
 
-    def _complain(self, reason: str) -> None:
+    def _log_error(self, reason: str) -> None:
         self._node.get_logger().error(
-            f"Could not convert depth image to laserscan: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
+            f"Could not convert depth image to laserscan: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_ERRORS
         )
 
 
-def depths_of(image: Any) -> NDArray[np.float64]:
-    """Return the depths of a sensor_msgs/msg/Image in metres, of shape (rows, columns).
+def read_depths(image: Any) -> NDArray[np.float64]:
+    """Return the depths of a sensor_msgs/msg/Image in metres, shape ``(rows, columns)``.
 
-    The value is NaN for pixels without a depth.
+    Pixels without a depth are NaN in integer images, and unchanged in 32FC1 images.
 
     Raises:
         ValueError: the message is not a depth image, or has too little data.
     """
-    kinds = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
-    kind = kinds.get(image.encoding)
-    if kind is None:
+    dtypes = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
+    dtype = dtypes.get(image.encoding)
+    if dtype is None:
         raise ValueError(f"Depth image has unsupported encoding: {image.encoding}")
     order = ">" if image.is_bigendian else "<"
     data = np.frombuffer(bytes(image.data), np.uint8)
-    width = np.dtype(kind).itemsize * image.width
-    if image.step < width or len(data) < image.step * image.height:
-        raise ValueError(f"the image has {len(data)} bytes, not {image.height} rows of {width}")
-    rows = data[: image.step * image.height].reshape(image.height, image.step)[:, :width]
-    numbers = np.ascontiguousarray(rows).view(order + kind).reshape(image.height, image.width)
-    if kind == "u2":
-        return np.where(numbers > 0, numbers * _METRES_OF_16UC1, np.nan)
-    return numbers.astype(np.float64)
+    row_bytes = np.dtype(dtype).itemsize * image.width
+    if image.step < row_bytes or len(data) < image.step * image.height:
+        raise ValueError(f"the image has {len(data)} bytes, not {image.height} rows of {row_bytes}")
+    rows = data[: image.step * image.height].reshape(image.height, image.step)[:, :row_bytes]
+    values = np.ascontiguousarray(rows).view(order + dtype).reshape(image.height, image.width)
+    if dtype == "u2":
+        return np.where(values > 0, values * _METRES_OF_16UC1, np.nan)
+    return values.astype(np.float64)

@@ -1,10 +1,10 @@
 """republish of image_transport: converts images between the transports raw, compressed and compressedDepth.
 
 Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
-transport of the input is the first argument or the parameter ``in_transport``, by default raw. That of the output is
-the second argument or ``out_transport``, by default all transports. The topics are ``in`` and ``out`` with the name of
-the transport appended. Remappings of either form apply: ``in:=/camera/image_raw``, as in Jazzy, and
-``in/compressed:=...``, as in Humble.
+transport of the input is the first argument or the parameter ``in_transport``, by default raw. The transport of the
+output is the second argument or ``out_transport``; by default there are outputs for all transports. The topics are
+``in`` and ``out`` with the name of the transport appended. Remappings of both forms apply: ``in:=/camera/image_raw``,
+as in Jazzy, and ``in/compressed:=...``, as in Humble.
 """
 
 from __future__ import annotations
@@ -28,30 +28,30 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 
 _IMAGE, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 _TRANSPORTS = ("raw", "compressed", "compressedDepth")
-_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_SECONDS_BETWEEN_ERRORS = 5.0
 
 
-def _as_it_is(image: Any) -> Any:
+def _unchanged(image: Any) -> Any:
     return image
 
 
-_UNPACKED: dict[str, Callable[[Any], Any]] = {
-    "raw": _as_it_is,
+_DECODERS: dict[str, Callable[[Any], Any]] = {
+    "raw": _unchanged,
     "compressed": plain_image,
     "compressedDepth": plain_depth,
 }
-_PACKED: dict[str, Callable[[Any], Any]] = {
-    "raw": _as_it_is,
+_ENCODERS: dict[str, Callable[[Any], Any]] = {
+    "raw": _unchanged,
     "compressed": compressed_image,
     "compressedDepth": compressed_depth,
 }
 
 
 class ImageRepublisher(SingleNode):
-    """The running republish node.
+    """Republishes images with other transports.
 
     Raises:
-        LinkwrightError: there is no such transport (NODE433), or there are more than two arguments (NODE432).
+        LinkwrightError: a transport does not exist (NODE433), or there are more than two arguments (NODE432).
     """
 
     DEFAULT_NAME = "image_republisher"
@@ -62,18 +62,18 @@ class ImageRepublisher(SingleNode):
         options = options_from_words(options, words_of(options), self.WORDS, self.USAGE)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            self._source = self._transport("in_transport", "raw")
-            result = self._transport("out_transport", "")
+            self._in_transport = self._transport("in_transport", "raw")
+            out_transport = self._transport("out_transport", "")
             log_unknown(self._node)
         self._publishers: dict[str, Publisher[Any]] = {}
-        for transport in [result] if result else _TRANSPORTS:
-            topic = topic_of(self._node, "out", transport)
-            self._publishers[transport] = self._node.create_publisher(_type_of(transport), topic, DEFAULT_QOS)
-        self._lazy = LazySubscriptions(graph, self._node, list(self._publishers.values()), self._subscribe)
+        for transport in [out_transport] if out_transport else _TRANSPORTS:
+            topic = transport_topic(self._node, "out", transport)
+            self._publishers[transport] = self._node.create_publisher(_message_class(transport), topic, DEFAULT_QOS)
+        self._subscriptions = LazySubscriptions(graph, self._node, list(self._publishers.values()), self._subscribe)
 
     def close(self) -> None:
         """Close the node."""
-        self._lazy.close()
+        self._subscriptions.close()
         super().close()
 
     def _transport(self, parameter: str, default: str) -> str:
@@ -83,38 +83,40 @@ class ImageRepublisher(SingleNode):
         return name
 
     def _subscribe(self) -> list[Subscription[Any]]:
-        topic = topic_of(self._node, "in", self._source)
-        return [self._node.create_subscription(_type_of(self._source), topic, self._receive, DEFAULT_QOS)]
+        topic = transport_topic(self._node, "in", self._in_transport)
+        return [self._node.create_subscription(_message_class(self._in_transport), topic, self._receive, DEFAULT_QOS)]
 
     def _receive(self, message: Any) -> None:
-        wanted = [name for name, publisher in self._publishers.items() if publisher.get_subscription_count()]
-        if wanted == [self._source]:
-            self._publishers[self._source].publish(message)
+        requested_transports = [
+            name for name, publisher in self._publishers.items() if publisher.get_subscription_count()
+        ]
+        if requested_transports == [self._in_transport]:
+            self._publishers[self._in_transport].publish(message)
             return
         try:
-            image = _UNPACKED[self._source](message)
-            for transport in wanted:
-                self._send(transport, image)
+            image = _DECODERS[self._in_transport](message)
+            for transport in requested_transports:
+                self._encode_and_publish(transport, image)
         except ModuleNotFoundError:
-            self._complain(f"images are packed and unpacked by Pillow; {install_hint('image')}")
+            self._log_error(f"images are packed and unpacked by Pillow; {install_hint('image')}")
         except BadImageError as error:
-            self._complain(str(error))
+            self._log_error(str(error))
 
-    def _send(self, transport: str, image: Any) -> None:
-        made = _PACKED[transport](image)
-        if made is not None:
-            self._publishers[transport].publish(made)
+    def _encode_and_publish(self, transport: str, image: Any) -> None:
+        encoded = _ENCODERS[transport](image)
+        if encoded is not None:
+            self._publishers[transport].publish(encoded)
         elif len(self._publishers) == 1:
-            self._complain(f"{transport} has no images of {image.encoding}")
+            self._log_error(f"{transport} has no images of {image.encoding}")
 
-    def _complain(self, reason: str) -> None:
+    def _log_error(self, reason: str) -> None:
         self._node.get_logger().error(
-            f"An image cannot be republished: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
+            f"An image cannot be republished: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_ERRORS
         )
 
 
-def topic_of(node: Node, base: str, transport: str) -> str:
-    """Return the name of a transport's topic: the remapped base with the transport appended."""
+def transport_topic(node: Node, base: str, transport: str) -> str:
+    """Return the topic of a transport: the base name, remapped if it is, with the transport appended."""
     if transport == "raw":
         return base
     resolved = node.resolve_topic_name(base)
@@ -123,5 +125,5 @@ def topic_of(node: Node, base: str, transport: str) -> str:
     return f"{base}/{transport}"
 
 
-def _type_of(transport: str) -> Any:
+def _message_class(transport: str) -> Any:
     return get_message(_IMAGE if transport == "raw" else _COMPRESSED)

@@ -1,7 +1,7 @@
-"""Conversion between images and messages of image_transport's plugins ``compressed`` and ``compressedDepth``.
+"""Convert images to and from messages of image_transport's plugins ``compressed`` and ``compressedDepth``.
 
-Sources: compressed_image_transport (the format's text), compressed_depth_image_transport (the header, the quantization
-of depths in metres by ``depth_max`` 10 and ``depth_quantization`` 100).
+Sources: compressed_image_transport (the format text), compressed_depth_image_transport (the header, and the
+quantization of depths in metres with ``depth_max`` 10 and ``depth_quantization`` 100).
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from linkwright.images import BadImageError
-from linkwright.images.compressed_depth import unpacked_depth
+from linkwright.images.compressed_depth import decode_depth
 from linkwright.images.image_files import RawImage, encoding_of, unpacked
 from linkwright.messages import get_message
 from linkwright.perception.nodes.compressed import compressed as compressed_image
-from linkwright.perception.nodes.depthimage_to_laserscan import depths_of
+from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 
 _HEADER = struct.Struct("<iff")
 _DEPTH_MAX, _QUANTIZATION = 10.0, 100.0
-_WHOLE = ("16UC1", "mono16")
+_INTEGER_ENCODINGS = ("16UC1", "mono16")
 
 __all__ = ["BadImageError", "compressed_depth", "compressed_image", "plain_depth", "plain_image"]
 
@@ -31,14 +31,14 @@ def plain_image(message: Any) -> Any:
     """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressed`` to a sensor_msgs/msg/Image.
 
     Raises:
-        BadImageError: the data is neither JPEG nor PNG.
+        BadImageError: the data is neither a JPEG nor a PNG.
     """
     image = unpacked(message)
     if encoding_of(message).startswith("bgr") and image.encoding in ("rgb8", "rgba8"):
         channels = len(image.encoding) - 1
         rows = image.data.reshape(image.height, image.width, channels)[:, :, [2, 1, 0, 3][:channels]]
         image = RawImage.of(image.header, image.encoding.replace("rgb", "bgr"), rows)
-    return _message(image)
+    return _to_message(image)
 
 
 def compressed_depth(image: Any) -> Any | None:
@@ -48,27 +48,27 @@ def compressed_depth(image: Any) -> Any | None:
         BadImageError: the image has too little data.
         ModuleNotFoundError: Pillow is not installed.
     """
-    if image.encoding not in (*_WHOLE, "32FC1"):
+    if image.encoding not in (*_INTEGER_ENCODINGS, "32FC1"):
         return None
-    from PIL import Image  # Imported here because Pillow is an optional extra.
+    from PIL import Image  # imported here because Pillow is an optional extra
 
     try:
-        depths = depths_of(image)
+        depths = read_depths(image)
     except ValueError as error:
         raise BadImageError(str(error)) from None
-    first = second = 0.0
+    scale = offset = 0.0
     if image.encoding == "32FC1":
-        first = _QUANTIZATION * (_QUANTIZATION + 1.0)
-        second = 1.0 - first / _DEPTH_MAX
+        scale = _QUANTIZATION * (_QUANTIZATION + 1.0)
+        offset = 1.0 - scale / _DEPTH_MAX
         with np.errstate(invalid="ignore", divide="ignore"):
-            numbers = np.where((depths > 0.0) & (depths < _DEPTH_MAX), first / depths + second, 0.0)
+            values = np.where((depths > 0.0) & (depths < _DEPTH_MAX), scale / depths + offset, 0.0)
     else:
-        numbers = np.nan_to_num(depths) * 1000.0
+        values = np.nan_to_num(depths) * 1000.0
     file = BytesIO()
-    Image.fromarray(numbers.round().clip(0, 65535).astype(np.uint16)).save(file, "PNG")
+    Image.fromarray(values.round().clip(0, 65535).astype(np.uint16)).save(file, "PNG")
     message = get_message("sensor_msgs/msg/CompressedImage")(header=image.header)
     message.format = f"{image.encoding}; compressedDepth png"
-    message.data = _HEADER.pack(0, first, second) + file.getvalue()
+    message.data = _HEADER.pack(0, scale, offset) + file.getvalue()
     return message
 
 
@@ -76,12 +76,12 @@ def plain_depth(message: Any) -> Any:
     """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
 
     Raises:
-        BadImageError: the message is not such an image, or has no data.
+        BadImageError: the message is not such an image, or its data is damaged or missing.
     """
-    return _message(unpacked_depth(message))
+    return _to_message(decode_depth(message))
 
 
-def _message(image: RawImage) -> Any:
+def _to_message(image: RawImage) -> Any:
     message = get_message("sensor_msgs/msg/Image")()
     for field in fields(image):
         setattr(message, field.name, getattr(image, field.name))

@@ -1,4 +1,4 @@
-"""imu_filter_madgwick_node and complementary_filter_node of imu_tools: orientation from rates and accelerations.
+"""imu_filter_madgwick_node and complementary_filter_node of imu_tools: orientation from inertial measurements.
 
 Sources: imu_filter_madgwick and imu_complementary_filter 2.1 (ROS 2 Humble): topics, parameters, defaults. Each IMU
 message is paired with the latest magnetometer message; the originals match stamps.
@@ -25,9 +25,9 @@ from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, log_unknown
-from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude
+from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude_at_rest
 
-_DEPTH = 5
+_QUEUE_DEPTH = 5
 
 
 class _Filter(Protocol):
@@ -53,19 +53,21 @@ class _ImuFilter(SingleNode, ABC):
             self._publish_tf: bool = declare("publish_tf", self._PUBLISHES_TF).value
             self._reverse_tf: bool = declare("reverse_tf", False).value
             self._fixed_frame: str = declare("fixed_frame", "odom").value
-            self._constant_s: float = declare("constant_dt", 0.0).value
+            self._constant_dt: float = declare("constant_dt", 0.0).value
             self._debug: bool = declare("publish_debug_topics", False).value
-            deviation: float = declare("orientation_stddev", 0.0).value
-            self._covariance = np.eye(3).reshape(9) * deviation**2
-            if not self._constant_s >= 0.0:
-                raise bad_value("constant_dt", self._constant_s, node.get_name())
+            standard_deviation: float = declare("orientation_stddev", 0.0).value
+            self._covariance = np.eye(3).reshape(9) * standard_deviation**2
+            if not self._constant_dt >= 0.0:
+                raise bad_value("constant_dt", self._constant_dt, node.get_name())
             self._filter = self._make()
             log_unknown(node)
-        kind, vector = get_message("sensor_msgs/msg/Imu"), get_message("geometry_msgs/msg/Vector3Stamped")
-        self._publisher = node.create_publisher(kind, "imu/data", _DEPTH)
+        imu_class, vector_class = get_message("sensor_msgs/msg/Imu"), get_message("geometry_msgs/msg/Vector3Stamped")
+        self._publisher = node.create_publisher(imu_class, "imu/data", _QUEUE_DEPTH)
         self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS) if self._publish_tf else None
-        self._rpy_publisher = node.create_publisher(vector, "imu/rpy/filtered", _DEPTH) if self._debug else None
-        node.create_subscription(kind, "imu/data_raw", self._receive, SENSOR_DATA_QOS)
+        self._rpy_publisher = (
+            node.create_publisher(vector_class, "imu/rpy/filtered", _QUEUE_DEPTH) if self._debug else None
+        )
+        node.create_subscription(imu_class, "imu/data_raw", self._receive_imu, SENSOR_DATA_QOS)
         if self._use_mag:
             node.create_subscription(
                 get_message("sensor_msgs/msg/MagneticField"), "imu/mag", self._receive_magnetic, SENSOR_DATA_QOS
@@ -76,30 +78,33 @@ class _ImuFilter(SingleNode, ABC):
         """Create the filter from the remaining parameters."""
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        """Initialise the orientation, and return whether that succeeded."""
+        """Initialise the orientation; return False if that is not possible yet."""
         return True
 
-    def _published(self, orientation: Quaternion) -> Quaternion:
+    def _output_orientation(self, orientation: Quaternion) -> Quaternion:
         return orientation
 
-    def _felt(self, acceleration: Vector3) -> Vector3:
-        """Return the acceleration to publish, without gravity if that is to be removed."""
+    def _output_acceleration(self, acceleration: Vector3) -> Vector3:
+        """Return the acceleration to publish: without gravity if the node removes it."""
         return acceleration
 
     def _receive_magnetic(self, message: Any) -> None:
         field = message.magnetic_field
         if all(isfinite(component) for component in (field.x, field.y, field.z)):
-            self._magnetic = self._compensated((field.x, field.y, field.z))
+            self._magnetic = self._compensate((field.x, field.y, field.z))
 
-    def _compensated(self, magnetic: Vector3) -> Vector3:
+    def _compensate(self, magnetic: Vector3) -> Vector3:
         return magnetic
 
-    def _receive(self, message: Any) -> None:
+    def _receive_imu(self, message: Any) -> None:
         if self._use_mag and self._magnetic is None:
             return
-        rates, felt = message.angular_velocity, message.linear_acceleration
-        turn, acceleration = (rates.x, rates.y, rates.z), (felt.x, felt.y, felt.z)
-        if not all(isfinite(component) for component in (*turn, *acceleration)):
+        rates, linear_acceleration = message.angular_velocity, message.linear_acceleration
+        angular_velocity, acceleration = (
+            (rates.x, rates.y, rates.z),
+            (linear_acceleration.x, linear_acceleration.y, linear_acceleration.z),
+        )
+        if not all(isfinite(component) for component in (*angular_velocity, *acceleration)):
             return
         stamp_ns: int = message.header.stamp.nanoseconds
         if self._last_ns is None and not self._begin(acceleration, self._magnetic):
@@ -107,10 +112,10 @@ class _ImuFilter(SingleNode, ABC):
                 "The IMU seems to be in free fall, cannot determine gravity direction!", throttle_duration_sec=5.0
             )
             return
-        seconds = self._constant_s or (0.0 if self._last_ns is None else (stamp_ns - self._last_ns) / 1e9)
+        seconds = self._constant_dt or (0.0 if self._last_ns is None else (stamp_ns - self._last_ns) / 1e9)
         self._last_ns = stamp_ns
-        if seconds >= 0.0:  # negative after simulated time jumped back
-            self._filter.update(turn, acceleration, self._magnetic, seconds)
+        if seconds >= 0.0:  # it is negative after simulated time has jumped back
+            self._filter.update(angular_velocity, acceleration, self._magnetic, seconds)
         self._publish(message, acceleration)
 
     def _publish(self, message: Any, acceleration: Vector3) -> None:
@@ -118,29 +123,29 @@ class _ImuFilter(SingleNode, ABC):
         result.angular_velocity = message.angular_velocity
         result.angular_velocity_covariance = message.angular_velocity_covariance
         result.linear_acceleration_covariance = message.linear_acceleration_covariance
-        felt = result.linear_acceleration
-        felt.x, felt.y, felt.z = self._felt(acceleration)
-        turned = self._published(self._filter.orientation)
+        linear_acceleration = result.linear_acceleration
+        linear_acceleration.x, linear_acceleration.y, linear_acceleration.z = self._output_acceleration(acceleration)
+        orientation = self._output_orientation(self._filter.orientation)
         quaternion = result.orientation
-        quaternion.x, quaternion.y, quaternion.z, quaternion.w = turned
+        quaternion.x, quaternion.y, quaternion.z, quaternion.w = orientation
         result.orientation_covariance = self._covariance
         self._publisher.publish(result)
         if self._tf_publisher is not None:
             self._tf_publisher.publish(TFMessage(batch=self._transform(message.header)))
         if self._rpy_publisher is not None:
             angles = get_message("geometry_msgs/msg/Vector3Stamped")(header=message.header)
-            angles.vector.x, angles.vector.y, angles.vector.z = rpy_from_quaternion(turned)
+            angles.vector.x, angles.vector.y, angles.vector.z = rpy_from_quaternion(orientation)
             self._rpy_publisher.publish(angles)
 
     def _transform(self, header: Any) -> TransformBatch:
-        parent, child, turn = self._fixed_frame, header.frame_id, self._filter.orientation
+        parent, child, rotation = self._fixed_frame, header.frame_id, self._filter.orientation
         if self._reverse_tf:
-            parent, child, turn = child, parent, quaternion_inverse(turn)
-        return TransformBatch((parent,), (child,), header.stamp.nanoseconds, np.array([[0.0, 0.0, 0.0, *turn]]))
+            parent, child, rotation = child, parent, quaternion_inverse(rotation)
+        return TransformBatch((parent,), (child,), header.stamp.nanoseconds, np.array([[0.0, 0.0, 0.0, *rotation]]))
 
 
 class MadgwickNode(_ImuFilter):
-    """The running imu_filter_madgwick_node.
+    """Estimates the orientation with the Madgwick filter.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
@@ -159,40 +164,40 @@ class MadgwickNode(_ImuFilter):
         self._stateless: bool = declare("stateless", False).value
         self._remove_gravity: bool = declare("remove_gravity_vector", False).value
         offset: float = declare("yaw_offset", 0.0).value - declare("declination", 0.0).value
-        self._offset = quaternion_from_rpy((0.0, 0.0, offset))
+        self._yaw_offset = quaternion_from_rpy((0.0, 0.0, offset))
         bias = [float(declare(f"mag_bias_{axis}", 0.0).value) for axis in "xyz"]
-        self._bias = (bias[0], bias[1], bias[2])
+        self._magnetometer_bias = (bias[0], bias[1], bias[2])
         return MadgwickFilter(declare("gain", 0.1).value, declare("zeta", 0.0).value, self._world)
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        first = attitude(acceleration, magnetic, self._world)
-        if first is None:
+        orientation = attitude_at_rest(acceleration, magnetic, self._world)
+        if orientation is None:
             return False
-        self._filter.orientation = first
+        self._filter.orientation = orientation
         return True
 
-    def _receive(self, message: Any) -> None:
+    def _receive_imu(self, message: Any) -> None:
         if self._stateless:
-            self._last_ns = None  # treat each measurement as the first one
-        super()._receive(message)
+            self._last_ns = None  # each measurement is then handled as the first one
+        super()._receive_imu(message)
 
-    def _compensated(self, magnetic: Vector3) -> Vector3:
-        x, y, z = (seen - bias for seen, bias in zip(magnetic, self._bias, strict=True))
+    def _compensate(self, magnetic: Vector3) -> Vector3:
+        x, y, z = (reading - bias for reading, bias in zip(magnetic, self._magnetometer_bias, strict=True))
         return x, y, z
 
-    def _published(self, orientation: Quaternion) -> Quaternion:
-        return quaternion_multiply(self._offset, orientation)
+    def _output_orientation(self, orientation: Quaternion) -> Quaternion:
+        return quaternion_multiply(self._yaw_offset, orientation)
 
-    def _felt(self, acceleration: Vector3) -> Vector3:
+    def _output_acceleration(self, acceleration: Vector3) -> Vector3:
         if not self._remove_gravity:
             return acceleration
-        rest = rotate(quaternion_inverse(self._filter.orientation), (0.0, 0.0, GRAVITY * self._world.up))
-        x, y, z = (felt - gravity for felt, gravity in zip(acceleration, rest, strict=True))
+        gravity_in_body = rotate(quaternion_inverse(self._filter.orientation), (0.0, 0.0, GRAVITY * self._world.up))
+        x, y, z = (component - gravity for component, gravity in zip(acceleration, gravity_in_body, strict=True))
         return x, y, z
 
 
 class ComplementaryNode(_ImuFilter):
-    """The running complementary_filter_node.
+    """Estimates the orientation with a complementary filter.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
@@ -220,7 +225,7 @@ class ComplementaryNode(_ImuFilter):
         )
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        first = attitude(acceleration, magnetic, World.NWU)
-        if first is not None:
-            self._filter.orientation = first
-        return first is not None
+        orientation = attitude_at_rest(acceleration, magnetic, World.NWU)
+        if orientation is not None:
+            self._filter.orientation = orientation
+        return orientation is not None

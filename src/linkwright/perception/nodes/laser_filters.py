@@ -25,15 +25,15 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.scan import Scan, ScanFilter
 
 GROUP = "linkwright.laser_filters"
-"""The entry points of filters; a name is that of the type in a parameter file."""
+"""The group of entry points for filters; an entry point's name is the filter's type in a parameter file."""
 
-_PACKAGE = "laser_filters/"
-_FILTER = re.compile(r"filter(\d+)\.")
-_DEPTH = 1000
+_PACKAGE_PREFIX = "laser_filters/"
+_FILTER_PATTERN = re.compile(r"filter(\d+)\.")
+_QUEUE_DEPTH = 1000
 
 
 class ScanToScanFilterChain(SingleNode):
-    """The running scan_to_scan_filter_chain node.
+    """Passes laser scans through a chain of filters.
 
     Raises:
         LinkwrightError: a filter of the chain does not exist (NODE451), lacks a parameter (NODE452), or has a parameter
@@ -47,31 +47,34 @@ class ScanToScanFilterChain(SingleNode):
         node = self._node
         with starting(node):
             self._chain = read_chain(node)
-            self._target: str = node.declare_parameter("tf_message_filter_target_frame", "").value
-            node.declare_parameter("tf_message_filter_tolerance", 0.03)  # No effect: scans do not wait for transforms.
+            self._target_frame: str = node.declare_parameter("tf_message_filter_target_frame", "").value
+            node.declare_parameter("tf_message_filter_tolerance", 0.03)  # no effect: scans do not wait
             is_lazy = node.declare_parameter("lazy_subscription", False).value
             log_unknown(node)
         self._poses = FramePoses(node, "Dropping Scan: Transform unavailable")
-        kind = get_message("sensor_msgs/msg/LaserScan")
-        self._publisher = node.create_publisher(kind, "scan_filtered", _DEPTH)
+        message_class = get_message("sensor_msgs/msg/LaserScan")
+        self._publisher = node.create_publisher(message_class, "scan_filtered", _QUEUE_DEPTH)
 
         def subscribe() -> Sequence[Subscription[Any]]:
-            return (node.create_subscription(kind, "scan", self._receive, SENSOR_DATA_QOS),)
+            return (node.create_subscription(message_class, "scan", self._receive, SENSOR_DATA_QOS),)
 
-        self._lazy = LazySubscriptions(graph, node, (self._publisher,), subscribe) if is_lazy else None
+        self._subscriptions = LazySubscriptions(graph, node, (self._publisher,), subscribe) if is_lazy else None
         if not is_lazy:
             subscribe()
 
     def close(self) -> None:
         """Close the node."""
-        if self._lazy is not None:
-            self._lazy.close()
+        if self._subscriptions is not None:
+            self._subscriptions.close()
         super().close()
 
     def _receive(self, message: Any) -> None:
-        scan: Scan | None = scan_of(message)
+        scan: Scan | None = to_scan(message)
         header = message.header
-        if self._target and self._poses.pose(self._target, header.frame_id, header.stamp.nanoseconds) is None:
+        if (
+            self._target_frame
+            and self._poses.pose(self._target_frame, header.frame_id, header.stamp.nanoseconds) is None
+        ):
             return
         for scan_filter in self._chain:
             assert scan is not None, "the loop ends where a scan is dropped"
@@ -79,10 +82,10 @@ class ScanToScanFilterChain(SingleNode):
             if scan is None:
                 return
         if scan is not None:
-            self._publisher.publish(message_of(scan, message.scan_time))
+            self._publisher.publish(to_message(scan, message.scan_time))
 
 
-def scan_of(message: Any) -> Scan:
+def to_scan(message: Any) -> Scan:
     """Convert a sensor_msgs/msg/LaserScan to a scan with its own arrays."""
     return Scan(
         ranges=np.array(message.ranges, dtype=np.float32),
@@ -98,8 +101,8 @@ def scan_of(message: Any) -> Scan:
     )
 
 
-def message_of(scan: Scan, scan_time: float) -> Any:
-    """Convert a scan to a sensor_msgs/msg/LaserScan; `scan_time` is the time between scans in seconds."""
+def to_message(scan: Scan, scan_time: float) -> Any:
+    """Convert a scan to a sensor_msgs/msg/LaserScan; `scan_time` is the time between two scans in seconds."""
     message = get_message("sensor_msgs/msg/LaserScan")()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(scan.stamp_ns), scan.frame
     message.angle_min, message.angle_max, message.angle_increment = scan.angle_min, scan.angle_max, scan.angle_increment
@@ -110,14 +113,15 @@ def message_of(scan: Scan, scan_time: float) -> Any:
 
 
 def read_chain(node: Node) -> list[ScanFilter]:
-    """Create the filters of a chain from its parameters.
+    """Return the filters of the chain that the node's parameters describe.
 
-    The parameters are declared from ``filter1.type`` up to the first missing number.
+    The chain starts with ``filter1`` and ends before the first missing number. The parameters of its filters are
+    declared.
 
     Raises:
         LinkwrightError: see `ScanToScanFilterChain`.
     """
-    numbers = {int(match[1]) for name in node.undeclared_overrides() if (match := _FILTER.match(name))}
+    numbers = {int(match[1]) for name in node.undeclared_overrides() if (match := _FILTER_PATTERN.match(name))}
     count = next(number for number in range(1, len(numbers) + 2) if number not in numbers) - 1
     for number in sorted(number for number in numbers if number > count):
         node.get_logger().warning(f"'filter{number}' is not used: the chain ends before 'filter{count + 1}'")
@@ -127,45 +131,53 @@ def read_chain(node: Node) -> list[ScanFilter]:
         for name in node.undeclared_overrides():
             if name.startswith(prefix):
                 node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
-        tree = _nested(
+        settings = _nest(
             {name: parameter.value for name, parameter in node.get_parameters_by_prefix(prefix[:-1]).items()}
         )
-        chain.append(_filter(node, prefix, tree))
+        chain.append(_make_filter(node, prefix, settings))
     return chain
 
 
-def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
-    known = extensions(GROUP)
-    kind = tree.get("type")
-    if not isinstance(kind, str):
-        raise _wrong("NODE452", phrase("parameter '{name}' is not set", name=f"{prefix}type"), None)
-    entry = known.get(kind) or known.get(_PACKAGE + kind)
-    if entry is None:
-        hint = did_you_mean(kind, known) or phrase("choose from {names}", names=", ".join(sorted(known)))
-        raise _wrong("NODE451", phrase("there is no filter '{kind}' ({name})", kind=kind, name=f"{prefix}type"), hint)
-    table = entry.load()
-    hints = get_type_hints(table)
-    given = tree.get("params") or {}
-    parameters = {field.name: field for field in fields(table) if field.init}
+def _make_filter(node: Node, prefix: str, settings: dict[str, Any]) -> ScanFilter:
+    entry_points = extensions(GROUP)
+    type_name = settings.get("type")
+    if not isinstance(type_name, str):
+        raise _parameter_error("NODE452", phrase("parameter '{name}' is not set", name=f"{prefix}type"), None)
+    entry_point = entry_points.get(type_name) or entry_points.get(_PACKAGE_PREFIX + type_name)
+    if entry_point is None:
+        hint = did_you_mean(type_name, entry_points) or phrase(
+            "choose from {names}", names=", ".join(sorted(entry_points))
+        )
+        raise _parameter_error(
+            "NODE451", phrase("there is no filter '{kind}' ({name})", kind=type_name, name=f"{prefix}type"), hint
+        )
+    filter_class = entry_point.load()
+    field_types = get_type_hints(filter_class)
+    given_values = settings.get("params") or {}
+    parameters = {field.name: field for field in fields(filter_class) if field.init}
     values = {
-        name: _converted(f"{prefix}params.{name}", value, hints[name])
-        for name, value in given.items()
+        name: _convert(f"{prefix}params.{name}", value, field_types[name])
+        for name, value in given_values.items()
         if name in parameters
     }
-    for name in given:
+    for name in given_values:
         if name not in parameters:
-            meant = did_you_mean(name, parameters)
-            message = f"'{prefix}params.{name}' is not a parameter of {kind}" + (f"; {meant}" if meant else "")
+            suggestion = did_you_mean(name, parameters)
+            message = f"'{prefix}params.{name}' is not a parameter of {type_name}" + (
+                f"; {suggestion}" if suggestion else ""
+            )
             node.get_logger().warning(message)
     for name, parameter_field in parameters.items():
         if name not in values and parameter_field.default is MISSING and parameter_field.default_factory is MISSING:
-            raise _wrong("NODE452", phrase("parameter '{name}' is not set", name=f"{prefix}params.{name}"), None)
-    made: ScanFilter = table(**values)
-    return made
+            raise _parameter_error(
+                "NODE452", phrase("parameter '{name}' is not set", name=f"{prefix}params.{name}"), None
+            )
+    scan_filter: ScanFilter = filter_class(**values)
+    return scan_filter
 
 
-def _converted(name: str, value: Any, kind: Any) -> Any:
-    """Convert a value to the type of its field.
+def _convert(name: str, value: Any, kind: Any) -> Any:
+    """Return a parameter's value in the type of the filter's field, or raise.
 
     An integer is accepted as a float, and 0 and 1 as booleans.
     """
@@ -177,19 +189,19 @@ def _converted(name: str, value: Any, kind: Any) -> Any:
         return value
     if kind not in (float, bool, int, str) and isinstance(value, dict):
         return value
-    raise _wrong("NODE433", phrase("parameter '{name}' cannot be '{value}'", name=name, value=value), None)
+    raise _parameter_error("NODE433", phrase("parameter '{name}' cannot be '{value}'", name=name, value=value), None)
 
 
-def _wrong(code: str, message: Phrase, hint: Phrase | None) -> LinkwrightError:
+def _parameter_error(code: str, message: Phrase, hint: Phrase | None) -> LinkwrightError:
     return LinkwrightError(Diagnostic(code, message, hint=hint))
 
 
-def _nested(values: dict[str, Any]) -> dict[str, Any]:
+def _nest(values: dict[str, Any]) -> dict[str, Any]:
     tree: dict[str, Any] = {}
     for name, value in values.items():
-        *path, last = name.split(".")
+        *path, leaf = name.split(".")
         branch = tree
-        for step in path:
-            branch = branch.setdefault(step, {})
-        branch[last] = value
+        for key in path:
+            branch = branch.setdefault(key, {})
+        branch[leaf] = value
     return tree

@@ -1,4 +1,4 @@
-"""Subscriptions that exist only while the topics published from them have subscribers."""
+"""Subscriptions that exist only while the topics that depend on them have subscribers."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from linkwright.graph import Graph, Node, Publisher, Subscription
 
 
 class LazySubscriptions:
-    """Keeps subscriptions open while at least one of some publishers has a subscriber.
+    """Keeps subscriptions open while one or more of some publishers have a subscriber.
 
     Args:
         graph: the graph, which reports changes.
-        node: the owner of the subscriptions.
-        publishers: the publishers whose subscribers count.
-        subscribe: creates the subscriptions.
+        node: the node that owns the subscriptions.
+        publishers: the publishers that depend on the subscriptions.
+        subscribe: creates the subscriptions, and returns them.
     """
 
     def __init__(
@@ -30,24 +30,24 @@ class LazySubscriptions:
         self._publishers = publishers
         self._subscribe = subscribe
         self._open: Sequence[Subscription[Any]] = ()
-        self._changed = node.create_guard_condition(self._look)
-        graph.watch(self._changed.trigger)
+        self._graph_condition = node.create_guard_condition(self._look)
+        graph.watch(self._graph_condition.trigger)
         self._look()
 
     @property
     def are_open(self) -> bool:
-        """Whether the subscriptions are open."""
+        """Whether the subscriptions exist at the moment."""
         return bool(self._open)
 
     def close(self) -> None:
-        """Stop watching; the subscriptions are removed with their node."""
-        self._graph.unwatch(self._changed.trigger)
+        """Stop watching the graph. The subscriptions are destroyed with their node."""
+        self._graph.unwatch(self._graph_condition.trigger)
 
     def _look(self) -> None:
-        wanted = any(publisher.get_subscription_count() for publisher in self._publishers)
-        if wanted and not self._open:
+        is_needed = any(publisher.get_subscription_count() for publisher in self._publishers)
+        if is_needed and not self._open:
             self._open = self._subscribe()
-        elif not wanted and self._open:
+        elif not is_needed and self._open:
             for subscription in self._open:
                 self._node.destroy_subscription(subscription)
             self._open = ()

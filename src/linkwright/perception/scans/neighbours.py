@@ -8,17 +8,18 @@ from math import nan, radians, tan
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, clear_ranges
+from linkwright.perception.scans.scan import Lookup, Mask, Scan, ScanFilter, replace_ranges
 
 
 @dataclass(slots=True)
 class ScanShadowsFilter(ScanFilter):
-    """``ScanShadowsFilter``: removes points behind an edge.
+    """``ScanShadowsFilter``: removes shadow points, which appear behind an edge.
 
-    There the beam is split between foreground and background.
+    At an edge the beam is split between foreground and background.
 
     If the line through two points of the window is nearly parallel to the ray (an angle below ``min_angle`` or above
-    ``max_angle`` degrees), those of the ``neighbors`` of the first point that are farther away are removed as shadows.
+    ``max_angle`` degrees), the first point is at an edge. Of its ``neighbors``, those that are farther away are
+    removed.
     """
 
     min_angle: float
@@ -38,33 +39,33 @@ class ScanShadowsFilter(ScanFilter):
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         ranges = scan.ranges.astype(np.float64)
-        edges = self._edges(ranges, scan.angle_increment)
+        edges = self._find_edges(ranges, scan.angle_increment)
         for shift in range(-self.neighbors, self.neighbors + 1):
-            here, there = _pairs(len(ranges), shift)
-            behind = edges[here] & (ranges[here] < ranges[there])
-            scan.ranges[there][behind] = nan
-        return clear_ranges(scan, edges) if self.remove_shadow_start_point else scan
+            first, second = _shifted_slices(len(ranges), shift)
+            is_behind = edges[first] & (ranges[first] < ranges[second])
+            scan.ranges[second][is_behind] = nan
+        return replace_ranges(scan, edges) if self.remove_shadow_start_point else scan
 
-    def _edges(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float) -> Flags:
-        least, most = abs(tan(radians(self.min_angle))), -abs(tan(radians(self.max_angle)))
-        edges = np.zeros(len(ranges), dtype=bool)
+    def _find_edges(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float) -> Mask:
+        min_slope, max_slope = abs(tan(radians(self.min_angle))), -abs(tan(radians(self.max_angle)))
+        is_edge = np.zeros(len(ranges), dtype=bool)
         for shift in range(-self.window, self.window + 1):
             if shift:
-                here, there = _pairs(len(ranges), shift)
+                first, second = _shifted_slices(len(ranges), shift)
                 angle = shift * increment
-                with np.errstate(all="ignore"):  # Missing measurements are NaN or infinite.
-                    across = ranges[there] * abs(np.sin(angle))
-                    slope = across / (ranges[here] - ranges[there] * np.cos(angle))
-                edges[here] |= (slope < least) & (slope > most)
-        return edges
+                with np.errstate(all="ignore"):  # missing measurements are NaN or infinite
+                    perpendicular = ranges[second] * abs(np.sin(angle))
+                    slope = perpendicular / (ranges[first] - ranges[second] * np.cos(angle))
+                is_edge[first] |= (slope < min_slope) & (slope > max_slope)
+        return is_edge
 
 
 @dataclass(slots=True)
 class SpeckleFilter(ScanFilter):
-    """``LaserScanSpeckleFilter``: removes isolated points nearer than ``max_range``.
+    """``LaserScanSpeckleFilter``: removes isolated points that are nearer than ``max_range``.
 
-    With ``filter_type`` 0, the ranges of ``filter_window`` consecutive rays must be similar for the points to be kept.
-    With 1, that many of the surrounding points must be near.
+    With ``filter_type`` 0, points are kept if the ranges of ``filter_window`` consecutive rays are similar. With 1,
+    points are kept if that many of the surrounding points are near.
     """
 
     filter_type: int = 0
@@ -85,37 +86,41 @@ class SpeckleFilter(ScanFilter):
         ranges, window = scan.ranges.astype(np.float64), self.filter_window
         if len(ranges) <= window + 1:
             return None
-        together = (
-            self._differ_little(ranges) if self.filter_type == 0 else self._are_near(ranges, scan.angle_increment)
+        is_cluster = (
+            self._have_similar_ranges(ranges)
+            if self.filter_type == 0
+            else self._have_near_neighbours(ranges, scan.angle_increment)
         )
-        kept = ranges > self.max_range
-        starts = np.flatnonzero(together[: len(ranges) - window + 1])
+        is_kept = ranges > self.max_range
+        starts = np.flatnonzero(is_cluster[: len(ranges) - window + 1])
         for shift in range(window):
-            kept[starts + shift] = True
-        return clear_ranges(scan, ~kept)
+            is_kept[starts + shift] = True
+        return replace_ranges(scan, ~is_kept)
 
-    def _differ_little(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Flags:
-        together: Flags = ~np.isnan(ranges)
+    def _have_similar_ranges(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Mask:
+        is_similar: Mask = ~np.isnan(ranges)
         for shift in range(1, self.filter_window):
-            here, there = _pairs(len(ranges), shift)
+            first, second = _shifted_slices(len(ranges), shift)
             with np.errstate(invalid="ignore"):
-                together[here] &= np.abs(ranges[there] - ranges[here]) <= self.max_range_difference
-        return together
+                is_similar[first] &= np.abs(ranges[second] - ranges[first]) <= self.max_range_difference
+        return is_similar
 
-    def _are_near(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float) -> Flags:
-        near = np.zeros(len(ranges), dtype=int)
+    def _have_near_neighbours(
+        self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float
+    ) -> Mask:
+        near_counts = np.zeros(len(ranges), dtype=int)
         for shift in range(-self.filter_window, self.filter_window + 1):
             if shift:
-                here, there = _pairs(len(ranges), shift)
-                first, second = ranges[here], ranges[there]
+                first_slice, second_slice = _shifted_slices(len(ranges), shift)
+                first, second = ranges[first_slice], ranges[second_slice]
                 with np.errstate(invalid="ignore"):
-                    squared = first**2 + second**2 - 2.0 * first * second * np.cos(shift * increment)
-                    near[here] += squared <= self.max_range_difference**2
-        return near >= self.filter_window
+                    squared_distances = first**2 + second**2 - 2.0 * first * second * np.cos(shift * increment)
+                    near_counts[first_slice] += squared_distances <= self.max_range_difference**2
+        return near_counts >= self.filter_window
 
 
-def _pairs(count: int, shift: int) -> tuple[slice, slice]:
-    """Return slices that select all pairs of indices below a count that differ by a shift."""
+def _shifted_slices(count: int, shift: int) -> tuple[slice, slice]:
+    """Return two slices that select all pairs of indices, below a count, that differ by a shift."""
     if abs(shift) >= count:
         return slice(0, 0), slice(0, 0)
     if shift >= 0:

@@ -1,4 +1,4 @@
-"""Filters by the positions of points: angles, sectors, boxes and polygons."""
+"""Filter scans by the positions of points: angles, sectors, boxes and polygons."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.polygon import within_polygon
-from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, clear_ranges
+from linkwright.perception.scans.scan import Lookup, Mask, Scan, ScanFilter, replace_ranges
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
 @dataclass(slots=True)
 class AngularBoundsFilter(ScanFilter):
-    """``LaserScanAngularBoundsFilter``: keeps only the rays between two angles, which shortens the scan."""
+    """``LaserScanAngularBoundsFilter``: shortens the scan to the rays between two angles."""
 
     lower_angle: float = 0.0
     upper_angle: float = 0.0
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
         angles = scan.angles
-        inside = np.flatnonzero((angles >= self.lower_angle) & (angles <= self.upper_angle))
-        if not len(inside):
+        indices = np.flatnonzero((angles >= self.lower_angle) & (angles <= self.upper_angle))
+        if not len(indices):
             return None
-        first, last = int(inside[0]), int(inside[-1])
+        first, last = int(indices[0]), int(indices[-1])
         count = len(scan.ranges)
         scan.ranges = scan.ranges[first : last + 1]
         if len(scan.intensities) == count:
@@ -40,7 +40,7 @@ class AngularBoundsFilter(ScanFilter):
 
 @dataclass(slots=True)
 class AngularBoundsInPlaceFilter(ScanFilter):
-    """``LaserScanAngularBoundsFilterInPlace``: removes the rays between two angles."""
+    """``LaserScanAngularBoundsFilterInPlace``: removes the ranges between two angles, and keeps the scan's length."""
 
     lower_angle: float = 0.0
     upper_angle: float = 0.0
@@ -52,7 +52,7 @@ class AngularBoundsInPlaceFilter(ScanFilter):
 
 @dataclass(slots=True)
 class SectorFilter(ScanFilter):
-    """``LaserScanSectorFilter``: removes the ranges between two angles and two distances, or all others."""
+    """``LaserScanSectorFilter``: removes the ranges between two angles and two distances, or all other ranges."""
 
     angle_min: float = 0.0
     angle_max: float = 0.0
@@ -66,13 +66,13 @@ class SectorFilter(ScanFilter):
         if width < 0.0:
             width += tau
             offset = np.where(offset < 0.0, offset + tau, offset)
-        inside = (offset > 0.0) & (offset < width) & (scan.ranges > self.range_min) & (scan.ranges < self.range_max)
-        return _set_beyond_range(scan, inside == (self.clear_inside and not self.invert))
+        is_inside = (offset > 0.0) & (offset < width) & (scan.ranges > self.range_min) & (scan.ranges < self.range_max)
+        return _set_beyond_range(scan, is_inside == (self.clear_inside and not self.invert))
 
 
 @dataclass(slots=True)
 class BoxFilter(ScanFilter):
-    """``LaserScanBoxFilter``: removes the points in a box in a given frame, or, inverted, the points outside it."""
+    """``LaserScanBoxFilter``: removes the points in a box in a frame, or with ``invert`` the points outside it."""
 
     box_frame: str
     min_x: float
@@ -87,9 +87,12 @@ class BoxFilter(ScanFilter):
         points = scan.points(self.box_frame, lookup)
         if points is None:
             return None
-        least, most = np.array((self.min_x, self.min_y, self.min_z)), np.array((self.max_x, self.max_y, self.max_z))
-        inside = ((points > least) & (points < most)).all(axis=-1)
-        return clear_ranges(scan, (inside != self.invert) & scan.measured)
+        minimum, maximum = (
+            np.array((self.min_x, self.min_y, self.min_z)),
+            np.array((self.max_x, self.max_y, self.max_z)),
+        )
+        is_inside = ((points > minimum) & (points < maximum)).all(axis=-1)
+        return replace_ranges(scan, (is_inside != self.invert) & scan.measured)
 
 
 @dataclass(slots=True)
@@ -102,12 +105,12 @@ class FootprintFilter(ScanFilter):
         points = scan.points("base_link", lookup)
         if points is None:
             return None
-        return clear_ranges(scan, (np.abs(points[:, :2]) <= self.inscribed_radius).all(axis=-1) & scan.measured)
+        return replace_ranges(scan, (np.abs(points[:, :2]) <= self.inscribed_radius).all(axis=-1) & scan.measured)
 
 
 @dataclass(slots=True)
 class PolygonFilter(ScanFilter):
-    """``LaserScanPolygonFilter``: removes the points above a polygon in a given frame, or, inverted, all others."""
+    """``LaserScanPolygonFilter``: removes the points in a polygon seen from above, or with ``invert`` all others."""
 
     polygon: str
     polygon_frame: str = "base_link"
@@ -116,9 +119,11 @@ class PolygonFilter(ScanFilter):
     _corners: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        numbers = [float(value) for value in _NUMBER.findall(self.polygon)]
+        numbers = [float(value) for value in _NUMBER_PATTERN.findall(self.polygon)]
         if len(numbers) < 6 or len(numbers) % 2:
-            message = phrase("polygon '{text}' has fewer than three corners", text=self.polygon)
+            message = phrase(
+                ("polygon '{text}' must have three or more corners of two numbers each"), text=self.polygon
+            )
             hint = phrase("write it like '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")
             raise LinkwrightError(Diagnostic("NODE433", message, hint=hint))
         corners = np.array(numbers).reshape(-1, 2)
@@ -129,11 +134,11 @@ class PolygonFilter(ScanFilter):
         points = scan.points(self.polygon_frame, lookup)
         if points is None:
             return None
-        return clear_ranges(scan, (within_polygon(points, self._corners) != self.invert) & scan.measured)
+        return replace_ranges(scan, (within_polygon(points, self._corners) != self.invert) & scan.measured)
 
 
-def _set_beyond_range(scan: Scan, which: Flags) -> Scan:
-    """Return the scan with some ranges set beyond the maximum, and their intensities set to 0."""
-    if len(scan.intensities) == len(which):
-        scan.intensities[which] = 0.0
-    return clear_ranges(scan, which, scan.range_max + 1.0)
+def _set_beyond_range(scan: Scan, mask: Mask) -> Scan:
+    """Set some ranges beyond the maximum, and their intensities to 0; return the scan."""
+    if len(scan.intensities) == len(mask):
+        scan.intensities[mask] = 0.0
+    return replace_ranges(scan, mask, scan.range_max + 1.0)

@@ -1,7 +1,7 @@
 """Laser scans, and the base class of their filters.
 
-A filter is a dataclass whose fields are its parameters; fields without a default are required. Filters of other
-packages are found by the entry points ``linkwright.laser_filters``, by the name that parameter files give as ``type``.
+A filter is a dataclass; its fields are the parameters, and fields without a default are required. Filters of other
+packages are found by entry points of ``linkwright.laser_filters``; their names are the ``type`` in parameter files.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Transform
 
 Floats = NDArray[np.float32]
-Flags = NDArray[np.bool_]
+Mask = NDArray[np.bool_]
 
 Lookup = Callable[[str, str, int], "Transform | None"]
-"""The pose of a frame (the second name) in another one (the first) at a time in nanoseconds; None where unknown."""
+"""Returns the pose of the second frame in the first one at a time in nanoseconds; None if it is unknown."""
 
 
 @dataclass(slots=True, eq=False)
 class Scan:
-    """A laser scan, like sensor_msgs/msg/LaserScan.
+    """A laser scan, with arrays that filters may change.
 
     Attributes:
         ranges: shape (n,), metres; missing measurements are NaN, infinite, or outside the limits.
@@ -36,7 +36,7 @@ class Scan:
         range_min: the minimum valid range, metres.
         range_max: the maximum valid range, metres.
         time_increment: the time between successive ranges, seconds.
-        stamp_ns: the time of the first range.
+        stamp_ns: the time of the first range, nanoseconds.
         frame: the frame of the scan; x points forward, z upward.
     """
 
@@ -53,32 +53,30 @@ class Scan:
 
     @property
     def angles(self) -> NDArray[np.float64]:
-        """The angles of the rays; shape (n,), rad."""
+        """The angles of the rays, shape ``(n,)``, rad."""
         return np.asarray(self.angle_min + np.arange(len(self.ranges)) * self.angle_increment, dtype=np.float64)
 
     @property
-    def measured(self) -> Flags:
-        """Which ranges are within the limits; shape (n,)."""
+    def measured(self) -> Mask:
+        """Whether each range is within the limits, shape ``(n,)``."""
         return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
 
     def points(self, frame: str, lookup: Lookup) -> NDArray[np.float64] | None:
-        """Return the end points of the rays in a frame, shape (n, 3).
-
-        Returns None if the transform is unknown.
+        """Return the end points of the rays in a frame, shape ``(n, 3)``, metres; None if the transform is unknown.
 
         The points of ranges that were not measured are meaningless.
         """
-        reach = np.where(self.measured, self.ranges, 0.0)
+        ranges = np.where(self.measured, self.ranges, 0.0)
         angles = self.angles
-        rays = [reach * np.cos(angles), reach * np.sin(angles), np.zeros(len(reach))]
+        rays = [ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))]
         points: NDArray[np.float64] = np.stack(rays, axis=-1).astype(np.float64)
         if frame == self.frame:
             return points
         pose = lookup(frame, self.frame, self.stamp_ns)
         if pose is None:
             return None
-        turned: NDArray[np.float64] = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3], dtype=np.float64)
-        return turned
+        transformed: NDArray[np.float64] = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3], dtype=np.float64)
+        return transformed
 
 
 class ScanFilter(ABC):
@@ -86,10 +84,10 @@ class ScanFilter(ABC):
 
     @abstractmethod
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """Filter a scan, which may be changed in place; return None to drop it."""
+        """Return the filtered scan, which may be the same object; None drops the scan."""
 
 
-def clear_ranges(scan: Scan, which: Flags, value: float = float("nan")) -> Scan:
-    """Return the scan with some ranges, shape (n,), replaced."""
-    scan.ranges[which] = value
+def replace_ranges(scan: Scan, mask: Mask, value: float = float("nan")) -> Scan:
+    """Replace the ranges that a mask of shape ``(n,)`` selects, and return the scan."""
+    scan.ranges[mask] = value
     return scan

@@ -1,4 +1,4 @@
-"""Filters by the values of a scan: ranges, intensities, indices, and values of previous scans."""
+"""Filter scans by their values: ranges, intensities, indices, and values of previous scans."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.perception.scans.scan import Floats, Lookup, Scan, ScanFilter
 
 @dataclass(slots=True)
 class RangeFilter(ScanFilter):
-    """``LaserScanRangeFilter``: replaces ranges that are too small or too large."""
+    """``LaserScanRangeFilter``: replaces the ranges that are too short or too long."""
 
     lower_threshold: float = 0.0
     upper_threshold: float = 100000.0
@@ -28,15 +28,15 @@ class RangeFilter(ScanFilter):
         lower, upper = self.lower_threshold, self.upper_threshold
         if self.use_message_range_limits:
             lower, upper = scan.range_min, scan.range_max
-        near, far = scan.ranges <= lower, scan.ranges >= upper
-        scan.ranges[far] = self.upper_replacement_value
-        scan.ranges[near] = self.lower_replacement_value
+        is_near, is_far = scan.ranges <= lower, scan.ranges >= upper
+        scan.ranges[is_far] = self.upper_replacement_value
+        scan.ranges[is_near] = self.lower_replacement_value
         return scan
 
 
 @dataclass(slots=True)
 class IntensityFilter(ScanFilter):
-    """``LaserScanIntensityFilter``: removes points whose intensity is too small or too large."""
+    """``LaserScanIntensityFilter``: removes the points with an intensity outside two thresholds, or between them."""
 
     lower_threshold: float = 8000.0
     upper_threshold: float = 100000.0
@@ -47,49 +47,51 @@ class IntensityFilter(ScanFilter):
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         count = len(scan.intensities)
-        outside = (scan.intensities <= self.lower_threshold) | (scan.intensities >= self.upper_threshold)
-        taken = outside != self.invert
+        is_outside = (scan.intensities <= self.lower_threshold) | (scan.intensities >= self.upper_threshold)
+        is_selected = is_outside != self.invert
         if self.filter_override_range:
-            scan.ranges[:count][taken] = nan
+            scan.ranges[:count][is_selected] = nan
         if self.filter_override_intensity:
-            scan.intensities[taken] = 0.0
+            scan.intensities[is_selected] = 0.0
         return scan
 
 
 @dataclass(slots=True)
 class InterpolationFilter(ScanFilter):
-    """``InterpolationFilter``: fills gaps with the mean of the neighbouring ranges.
+    """``InterpolationFilter``: replaces invalid ranges by the mean of the nearest valid ranges on both sides.
 
-    A missing neighbour at an end of the scan counts as just below ``range_max``.
+    If there is no valid range on a side, a range just below ``range_max`` is used.
     """
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        far = scan.range_max - 0.01
-        valid = (scan.ranges > scan.range_min) & (scan.ranges < scan.range_max)
-        places = np.arange(len(valid))
-        before = np.maximum.accumulate(np.where(valid, places, -1))
-        after = np.minimum.accumulate(np.where(valid, places, len(valid))[::-1])[::-1]
-        left = np.where(before >= 0, scan.ranges[np.maximum(before, 0)], far)
-        right = np.where(after < len(valid), scan.ranges[np.minimum(after, len(valid) - 1)], far)
-        scan.ranges[~valid] = ((left + right) / 2.0)[~valid]
+        default_range = scan.range_max - 0.01
+        is_valid = (scan.ranges > scan.range_min) & (scan.ranges < scan.range_max)
+        indices = np.arange(len(is_valid))
+        previous_valid = np.maximum.accumulate(np.where(is_valid, indices, -1))
+        next_valid = np.minimum.accumulate(np.where(is_valid, indices, len(is_valid))[::-1])[::-1]
+        left_ranges = np.where(previous_valid >= 0, scan.ranges[np.maximum(previous_valid, 0)], default_range)
+        right_ranges = np.where(
+            next_valid < len(is_valid), scan.ranges[np.minimum(next_valid, len(is_valid) - 1)], default_range
+        )
+        scan.ranges[~is_valid] = ((left_ranges + right_ranges) / 2.0)[~is_valid]
         return scan
 
 
 @dataclass(slots=True)
 class MaskFilter(ScanFilter):
-    """``LaserScanMaskFilter``: removes the ranges at given indices, which depend on the scan's frame."""
+    """``LaserScanMaskFilter``: removes the ranges at the indices that are listed for the scan's frame."""
 
     masks: Mapping[str, Any]
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        places = [int(place) for place in self.masks.get(scan.frame, ()) if 0 <= int(place) < len(scan.ranges)]
-        scan.ranges[places] = nan
+        indices = [int(index) for index in self.masks.get(scan.frame, ()) if 0 <= int(index) < len(scan.ranges)]
+        scan.ranges[indices] = nan
         return scan
 
 
 @dataclass(slots=True)
 class ArrayFilter(ScanFilter):
-    """``LaserArrayFilter``: computes the median or mean of the last scans' ranges and intensities."""
+    """``LaserArrayFilter``: replaces ranges and intensities by their median or mean over the last scans."""
 
     range_filter_chain: Mapping[str, Any] = field(default_factory=dict)
     intensity_filter_chain: Mapping[str, Any] = field(default_factory=dict)
@@ -97,8 +99,8 @@ class ArrayFilter(ScanFilter):
     _intensities: list[_Window] = field(init=False)
 
     def __post_init__(self) -> None:
-        self._ranges = _windows(self.range_filter_chain)
-        self._intensities = _windows(self.intensity_filter_chain)
+        self._ranges = _make_windows(self.range_filter_chain)
+        self._intensities = _make_windows(self.intensity_filter_chain)
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         for window in self._ranges:
@@ -109,37 +111,39 @@ class ArrayFilter(ScanFilter):
 
 
 class _Window:
-    """A window of the last lists of numbers, and their median or mean."""
+    """The last arrays of a scan's values, and their median or mean."""
 
     def __init__(self, count: int, *, median: bool) -> None:
         self._median = median
-        self._last: deque[Floats] = deque(maxlen=count)
+        self._arrays: deque[Floats] = deque(maxlen=count)
 
     def add(self, values: Floats) -> Floats:
-        if self._last and len(self._last[0]) != len(values):
-            self._last.clear()
-        self._last.append(values.copy())
-        several = np.sort(np.stack(self._last), axis=0)  # NaN is sorted to the end.
+        if self._arrays and len(self._arrays[0]) != len(values):
+            self._arrays.clear()
+        self._arrays.append(values.copy())
+        ordered = np.sort(np.stack(self._arrays), axis=0)  # NaN is sorted to the end.
         if self._median:
             # For an even count, use the larger of the two middle values, as the package filters does.
-            chosen: Floats = several[len(several) // 2]
-            return chosen.copy()
-        return np.asarray(several.mean(axis=0), dtype=np.float32)
+            median: Floats = ordered[len(ordered) // 2]
+            return median.copy()
+        return np.asarray(ordered.mean(axis=0), dtype=np.float32)
 
 
-_OF_LISTS = ("MultiChannelMedianFilter", "MultiChannelMeanFilter")
+_ARRAY_FILTERS = ("MultiChannelMedianFilter", "MultiChannelMeanFilter")
 
 
-def _windows(chain: Mapping[str, Any]) -> list[_Window]:
+def _make_windows(chain: Mapping[str, Any]) -> list[_Window]:
     windows = []
-    for _, each in sorted(chain.items()):
-        kind = str(each.get("type", "")).rpartition("/")[2]
-        count = each.get("params", {}).get("number_of_observations", 1)
-        if not kind.startswith(_OF_LISTS) or not count >= 1:
+    for _, entry in sorted(chain.items()):
+        type_name = str(entry.get("type", "")).rpartition("/")[2]
+        count = entry.get("params", {}).get("number_of_observations", 1)
+        if not type_name.startswith(_ARRAY_FILTERS) or not count >= 1:
             message = phrase(
-                "no filter '{kind}' of lists of numbers supports {count} observations", kind=kind, count=count
+                "filter '{kind}' does not exist for arrays, or does not support {count} observations",
+                kind=type_name,
+                count=count,
             )
-            known = "filters/MultiChannelMedianFilterFloat, filters/MultiChannelMeanFilterFloat"
-            raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("choose from {known}", known=known)))
-        windows.append(_Window(int(count), median="Median" in kind))
+            names = "filters/MultiChannelMedianFilterFloat, filters/MultiChannelMeanFilterFloat"
+            raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("choose from {known}", known=names)))
+        windows.append(_Window(int(count), median="Median" in type_name))
     return windows

@@ -1,4 +1,4 @@
-"""RViz's colour transformers: which ones a cloud supports, and how they colour its points."""
+"""The colour transformers of RViz: selects those that a cloud supports, and colours its points with them."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from linkwright.rviz.clouds.points import Points
 INTENSITY, AXIS, FLAT, RGB8, RGBF32 = TRANSFORMERS = ("Intensity", "AxisColor", "FlatColor", "RGB8", "RGBF32")
 AXES = ("X", "Y", "Z")
 
-_LARGEST_INTENSITY = 999999.0
-"""The limit of RViz's computed bounds."""
+_MAX_INTENSITY = 999999.0
+"""The largest absolute intensity that RViz uses as a computed bound."""
 
 _RAINBOW_STEPS = 5 * 255
-"""Steps of the rainbow from magenta to red, along five edges of the colour cube."""
+"""The number of steps of the rainbow from magenta to red, along five edges of the colour cube."""
 
 _MIX_STEPS = 255
 
 Colours = NDArray[np.uint8]
-"""Shape (N, 4): red, green, blue, alpha. Without rows if all points have the display's one colour."""
+"""Shape (N, 4): red, green, blue, alpha. It has no rows if all points have the colour of the display."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,16 +58,16 @@ class ColourSettings:
 
 
 def supported_transformers(points: Points) -> tuple[str, ...]:
-    """Return the transformers that can colour these points, with RViz's own choice first."""
-    found = [INTENSITY, AXIS, FLAT]
+    """Return the transformers that can colour these points, with the one that RViz selects first."""
+    transformers = [INTENSITY, AXIS, FLAT]
     if packed := _packed_channel(points):
         values = points.channels[packed]
         if values.dtype.kind + str(values.dtype.itemsize) in ("i4", "u4", "f4"):
-            found.insert(0, RGB8)
+            transformers.insert(0, RGB8)
     parts = [points.channels.get(name) for name in "rgb"]
-    if all(part is not None for part in parts) and parts[0] is not None and parts[0].dtype.str[1:] == "f4":
-        found.append(RGBF32)
-    return tuple(found)
+    if all(channel is not None for channel in parts) and parts[0] is not None and parts[0].dtype.str[1:] == "f4":
+        transformers.append(RGBF32)
+    return tuple(transformers)
 
 
 def coloured(
@@ -75,8 +75,8 @@ def coloured(
 ) -> tuple[Colours, tuple[float, float] | None]:
     """Return the colours of the points, and the computed bounds, or None if none were computed.
 
-    The colours have no rows for ``FlatColor``, where all points have the display's colour. Bounds are the minimum and
-    maximum of the intensity or coordinate; they are computed unless the settings have them.
+    With ``FlatColor`` the colours have no rows, because all points have the colour of the display. Bounds are the
+    minimum and maximum of the intensity or coordinate; they are computed if the settings do not contain them.
 
     Args:
         points: the points.
@@ -89,7 +89,7 @@ def coloured(
     if settings.transformer == AXIS:
         return _colour_by_axis(points, settings, pose)
     if settings.transformer == RGB8:
-        return _unpacked(points), None
+        return _unpacked_colours(points), None
     if settings.transformer == RGBF32:
         parts = [np.clip(np.nan_to_num(points.channels[name]), 0.0, 1.0) * 255.0 for name in "rgb"]
         colours = np.full((len(points), 4), 255, np.uint8)
@@ -106,14 +106,14 @@ def _colour_by_intensity(points: Points, settings: ColourSettings) -> tuple[Colo
         return np.full((len(points), 4), 255, np.uint8), None
     computed = None
     if settings.intensities is None:
-        computed = _bounds(values, _LARGEST_INTENSITY)
-    least, largest = computed or settings.intensities or (0.0, 0.0)
-    span = largest - least or 1e20
+        computed = _bounds(values, _MAX_INTENSITY)
+    minimum, maximum = computed or settings.intensities or (0.0, 0.0)
+    span = maximum - minimum or 1e20
     if settings.rainbow:
         table = rainbow()[::-1] if not settings.inverted else rainbow()
     else:
-        table = _mixed(settings.darkest, settings.brightest)
-    return _colours_from_table(table, values, least, span), computed
+        table = _two_colour_gradient(settings.darkest, settings.brightest)
+    return _colours_from_table(table, values, minimum, span), computed
 
 
 def _colour_by_axis(
@@ -127,32 +127,32 @@ def _colour_by_axis(
     computed = None
     if settings.values is None:
         computed = _bounds(values, 9999.0)
-    least, largest = computed or settings.values or (0.0, 0.0)
-    return _colours_from_table(rainbow()[::-1], values, least, largest - least or 0.001), computed
+    minimum, maximum = computed or settings.values or (0.0, 0.0)
+    return _colours_from_table(rainbow()[::-1], values, minimum, maximum - minimum or 0.001), computed
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
-    """Return the minimum and maximum of the finite values within ±`limit`; 0 and 0 if none is finite."""
+    """Return the minimum and maximum of the finite values, clipped to ±`limit`; 0 and 0 if none is finite."""
     if values.size == 0:
         return 0.0, 0.0
-    least, largest = float(values.min()), float(values.max())
-    if not np.isfinite(least + largest):
+    minimum, maximum = float(values.min()), float(values.max())
+    if not np.isfinite(minimum + maximum):
         finite = values[np.isfinite(values)]
         if finite.size == 0:
             return 0.0, 0.0
-        least, largest = float(finite.min()), float(finite.max())
-    return max(-limit, least), min(limit, largest)
+        minimum, maximum = float(finite.min()), float(finite.max())
+    return max(-limit, minimum), min(limit, maximum)
 
 
-def _colours_from_table(table: NDArray[np.uint32], values: NDArray[Any], least: float, span: float) -> Colours:
+def _colours_from_table(table: NDArray[np.uint32], values: NDArray[Any], minimum: float, span: float) -> Colours:
     steps = len(table) - 1
     with np.errstate(all="ignore"):
-        place = values.astype(np.float32) if values.dtype != np.float32 else values
-        place = (place - np.float32(least)) * np.float32(steps / span)
-        place += np.float32(0.5)
-        np.nan_to_num(place, copy=False, nan=0.0, posinf=steps, neginf=0.0)
-    np.clip(place, 0, steps, out=place)
-    colours: Colours = table[place.astype(np.intp)].view(np.uint8).reshape(-1, 4)
+        index = values.astype(np.float32) if values.dtype != np.float32 else values
+        index = (index - np.float32(minimum)) * np.float32(steps / span)
+        index += np.float32(0.5)
+        np.nan_to_num(index, copy=False, nan=0.0, posinf=steps, neginf=0.0)
+    np.clip(index, 0, steps, out=index)
+    colours: Colours = table[index.astype(np.intp)].view(np.uint8).reshape(-1, 4)
     return colours
 
 
@@ -163,27 +163,27 @@ def rainbow() -> NDArray[np.uint32]:
     return _gradient(corners, _RAINBOW_STEPS)
 
 
-def _mixed(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
+def _two_colour_gradient(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
     return _gradient(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
 
 
 def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
-    """Return a table of packed colours, interpolated evenly between corners, opaque."""
-    places = np.linspace(0, len(corners) - 1, steps + 1)
+    """Return a table of opaque packed colours, interpolated evenly between corner colours."""
+    positions = np.linspace(0, len(corners) - 1, steps + 1)
     table = np.full((steps + 1, 4), 255, np.uint8)
-    for part in range(3):
-        table[:, part] = np.rint(np.interp(places, np.arange(len(corners)), corners[:, part]))
+    for channel in range(3):
+        table[:, channel] = np.rint(np.interp(positions, np.arange(len(corners)), corners[:, channel]))
     packed: NDArray[np.uint32] = table.view(np.uint32).ravel()
     return packed
 
 
 def _packed_channel(points: Points) -> str | None:
-    """Return ``rgb`` or ``rgba``, whichever the cloud has; the later of both, as in RViz; or None."""
+    """Return ``rgb`` or ``rgba``, whichever channel comes last in the cloud, as in RViz; None if it has neither."""
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
-def _unpacked(points: Points) -> Colours:
-    """Return the colours of the channel ``rgb`` or else ``rgba``, as red, green, blue, alpha.
+def _unpacked_colours(points: Points) -> Colours:
+    """Return the colours of the channel ``rgb``, or of ``rgba`` if there is no ``rgb``, as red, green, blue, alpha.
 
     From the lowest byte, a packed value consists of blue, green, red and alpha. The alpha of ``rgb`` is ignored.
     """

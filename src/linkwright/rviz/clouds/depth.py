@@ -13,7 +13,7 @@ from linkwright.images import DecodedImage
 from linkwright.rviz.clouds.points import BadCloudError, Points
 
 _SHADOW_DISTANCE = 0.01
-"""A point hides the one behind it when it is nearer by more than this, metres."""
+"""A point covers the point behind it if the difference of their depths is larger than this, in metres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class DepthCamera:
     Attributes:
         columns: x / z of the rays of each column, float32, shape (width,).
         rows: y / z of the rays of each row, float32, shape (height,).
-        pixel: the width of a pixel one metre away, metres.
+        pixel: the width of a pixel at a distance of one metre, in metres.
     """
 
     columns: NDArray[np.float32]
@@ -73,11 +73,11 @@ class DepthCloudBuilder:
     """
 
     def __init__(self) -> None:
-        self._hidden: _CoveredPoints | None = None
+        self._covered: _CoveredPoints | None = None
 
     def reset(self) -> None:
         """Discard the covered points, because the camera moved or restarted."""
-        self._hidden = None
+        self._covered = None
 
     def points(
         self,
@@ -94,9 +94,9 @@ class DepthCloudBuilder:
             depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
             camera: a camera of the image's size.
             colour: an image of the same size; None for white points.
-            keep_covered: seconds for which covered points stay, at half their brightness; None to discard them
-                immediately.
-            now: the current time, seconds.
+            keep_covered: seconds for which covered points remain visible, at half their brightness; None to discard
+                them immediately.
+            now: the current time, in seconds.
 
         Raises:
             BadCloudError: the image's encoding is not supported, its data is too short, or its size differs from the
@@ -114,10 +114,10 @@ class DepthCloudBuilder:
                     rows=colour.height,
                 )
             )
-        colours = np.full(metres.shape, 0x00FFFFFF, np.uint32) if colour is None else _packed(colour)
+        colours = np.full(metres.shape, 0x00FFFFFF, np.uint32) if colour is None else _packed_colours(colour)
         if keep_covered is None:
-            self._hidden = None
-            return _placed(metres, colours, valid, camera)
+            self._covered = None
+            return _points_from_depths(metres, colours, valid, camera)
         return self._with_covered(metres, colours, valid, camera, now, keep_covered)
 
     def _with_covered(
@@ -129,23 +129,23 @@ class DepthCloudBuilder:
         now: float,
         timeout: float,
     ) -> Points:
-        hidden = self._hidden
-        if hidden is None or hidden.metres.shape != metres.shape:
-            hidden = self._hidden = _CoveredPoints(
+        covered = self._covered
+        if covered is None or covered.metres.shape != metres.shape:
+            covered = self._covered = _CoveredPoints(
                 np.zeros_like(metres), np.zeros_like(colours), np.zeros(metres.shape)
             )
-        hidden.metres[hidden.seen < now - timeout] = 0.0
-        covering = valid & (metres < hidden.metres - _SHADOW_DISTANCE)
-        shown = (hidden.metres != 0.0) & (covering | ~valid)
-        behind = _placed(hidden.metres, hidden.colours, shown, camera)
-        front = _placed(metres, colours, valid, camera)
-        visible = valid & ~covering
-        hidden.metres[visible] = metres[visible]
-        hidden.colours[visible] = colours[visible] >> 1 & 0x7F7F7F
-        hidden.seen[visible] = now
+        covered.metres[covered.seen < now - timeout] = 0.0
+        is_covering = valid & (metres < covered.metres - _SHADOW_DISTANCE)
+        is_shown = (covered.metres != 0.0) & (is_covering | ~valid)
+        covered_points = _points_from_depths(covered.metres, covered.colours, is_shown, camera)
+        visible_points = _points_from_depths(metres, colours, valid, camera)
+        is_visible = valid & ~is_covering
+        covered.metres[is_visible] = metres[is_visible]
+        covered.colours[is_visible] = colours[is_visible] >> 1 & 0x7F7F7F
+        covered.seen[is_visible] = now
         return Points(
-            np.concatenate([front.positions, behind.positions]),
-            {"rgb": np.concatenate([front.channels["rgb"], behind.channels["rgb"]])},
+            np.concatenate([visible_points.positions, covered_points.positions]),
+            {"rgb": np.concatenate([visible_points.channels["rgb"], covered_points.channels["rgb"]])},
         )
 
 
@@ -158,50 +158,51 @@ class _CoveredPoints:
 
 def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """Return the depths in metres, shape (height, width), and a mask of the valid ones."""
-    kinds = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
-    kind = kinds.get(image.encoding)
-    if kind is None:
+    type_codes = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
+    type_code = type_codes.get(image.encoding)
+    if type_code is None:
         raise BadCloudError(
             phrase("Error updating depth cloud: Depth image has invalid format (only 16 bit and float are supported)!")
         )
-    kind = (">" if image.is_bigendian else "<") + kind
+    type_code = (">" if image.is_bigendian else "<") + type_code
     data = np.frombuffer(image.data, np.uint8)
-    row = image.width * int(kind[2])
+    row = image.width * int(type_code[2])
     step = image.step or row
     if step < row or data.size < step * max(0, image.height - 1) + row * (image.height > 0):
         raise BadCloudError(
             phrase(
-                "Error updating depth cloud: the depth image has {size} bytes, too few for {width} x {height}",
+                "Error updating depth cloud: the depth image has {size} bytes, which is too few for {width} x "
+                "{height} pixels",
                 size=data.size,
                 width=image.width,
                 height=image.height,
             )
         )
-    raw: NDArray[Any] = np.ndarray((image.height, image.width), kind, data.data, 0, (step, int(kind[2])))
+    raw: NDArray[Any] = np.ndarray((image.height, image.width), type_code, data.data, 0, (step, int(type_code[2])))
     metres = raw.astype(np.float32)
-    if kind[1] == "f":
+    if type_code[1] == "f":
         return metres, np.isfinite(metres)
     valid = metres != 0.0
     metres *= np.float32(0.001)
     return metres, valid
 
 
-def _packed(image: DecodedImage) -> NDArray[np.uint32]:
+def _packed_colours(image: DecodedImage) -> NDArray[np.uint32]:
     """Return the image's colours packed like an ``rgb`` channel."""
     rgb = image.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)
     return packed
 
 
-def _placed(
-    metres: NDArray[np.float32], colours: NDArray[np.uint32], where: NDArray[np.bool_], camera: DepthCamera
+def _points_from_depths(
+    metres: NDArray[np.float32], colours: NDArray[np.uint32], mask: NDArray[np.bool_], camera: DepthCamera
 ) -> Points:
-    everywhere = bool(where.all())
-    depths = metres.ravel() if everywhere else metres[where]
+    is_complete = bool(mask.all())
+    depths = metres.ravel() if is_complete else metres[mask]
     positions = np.empty((len(depths), 3), np.float32)
     with np.errstate(all="ignore"):
-        sides = (metres * camera.columns, metres * camera.rows[:, np.newaxis])
-    for axis, side in enumerate(sides):
-        positions[:, axis] = side.ravel() if everywhere else side[where]
+        coordinates = (metres * camera.columns, metres * camera.rows[:, np.newaxis])
+    for axis, coordinate in enumerate(coordinates):
+        positions[:, axis] = coordinate.ravel() if is_complete else coordinate[mask]
     positions[:, 2] = depths
-    return Points(positions, {"rgb": colours.ravel() if everywhere else colours[where]})
+    return Points(positions, {"rgb": colours.ravel() if is_complete else colours[mask]})

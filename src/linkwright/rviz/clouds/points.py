@@ -1,4 +1,4 @@
-"""The points of clouds and laser scans: coordinates and other fields.
+"""Extraction of points from clouds and laser scans: coordinates and other fields.
 
 Scans are projected in the same way as by laser_geometry.
 """
@@ -17,13 +17,13 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotate, slerp
 from linkwright.page.protocol.points import CloudPoints
 
-# the `datatype` constants of sensor_msgs/msg/PointField
-_FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+# The keys are the `datatype` constants of sensor_msgs/msg/PointField.
+_TYPE_CODES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _AXES = ("x", "y", "z")
 
 
 class BadCloudError(ValueError):
-    """Raised when a message cannot be shown as points; the text is for the status row ``Message``."""
+    """Raised if a message cannot be shown as points; its text appears in the status row ``Message``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +52,8 @@ class Points:
 def points_of_cloud(message: Any) -> Points:
     """Return the points of a PointCloud2 whose coordinates are finite.
 
-    As in RViz, the first of several fields with the same name is used, and the first value of a field with several
-    values. Fields of unknown types are ignored.
+    As in RViz, only the first of several fields with the same name is used, and only the first value of a field with
+    several values. Fields of unknown types are ignored.
 
     Raises:
         BadCloudError: the size of the data does not match the number of points, a field extends beyond the point, or
@@ -77,18 +77,20 @@ def points_of_cloud(message: Any) -> Points:
     if any(fields.get(axis, ("", 0))[0] != "f4" for axis in _AXES):
         raise BadCloudError(phrase("No position transformer available for cloud"))
     if count == 0:
-        return Points(np.empty((0, 3), np.float32), {name: np.empty(0, kind) for name, (kind, _) in fields.items()})
-    order = ">" if message.is_bigendian else "<"
-    positions = _coordinates(data, [fields[axis][1] for axis in _AXES], order, step, count)
+        return Points(
+            np.empty((0, 3), np.float32), {name: np.empty(0, field_code) for name, (field_code, _) in fields.items()}
+        )
+    byte_order = ">" if message.is_bigendian else "<"
+    positions = _coordinates(data, [fields[axis][1] for axis in _AXES], byte_order, step, count)
     valid = None
     with np.errstate(all="ignore"):
         if not np.isfinite(positions.sum(dtype=np.float64)):
             valid = np.isfinite(positions).all(axis=1)
             positions = positions[valid]
     channels: dict[str, NDArray[Any]] = {}
-    for name, (kind, offset) in fields.items():
+    for name, (type_code, offset) in fields.items():
         if name not in _AXES:
-            column = _column(data, offset, order + kind, step, count)
+            column = _column(data, offset, byte_order + type_code, step, count)
             channels[name] = column if valid is None else column[valid]
     return Points(positions, channels)
 
@@ -119,31 +121,33 @@ def points_of_legacy_cloud(message: Any) -> Points:
 
 def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
     """Return the NumPy type (such as ``f4``) and the byte offset of each field, by name."""
-    found: dict[str, tuple[str, int]] = {}
+    formats: dict[str, tuple[str, int]] = {}
     for point_field in fields:
-        kind = _FORMATS.get(point_field.datatype)
-        if kind is None or point_field.name in found:
+        type_code = _TYPE_CODES.get(point_field.datatype)
+        if type_code is None or point_field.name in formats:
             continue
-        if point_field.offset + int(kind[1]) > step:
+        if point_field.offset + int(type_code[1]) > step:
             raise BadCloudError(
                 phrase(
-                    "Field '{name}' ends at byte {end} of a point of {step} bytes",
+                    "Field '{name}' ends at byte {end}, but a point has only {step} bytes",
                     name=point_field.name,
-                    end=point_field.offset + int(kind[1]),
+                    end=point_field.offset + int(type_code[1]),
                     step=step,
                 )
             )
-        found[point_field.name] = (kind, point_field.offset)
-    return found
+        formats[point_field.name] = (type_code, point_field.offset)
+    return formats
 
 
-def _coordinates(data: NDArray[np.uint8], offsets: list[int], order: str, step: int, count: int) -> NDArray[np.float32]:
+def _coordinates(
+    data: NDArray[np.uint8], offsets: list[int], byte_order: str, step: int, count: int
+) -> NDArray[np.float32]:
     """Return a copy of the coordinates, shape (N, 3), so that the message can be freed."""
-    first = offsets[0]
-    if offsets == [first, first + 4, first + 8]:
-        view: NDArray[Any] = np.ndarray((count, 3), order + "f4", data.data, first, (step, 4))
+    first_offset = offsets[0]
+    if offsets == [first_offset, first_offset + 4, first_offset + 8]:
+        view: NDArray[Any] = np.ndarray((count, 3), byte_order + "f4", data.data, first_offset, (step, 4))
         return view.astype(np.float32)
-    columns = [_column(data, offset, order + "f4", step, count) for offset in offsets]
+    columns = [_column(data, offset, byte_order + "f4", step, count) for offset in offsets]
     return np.stack(columns, axis=1).astype(np.float32, copy=False)
 
 
@@ -152,13 +156,13 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
     return column
 
 
-def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
-    """Return every k-th point, with the smallest k for which the arrays have about `size` bytes.
+def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
+    """Return every k-th point, with the smallest k for which the arrays have about `max_bytes` bytes.
 
     At least one point is returned.
     """
-    n_bytes = cloud.positions.nbytes + cloud.colours.nbytes
-    step = -(-n_bytes // max(1, size))
+    total_bytes = cloud.positions.nbytes + cloud.colours.nbytes
+    step = -(-total_bytes // max(1, max_bytes))
     if step <= 1:
         return cloud
     return replace(cloud, positions=cloud.positions[::step], colours=cloud.colours[::step], step=step)
@@ -175,7 +179,7 @@ class ScanProjector:
         """Return the points at which rays hit an object, in the frame of the scanner.
 
         A ray is used if its range is at least `range_min` and less than `range_max`. The range of a ray without an echo
-        is infinite or NaN, so that such a ray is ignored. The channels are ``range`` and ``index``, and
+        is infinite or NaN, so such a ray is ignored. The channels are ``range`` and ``index``, and
         ``intensity`` if the scan has one value for each ray.
         """
         ranges = np.frombuffer(scan.ranges, np.float32)
@@ -191,8 +195,8 @@ class ScanProjector:
             channels["intensity"] = intensities[hits]
         channels["range"] = distances
         channels["index"] = hits.astype(np.int32)
-        finite = np.isfinite(positions.sum())
-        if finite:
+        is_finite = np.isfinite(positions.sum())
+        if is_finite:
             return Points(positions, channels)
         valid = np.isfinite(positions).all(axis=1)
         return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
@@ -208,17 +212,19 @@ class ScanProjector:
         return self._directions
 
 
-def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last: NDArray[np.float64]) -> Points:
+def swept(
+    points: Points, fractions: NDArray[Any], first: NDArray[np.float64], last_pose: NDArray[np.float64]
+) -> Points:
     """Return points measured by a moving sensor, transformed with the sensor's pose at each measurement.
 
     The result is in the frame in which the first and last poses are given.
 
     Args:
         points: points in the moving frame.
-        parts: the fraction of the motion, 0 to 1, at which each point was measured; shape (N,).
+        fractions: the fraction of the motion, from 0 to 1, after which each point was measured; shape (N,).
         first: the pose at the beginning, x y z qx qy qz qw.
-        last: the pose at the end.
+        last_pose: the pose at the end.
     """
-    turned = rotate(slerp(first[3:], last[3:], parts), points.positions)
-    moved = turned + first[:3] + parts[:, np.newaxis] * (last[:3] - first[:3])
-    return Points(moved.astype(np.float32), points.channels)
+    rotated = rotate(slerp(first[3:], last_pose[3:], fractions), points.positions)
+    positions = rotated + first[:3] + fractions[:, np.newaxis] * (last_pose[:3] - first[:3])
+    return Points(positions.astype(np.float32), points.channels)

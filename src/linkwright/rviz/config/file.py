@@ -13,8 +13,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.files.input_files import read_file
 from linkwright.files.whole_files import write_whole_file
 
-MAXIMUM_SIZE = 16 * 1024 * 1024
-"""Largest file that is read, bytes; those that RViz writes have some ten thousand."""
+MAX_SIZE = 16 * 1024 * 1024
+"""The largest file that is read, in bytes; files that RViz writes have about ten thousand bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,29 +45,29 @@ def read(path: Path) -> tuple[str, FileForm]:
         LinkwrightError: RVIZ101, the file cannot be read, is too large, or is not UTF-8.
     """
     try:
-        content = read_file(path, MAXIMUM_SIZE + 1)
+        content = read_file(path, MAX_SIZE + 1)
     except OSError as error:
-        hint = phrase("name a .rviz file after '-d'") if isinstance(error, FileNotFoundError) else None
+        hint = phrase("give the path of a .rviz file after '-d'") if isinstance(error, FileNotFoundError) else None
         message = phrase(
             "cannot read the RViz configuration '{path}': {strerror}",
             path=path,
             strerror=foreign(error.strerror or error),
         )
         raise LinkwrightError(Diagnostic("RVIZ101", message, hint=hint)) from None
-    if len(content) > MAXIMUM_SIZE:
+    if len(content) > MAX_SIZE:
         message = phrase(
             "the RViz configuration '{path}' is larger than {maximum_size} MiB",
             path=path,
-            maximum_size=MAXIMUM_SIZE // 2**20,
+            maximum_size=MAX_SIZE // 2**20,
         )
         raise LinkwrightError(Diagnostic("RVIZ101", message))
-    mark = content.startswith(codecs.BOM_UTF8)
+    has_byte_order_mark = content.startswith(codecs.BOM_UTF8)
     try:
         text = content.removeprefix(codecs.BOM_UTF8).decode("utf-8")
     except UnicodeDecodeError:
-        message = phrase("the RViz configuration '{path}' is not a text in UTF-8", path=path)
+        message = phrase("the RViz configuration '{path}' is not encoded in UTF-8", path=path)
         raise LinkwrightError(Diagnostic("RVIZ101", message)) from None
-    return text, FileForm(mark, "\r\n" if "\r\n" in text else "\n")
+    return text, FileForm(has_byte_order_mark, "\r\n" if "\r\n" in text else "\n")
 
 
 def write(path: Path, text: str, form: FileForm) -> None:
@@ -91,7 +91,7 @@ def write(path: Path, text: str, form: FileForm) -> None:
 def state_of(path: Path) -> FileState | None:
     """Return the current state of a file, or None if there is no file."""
     try:
-        facts = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return FileState(facts.st_mtime_ns, facts.st_size)
+    return FileState(status.st_mtime_ns, status.st_size)

@@ -1,4 +1,4 @@
-"""The names that RViz 1 used for classes, and for keys that have changed since.
+"""The class names of RViz 1, and its keys for properties that were renamed in RViz 2.
 
 A file of RViz 1 contains ``Class: rviz/Grid``, ``Topic: /scan`` next to ``Queue Size``, and ``Robot Description``.
 Such a file is read through these names, and edits are written under them, so that it remains a file of RViz 1.
@@ -14,24 +14,24 @@ from types import MappingProxyType
 Path = tuple[str, ...]
 
 GROUP = "rviz_common/Group"
-"""The class of a display that holds others."""
+"""The class of a display that contains other displays."""
 
-_FORMER = "rviz/"
-_PRESENT = "rviz_default_plugins/"
-_RENAMED = {"Group": GROUP, "WrenchStamped": _PRESENT + "Wrench"}
+_RVIZ1_PREFIX = "rviz/"
+_RVIZ2_PREFIX = "rviz_default_plugins/"
+_RENAMED_CLASSES = {"Group": GROUP, "WrenchStamped": _RVIZ2_PREFIX + "Wrench"}
 
 
 def is_former(cls: str) -> bool:
     """Return whether a class is named as in RViz 1."""
-    return cls.startswith(_FORMER)
+    return cls.startswith(_RVIZ1_PREFIX)
 
 
 def modern_class(cls: str) -> str:
     """Return RViz 2's class name of a display, tool or view, given its name in RViz 1 or RViz 2."""
     if not is_former(cls):
         return cls
-    name = cls.removeprefix(_FORMER)
-    return _RENAMED.get(name, _PRESENT + name)
+    name = cls.removeprefix(_RVIZ1_PREFIX)
+    return _RENAMED_CLASSES.get(name, _RVIZ2_PREFIX + name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class FormerKey:
     """The RViz 1 key for a property of RViz 2.
 
     Attributes:
-        key: the key, at the same level as the display's ``Class``.
+        key: the key of RViz 1, at the same level as the ``Class`` of the display.
         read: converts a value to its spelling in RViz 2.
         write: converts a value to its spelling in RViz 1.
     """
@@ -52,68 +52,70 @@ class FormerKey:
 def former_keys(cls: str) -> Mapping[Path, FormerKey]:
     """Return the RViz 1 keys for a class by property path; an empty mapping for a class of RViz 2."""
     if not is_former(cls):
-        return _NONE
-    return _BY_CLASS.get(cls.removeprefix(_FORMER), _TOPIC)
+        return _NO_KEYS
+    return _KEYS_BY_CLASS.get(cls.removeprefix(_RVIZ1_PREFIX), _TOPIC_KEYS)
 
 
 def _reliability(unreliable: str) -> str:
     return "Best Effort" if unreliable.strip().lower() in ("true", "1") else "Reliable"
 
 
-def _unreliable(reliability: str) -> str:
+def _unreliable_from_reliability(reliability: str) -> str:
     return "true" if reliability == "Best Effort" else "false"
 
 
-def _namespace(update_topic: str) -> str:
+def _namespace_from_update_topic(update_topic: str) -> str:
     return update_topic.removesuffix("/update")
 
 
-def _update_topic(namespace: str) -> str:
+def _update_topic_from_namespace(namespace: str) -> str:
     return f"{namespace.rstrip('/')}/update"
 
 
-def _variance(deviation: str) -> str:
+def _variance_from_deviation(deviation: str) -> str:
     try:
         return repr(float(deviation) ** 2)
     except (ValueError, OverflowError):
         return deviation
 
 
-def _deviation(variance: str) -> str:
+def _deviation_from_variance(variance: str) -> str:
     try:
         return repr(math.sqrt(float(variance)))
     except ValueError:
         return variance
 
 
-def _quality(topic: Path) -> dict[Path, FormerKey]:
+def _qos_keys(topic: Path) -> dict[Path, FormerKey]:
     return {
         (*topic, "Depth"): FormerKey("Queue Size"),
-        (*topic, "Reliability Policy"): FormerKey("Unreliable", _reliability, _unreliable),
+        (*topic, "Reliability Policy"): FormerKey("Unreliable", _reliability, _unreliable_from_reliability),
     }
 
 
-def _named(topic: str) -> dict[Path, FormerKey]:
-    return {("Topic",): FormerKey(topic), **_quality(("Topic",))}
+def _topic_keys(topic: str) -> dict[Path, FormerKey]:
+    return {("Topic",): FormerKey(topic), **_qos_keys(("Topic",))}
 
 
-_NONE: Mapping[Path, FormerKey] = MappingProxyType({})
-_TOPIC: Mapping[Path, FormerKey] = MappingProxyType(_quality(("Topic",)))
-_BY_CLASS: Mapping[str, Mapping[Path, FormerKey]] = MappingProxyType(
+_NO_KEYS: Mapping[Path, FormerKey] = MappingProxyType({})
+_TOPIC_KEYS: Mapping[Path, FormerKey] = MappingProxyType(_qos_keys(("Topic",)))
+_KEYS_BY_CLASS: Mapping[str, Mapping[Path, FormerKey]] = MappingProxyType(
     {
-        "Camera": _named("Image Topic"),
-        "DepthCloud": _NONE,
-        "Image": _named("Image Topic"),
+        "Camera": _topic_keys("Image Topic"),
+        "DepthCloud": _NO_KEYS,
+        "Image": _topic_keys("Image Topic"),
         "InteractiveMarkers": {
-            ("Interactive Markers Namespace",): FormerKey("Update Topic", _namespace, _update_topic)
+            ("Interactive Markers Namespace",): FormerKey(
+                "Update Topic", _namespace_from_update_topic, _update_topic_from_namespace
+            )
         },
-        "Marker": _named("Marker Topic"),
-        "MarkerArray": _named("Marker Topic"),
+        "Marker": _topic_keys("Marker Topic"),
+        "MarkerArray": _topic_keys("Marker Topic"),
         "RobotModel": {("Description Topic",): FormerKey("Robot Description")},
         "SetInitialPose": {
-            ("Covariance x",): FormerKey("X std deviation", _variance, _deviation),
-            ("Covariance y",): FormerKey("Y std deviation", _variance, _deviation),
-            ("Covariance yaw",): FormerKey("Theta std deviation", _variance, _deviation),
+            ("Covariance x",): FormerKey("X std deviation", _variance_from_deviation, _deviation_from_variance),
+            ("Covariance y",): FormerKey("Y std deviation", _variance_from_deviation, _deviation_from_variance),
+            ("Covariance yaw",): FormerKey("Theta std deviation", _variance_from_deviation, _deviation_from_variance),
         },
     }
 )

@@ -1,7 +1,7 @@
 """Recently used configurations, server folders, and recovery files for unsaved edits.
 
 When the program ends, the unsaved edits of each configuration are stored in a recovery file. RViz asks the user before
-its window is closed, but Ctrl-C in a terminal cannot ask.
+its window closes; a program that is stopped with Ctrl-C cannot ask.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from linkwright.rviz.config.rviz_config import RvizConfig
 
 
-ENDING = ".rviz"
+EXTENSION = ".rviz"
 
-_MOST_RECENT = 10
-_MOST_ENTRIES = 1000
+_MAX_RECENT_FILES = 10
+_MAX_ENTRIES = 1000
 
 
 def configuration_path(text: str, folder: Path) -> Path:
@@ -44,13 +44,15 @@ def configuration_path(text: str, folder: Path) -> Path:
     """
     try:
         path = Path(os.path.normpath(folder / Path(text).expanduser()))
-        ends = (path.suffix, Path(os.path.realpath(path)).suffix)
+        suffixes = (path.suffix, Path(os.path.realpath(path)).suffix)
     except (ValueError, RuntimeError, OSError):
-        ends, path = ("", ""), Path(text)
-    if "\0" in text or any(end != ENDING for end in ends):
-        hint = phrase("choose a name that ends in '{ending}'", ending=ENDING)
+        suffixes, path = ("", ""), Path(text)
+    if "\0" in text or any(suffix != EXTENSION for suffix in suffixes):
+        hint = phrase("choose a name that ends in '{ending}'", ending=EXTENSION)
         raise LinkwrightError(
-            Diagnostic("RVIZ105", phrase("'{text}' is not the name of an RViz configuration", text=text), hint=hint)
+            Diagnostic(
+                "RVIZ105", phrase(("'{text}' is not a valid file name for an RViz configuration"), text=text), hint=hint
+            )
         )
     return path
 
@@ -76,9 +78,9 @@ def list_folder(text: str | None, folder: Path) -> Folder:
                 with suppress(OSError):
                     if entry.is_dir():
                         folders.append(entry.name)
-                    elif entry.name.endswith(ENDING) and entry.is_file():
+                    elif entry.name.endswith(EXTENSION) and entry.is_file():
                         files.append(entry.name)
-    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: `~user` is not a known user
+    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: there is no user with the name in `~user`
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(
             Diagnostic(
@@ -88,14 +90,14 @@ def list_folder(text: str | None, folder: Path) -> Folder:
     parent = None if path.parent == path else str(path.parent)
     from linkwright.page.protocol.configuration import Folder  # imported late: page tokens use only the folder
 
-    return Folder(str(path), parent, sorted(folders)[:_MOST_ENTRIES], sorted(files)[:_MOST_ENTRIES])
+    return Folder(str(path), parent, sorted(folders)[:_MAX_ENTRIES], sorted(files)[:_MAX_ENTRIES])
 
 
 class RecentFiles:
     """The most recently opened or saved files, stored for the next start of the program.
 
     Args:
-        store: the file in which their paths are stored; by default one in the user's state folder.
+        store: the file for the paths; by default a file in the user's state folder.
     """
 
     def __init__(self, store: Path | None = None) -> None:
@@ -112,7 +114,7 @@ class RecentFiles:
     def add(self, path: Path) -> None:
         """Put a file at the top of the list, and store the list; a failure to store it is ignored."""
         name = str(path)
-        self._write([name, *(other for other in self._read() if other != name)][:_MOST_RECENT])
+        self._write([name, *(other for other in self._read() if other != name)][:_MAX_RECENT_FILES])
 
     def remove(self, path: Path) -> None:
         """Remove a file that no longer exists from the list, if the list contains it."""
@@ -130,14 +132,14 @@ class RecentFiles:
         with suppress(OSError, ValueError, RecursionError):
             paths = json.loads(self._store.read_text(encoding="utf-8"))
             if isinstance(paths, list):
-                return [path for path in paths if isinstance(path, str)][:_MOST_RECENT]
+                return [path for path in paths if isinstance(path, str)][:_MAX_RECENT_FILES]
         return []
 
 
 _UNNAMED = "untitled"
-_UNFIT = re.compile(r"[^\w. -]+|^\.+")
-_LONGEST_NAME = 56
-"""Characters, of which a file system may count four bytes each."""
+_UNSAFE_CHARACTERS = re.compile(r"[^\w. -]+|^\.+")
+_MAX_NAME_LENGTH = 56
+"""The limit in characters, each of which can need four bytes in the file system."""
 _RECOVERY_HINT = phrase("open that file in the page, or with 'rviz2 -d'")
 
 
@@ -153,29 +155,29 @@ def recovery_file(config: RvizConfig) -> Path:
     """
     folder = recovery_folder()
     if config.path is not None:
-        path = _absolute(config.path)
-        return folder / path.name if path.parent == _absolute(folder) else folder / _recovery_file_name(str(path))
+        path = _real_path(config.path)
+        return folder / path.name if path.parent == _real_path(folder) else folder / _recovery_file_name(str(path))
     name = config.document.source.name
     return folder / (
-        f"{_UNNAMED}{ENDING}" if name.startswith("<") else _recovery_file_name(name)
-    )  # such as "<default>"
+        f"{_UNNAMED}{EXTENSION}" if name.startswith("<") else _recovery_file_name(name)
+    )  # a name such as "<default>"
 
 
-def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
+def store_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
     """Write the configurations that have unsaved edits to recovery files.
 
     Returns:
-        For each of them, a finding with the location of the file (RVIZ301) or with the reason why it cannot be written
-        (RVIZ104).
+        For each of these configurations, a finding with the path of its recovery file (RVIZ301), or with the reason
+        why the file cannot be written (RVIZ104).
     """
     diagnostics: list[Diagnostic] = []
-    taken: set[Path] = set()
+    used_paths: set[Path] = set()
     for config in configs:
         text = config.text()
         if _is_saved(config, text):
             continue
-        path = _free(recovery_file(config), taken)
-        taken.add(path)
+        path = _unused_path(recovery_file(config), used_paths)
+        used_paths.add(path)
         with suppress(OSError):  # the write below reports the error
             path.parent.mkdir(parents=True, exist_ok=True)
         try:
@@ -191,7 +193,7 @@ def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
 def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     """Report a recovery file that an earlier run of the program stored for this file (RVIZ302)."""
     path = recovery_file(config)
-    if config.path is None or _absolute(config.path) == _absolute(path) or not path.is_file():
+    if config.path is None or _real_path(config.path) == _real_path(path) or not path.is_file():
         return []
     message = phrase(
         "earlier unsaved changes of '{path}' are in '{kept}': {how}",
@@ -202,20 +204,20 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     return [Diagnostic("RVIZ302", message, severity=Severity.INFO)]
 
 
-def remove_recovery_files(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
+def remove_recovery_files(previous_path: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
     """Remove the recovery files of a configuration that has just been saved.
 
     Args:
-        former: the file that the configuration had before, or None. It is also removed if it is a recovery file,
+        previous_path: the previous file of the configuration, or None. It is also removed if it is a recovery file,
             because the configuration has been saved elsewhere.
         config: the configuration, whose path is the file that it was saved to.
         recent: the list from which removed files are dropped.
     """
-    done = {recovery_file(config)}
-    if former is not None and _absolute(former).parent == _absolute(recovery_folder()):
-        done.add(_absolute(former))
-    for path in done:
-        if config.path is None or _absolute(path) == _absolute(config.path):
+    recovery_files = {recovery_file(config)}
+    if previous_path is not None and _real_path(previous_path).parent == _real_path(recovery_folder()):
+        recovery_files.add(_real_path(previous_path))
+    for path in recovery_files:
+        if config.path is None or _real_path(path) == _real_path(config.path):
             continue
         with suppress(OSError):
             path.unlink()
@@ -223,7 +225,7 @@ def remove_recovery_files(former: Path | None, config: RvizConfig, recent: Recen
 
 
 def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
-    if config.path is None or _absolute(config.path) == _absolute(path):
+    if config.path is None or _real_path(config.path) == _real_path(path):
         message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_RECOVERY_HINT)
     else:
         message = phrase(
@@ -236,7 +238,7 @@ def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
 
 
 def _is_saved(config: RvizConfig, text: str) -> bool:
-    """Return whether the configuration's file already contains this text, so that nothing is unsaved."""
+    """Return whether the file of the configuration already contains this text."""
     if config.path is None:
         return False
     try:
@@ -246,20 +248,20 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
 
 
 def _recovery_file_name(name: str) -> str:
-    """Return a safe recovery file name for a configuration name, which a page may have chosen."""
-    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # files of the same name in different folders
-    stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
-    return f"{stem or _UNNAMED}-{mark}{ENDING}"
+    """Return a safe name of the recovery file for the name of a configuration, which may come from a page."""
+    digest = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes files with equal names
+    stem = _UNSAFE_CHARACTERS.sub("_", Path(name).stem)[:_MAX_NAME_LENGTH]
+    return f"{stem or _UNNAMED}-{digest}{EXTENSION}"
 
 
-def _free(path: Path, taken: set[Path]) -> Path:
-    """Return the path, or a numbered one next to it if another page's copy has already taken it."""
-    number, found = 1, path
-    while found in taken:
+def _unused_path(path: Path, used_paths: set[Path]) -> Path:
+    """Return the path, or a numbered path next to it if another page's copy already uses it."""
+    number, candidate = 1, path
+    while candidate in used_paths:
         number += 1
-        found = path.with_name(f"{path.stem}-{number}{ENDING}")
-    return found
+        candidate = path.with_name(f"{path.stem}-{number}{EXTENSION}")
+    return candidate
 
 
-def _absolute(path: Path) -> Path:
+def _real_path(path: Path) -> Path:
     return Path(os.path.realpath(path))

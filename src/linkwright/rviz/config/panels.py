@@ -2,12 +2,12 @@
 
 RViz stores the open panels in three places. ``Panels`` lists the existing panels. The window state records which of
 them the user closed. ``Window Geometry`` marks panels as ``collapsed`` if a whole side of the window was hidden. RViz
-uses that mark only while ``Hide Left Dock`` or ``Hide Right Dock`` is on; otherwise it shows those panels again.
+uses that mark only while ``Hide Left Dock`` or ``Hide Right Dock`` is on; when both are off, it shows these panels.
 
 The window state is the output of Qt's ``QMainWindow::saveState``. For each dock it contains the byte 0xfb, the dock's
 name (its length in bytes as four bytes, then UTF-16, both big endian) and a byte of flags: 1 shown, 2 floating. If a
 name occurs several times, the first occurrence is the dock, and the others are its former positions. RViz stores the
-window state as hexadecimal digits. All other bytes remain unchanged.
+window state as hexadecimal digits. This module changes only the flags.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.former_names import is_former
 from linkwright.rviz.config.yaml_tree import Section, entries, insert_section, new_section, remove_section
 
-_DOCK = b"\xfb"
-_SHOWN = 1
-_TIME = ("rviz_common/Time", "rviz/Time")
+_DOCK_MARK = b"\xfb"
+_SHOWN_FLAG = 1
+_TIME_CLASSES = ("rviz_common/Time", "rviz/Time")
 _MODES: tuple[SyncMode, ...] = ("Off", "Exact", "Approximate")
 
 _PANELS = "Panels"
-_GEOMETRY = "Window Geometry"
-_STATE = (_GEOMETRY, "QMainWindow State")
-_HIDDEN_SIDES = ((_GEOMETRY, "Hide Left Dock"), (_GEOMETRY, "Hide Right Dock"))
+_WINDOW_GEOMETRY = "Window Geometry"
+_WINDOW_STATE = (_WINDOW_GEOMETRY, "QMainWindow State")
+_HIDE_DOCK_PATHS = ((_WINDOW_GEOMETRY, "Hide Left Dock"), (_WINDOW_GEOMETRY, "Hide Right Dock"))
 
-_NAMES: Mapping[PanelName, str] = MappingProxyType(
+_PANEL_TITLES: Mapping[PanelName, str] = MappingProxyType(
     {
         "displays": "Displays",
         "selection": "Selection",
@@ -43,42 +43,52 @@ _NAMES: Mapping[PanelName, str] = MappingProxyType(
         "navigation": "Navigation 2",
     }
 )
-_PRESENT, _FORMER = "rviz_common/", "rviz/"
-_OF_NAV2 = "nav2_rviz_plugins/Navigation 2"
-_CLASSES: Mapping[str, PanelName] = MappingProxyType(
-    {prefix + name: panel for panel, name in _NAMES.items() for prefix in (_PRESENT, _FORMER) if panel != "navigation"}
-    | {_OF_NAV2: "navigation"}
+_RVIZ2_PREFIX, _RVIZ1_PREFIX = "rviz_common/", "rviz/"
+_NAV2_CLASS = "nav2_rviz_plugins/Navigation 2"
+_PANEL_BY_CLASS: Mapping[str, PanelName] = MappingProxyType(
+    {
+        prefix + name: panel
+        for panel, name in _PANEL_TITLES.items()
+        for prefix in (_RVIZ2_PREFIX, _RVIZ1_PREFIX)
+        if panel != "navigation"
+    }
+    | {_NAV2_CLASS: "navigation"}
 )
-_NOT_OF_RVIZ_1 = frozenset({"transformation", "navigation"})
+_MISSING_IN_RVIZ1 = frozenset({"transformation", "navigation"})
 
 
 class PanelsConfig:
     """The ``Panels`` list of a file, and the visibility of the panels in its ``Window Geometry``.
 
-    Panels of classes that the page does not have stay unchanged.
+    Entries of panels that the page does not have stay unchanged.
 
     Args:
         document: the file.
-        report: called with a finding about the panels that cannot be shown (RVIZ204).
+        report: called with a finding about panels that the page does not have (RVIZ204).
     """
 
     def __init__(self, document: Section, report: Callable[[Diagnostic], None]) -> None:
         self._document = document
-        self._order = list(document.sections(_PANELS))
-        self._added: list[Section] = []
-        others = [section for section in self._order if section.scalar("Class") and _panel(section) is None]
-        if others:
-            names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in others)
-            message = phrase("panels that the page does not have are kept in the file: {names}", names=names)
-            report(Diagnostic("RVIZ204", message, others[0].span(), Severity.WARNING, source=document.source))
+        self._known_sections = list(document.sections(_PANELS))
+        self._added_sections: list[Section] = []
+        unknown_sections = [
+            section for section in self._known_sections if section.scalar("Class") and _panel_of(section) is None
+        ]
+        if unknown_sections:
+            names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in unknown_sections)
+            message = phrase(
+                ("these panels are not shown, because the page does not have them, but stay in the file: {names}"),
+                names=names,
+            )
+            report(Diagnostic("RVIZ204", message, unknown_sections[0].span(), Severity.WARNING, source=document.source))
 
     @property
     def shown(self) -> list[PanelName] | None:
         """The panels that RViz would show, in the order of the file; None if the file has no ``Panels``."""
         if entries(self._document, _PANELS) is None:
             return None
-        found = (_panel(section) for section in self._listed() if self._is_shown(section))
-        return list(dict.fromkeys(panel for panel in found if panel is not None))
+        panels = (_panel_of(section) for section in self._loaded_sections() if self._is_shown(section))
+        return list(dict.fromkeys(panel for panel in panels if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
         """Open these panels and close all others in the file, and return whether that changed the file.
@@ -87,33 +97,33 @@ class PanelsConfig:
         is removed, as with RViz's *Delete Panel*, if the file has no such state or if the entry was added by
         this program. When the panel is opened again, a removed entry is restored to its position.
         """
-        before = self.shown
-        for panel in _NAMES:
+        previous_panels = self.shown
+        for panel in _PANEL_TITLES:
             if panel in panels:
                 self._open(panel)
             else:
                 self._close(panel)
-        return self.shown != before
+        return self.shown != previous_panels
 
     def _open(self, panel: PanelName) -> None:
-        listed = [section for section in self._listed() if _panel(section) == panel]
-        if any(map(self._is_shown, listed)):
+        sections = [section for section in self._loaded_sections() if _panel_of(section) == panel]
+        if any(map(self._is_shown, sections)):
             return
-        section = listed[0] if listed else self._add(panel)
+        section = sections[0] if sections else self._add(panel)
         if section is not None:
-            self._set_shown(section, shown=True)
+            self._set_shown(section, is_visible=True)
 
     def _close(self, panel: PanelName) -> None:
-        for section in list(self._listed()):
-            if _panel(section) != panel or not self._is_shown(section):
+        for section in list(self._loaded_sections()):
+            if _panel_of(section) != panel or not self._is_shown(section):
                 continue
-            if section not in self._added:
-                self._set_shown(section, shown=False)
+            if section not in self._added_sections:
+                self._set_shown(section, is_visible=False)
             if self._is_shown(section):
                 remove_section(self._document, _PANELS, section)
 
-    def _listed(self) -> list[Section]:
-        """Return the entries that RViz loads; RViz skips those without a class or a name."""
+    def _loaded_sections(self) -> list[Section]:
+        """Return the entries that RViz loads, which are the entries with a class and a name."""
         return [
             section
             for section in self._document.sections(_PANELS)
@@ -122,46 +132,62 @@ class PanelsConfig:
 
     def _is_shown(self, section: Section) -> bool:
         name = section.text("Name") or ""
-        if self._is_on(_GEOMETRY, name, "collapsed"):
-            return not any(self._is_on(*path) for path in _HIDDEN_SIDES)
-        return is_shown(self._document.text(*_STATE) or "", name) is not False
+        if self._is_true(_WINDOW_GEOMETRY, name, "collapsed"):
+            return not any(self._is_true(*path) for path in _HIDE_DOCK_PATHS)
+        return is_shown(self._document.text(*_WINDOW_STATE) or "", name) is not False
 
-    def _set_shown(self, section: Section, *, shown: bool) -> None:
+    def _set_shown(self, section: Section, *, is_visible: bool) -> None:
         """Mark a panel as shown or hidden in the window state, if there is one, and as not collapsed."""
         name = section.text("Name") or ""
-        state = self._document.text(*_STATE) or ""
-        if is_shown(state, name) not in (None, shown):
-            self._document.put(_STATE, set_dock_shown(state, name, shown=shown))
-        if self._is_on(_GEOMETRY, name, "collapsed"):
-            self._document.put((_GEOMETRY, name, "collapsed"), "false")
+        state = self._document.text(*_WINDOW_STATE) or ""
+        if is_shown(state, name) not in (None, is_visible):
+            self._document.put(_WINDOW_STATE, set_dock_shown(state, name, is_visible=is_visible))
+        if self._is_true(_WINDOW_GEOMETRY, name, "collapsed"):
+            self._document.put((_WINDOW_GEOMETRY, name, "collapsed"), "false")
 
     def _add(self, panel: PanelName) -> Section | None:
-        """Insert an entry for a panel and return it; None if this panel does not exist in the file's RViz.
+        """Insert an entry for a panel and return it; None if the RViz version of the file does not have this panel.
 
         An entry that was removed before is restored to its position.
         """
-        there = list(self._document.sections(_PANELS))
-        gone = next((section for section in self._order if _panel(section) == panel and section not in there), None)
-        if gone is None:
-            former = any(is_former(section.text("Class") or "") for section in self._order)
-            if former and panel in _NOT_OF_RVIZ_1:
+        present_sections = list(self._document.sections(_PANELS))
+        panel_section = next(
+            (
+                section
+                for section in self._known_sections
+                if _panel_of(section) == panel and section not in present_sections
+            ),
+            None,
+        )
+        if panel_section is None:
+            is_rviz1_file = any(is_former(section.text("Class") or "") for section in self._known_sections)
+            if is_rviz1_file and panel in _MISSING_IN_RVIZ1:
                 return None
-            gone = new_section(self._document.source)
-            own = _OF_NAV2 if panel == "navigation" else (_FORMER if former else _PRESENT) + _NAMES[panel]
-            gone.put(("Class",), own, string=True)
-            gone.put(("Name",), _NAMES[panel], string=True)
-            self._order.append(gone)
-            self._added.append(gone)
-        after = self._order[self._order.index(gone) + 1 :]
-        insert_section(self._document, _PANELS, gone, next((section for section in after if section in there), None))
-        return gone
+            panel_section = new_section(self._document.source)
+            class_name = (
+                _NAV2_CLASS
+                if panel == "navigation"
+                else (_RVIZ1_PREFIX if is_rviz1_file else _RVIZ2_PREFIX) + _PANEL_TITLES[panel]
+            )
+            panel_section.put(("Class",), class_name, string=True)
+            panel_section.put(("Name",), _PANEL_TITLES[panel], string=True)
+            self._known_sections.append(panel_section)
+            self._added_sections.append(panel_section)
+        later_sections = self._known_sections[self._known_sections.index(panel_section) + 1 :]
+        insert_section(
+            self._document,
+            _PANELS,
+            panel_section,
+            next((section for section in later_sections if section in present_sections), None),
+        )
+        return panel_section
 
-    def _is_on(self, *path: str) -> bool:
+    def _is_true(self, *path: str) -> bool:
         return (self._document.text(*path) or "").strip().lower() == "true"
 
 
-def _panel(section: Section) -> PanelName | None:
-    return _CLASSES.get(section.text("Class") or "")
+def _panel_of(section: Section) -> PanelName | None:
+    return _PANEL_BY_CLASS.get(section.text("Class") or "")
 
 
 def is_shown(state: str, name: str) -> bool | None:
@@ -171,36 +197,37 @@ def is_shown(state: str, name: str) -> bool | None:
         state: the window state as hexadecimal digits.
         name: the name of the dock, which is also the name of its panel.
     """
-    content = _bytes(state)
-    at = _flags(content, name)
-    return None if at is None else bool(content[at] & _SHOWN)
+    content = _decode_state(state)
+    flags_index = _find_flags(content, name)
+    return None if flags_index is None else bool(content[flags_index] & _SHOWN_FLAG)
 
 
-def set_dock_shown(state: str, name: str, *, shown: bool) -> str:
+def set_dock_shown(state: str, name: str, *, is_visible: bool) -> str:
     """Return the window state with a dock shown or hidden; unchanged if it has no such dock."""
-    content = _bytes(state)
-    at = _flags(content, name)
-    if at is None or bool(content[at] & _SHOWN) is shown:
+    content = _decode_state(state)
+    flags_index = _find_flags(content, name)
+    if flags_index is None or bool(content[flags_index] & _SHOWN_FLAG) is is_visible:
         return state
-    # Change only these digits, to preserve the case of the others.
-    return f"{state[: 2 * at]}{content[at] ^ _SHOWN:02x}{state[2 * at + 2 :]}"
+    # Replace only these two digits, to preserve the case of the other digits.
+    return f"{state[: 2 * flags_index]}{content[flags_index] ^ _SHOWN_FLAG:02x}{state[2 * flags_index + 2 :]}"
 
 
-def _bytes(state: str) -> bytes:
+def _decode_state(state: str) -> bytes:
     """Decode hexadecimal digits to bytes; return empty bytes for any other text."""
     try:
         content = bytes.fromhex(state)
     except ValueError:
         return b""
-    return content if 2 * len(content) == len(state) else b""  # `fromhex` skips spaces
+    return content if 2 * len(content) == len(state) else b""  # the length differs if the text has spaces, which
+    # `fromhex` skips
 
 
-def _flags(content: bytes, name: str) -> int | None:
+def _find_flags(content: bytes, name: str) -> int | None:
     """Return the index of the byte with a dock's flags, or None if there is no such dock."""
     text = name.encode("utf-16-be", "surrogatepass")
-    mark = _DOCK + len(text).to_bytes(4, "big") + text
-    at = content.find(mark) + len(mark)
-    return at if len(mark) <= at < len(content) else None
+    dock_header = _DOCK_MARK + len(text).to_bytes(4, "big") + text
+    flags_index = content.find(dock_header) + len(dock_header)
+    return flags_index if len(dock_header) <= flags_index < len(content) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,15 +241,15 @@ class Synchronization:
 def read_synchronization(document: Section) -> Synchronization:
     """Return the synchronization settings of the Time panel, or the defaults if RViz would ignore them.
 
-    RViz uses them only if ``Experimental`` is on, except RViz 1 up to Noetic, which does not write that key.
+    RViz uses them only if ``Experimental`` is on. RViz 1 up to Noetic always uses them and does not write that key.
     """
     panel = _time_panel(document)
     if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
         return Synchronization()
-    number = _text(panel, "SyncMode")
-    if number not in ("1", "2"):
+    mode_number = _text(panel, "SyncMode")
+    if mode_number not in ("1", "2"):
         return Synchronization()
-    return Synchronization(_MODES[int(number)], _text(panel, "SyncSource"))
+    return Synchronization(_MODES[int(mode_number)], _text(panel, "SyncSource"))
 
 
 def write_synchronization(document: Section, synchronization: Synchronization) -> bool:
@@ -244,7 +271,7 @@ def _is_always_on(panel: Section) -> bool:
 
 def _time_panel(document: Section) -> Section | None:
     for panel in document.sections(_PANELS):
-        if _text(panel, "Class") in _TIME:
+        if _text(panel, "Class") in _TIME_CLASSES:
             return panel
     return None
 

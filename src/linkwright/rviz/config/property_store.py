@@ -12,8 +12,8 @@ from linkwright.rviz.config.former_names import FormerKey
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, fallback_value, from_text, to_text
 from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, remove_unchanged
 
-_MANY = 30
-"""From so many properties beside each other on, an index finds them by name."""
+_MIN_INDEXED_PROPERTIES = 30
+"""The number of sibling properties from which they are found with an index by name."""
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
@@ -25,12 +25,12 @@ def property_id(owner: str, path: Iterable[str]) -> str:
 
 
 class PropertyStore:
-    """Property values by path of names: a value that was set, or else the file's, or else the default.
+    """Property values by path of names: the value that was set, the value in the file, or the default.
 
     Args:
         owner: the display's ID, or ``global``.
         section: the file, or the display's section of it; values that are set are written to it immediately.
-        schema: returns the current specs, which change for displays whose rows appear and disappear.
+        schema: returns the current specs, which change if the rows of the display appear and disappear.
         report: called with a finding about a value in the file that cannot be used; the default is used instead.
         base: the keys from the section to the mapping with the values, which is created only when a value is set.
         frames: returns the frame names that properties of kind ``frame`` offer.
@@ -49,13 +49,13 @@ class PropertyStore:
     ) -> None:
         self._owner = owner
         self._section = section
-        self._schema = schema
-        self._many: tuple[Schema, dict[str, PropertySpec]] = ((), {})
+        self._get_schema = schema
+        self._index: tuple[Schema, dict[str, PropertySpec]] = ((), {})
         self._report = report
         self._base = base
-        self._frames = frames
-        self._former = former or {}
-        self._recorded: list[Memory] | None = None
+        self._get_frames = frames
+        self._former_keys = former or {}
+        self._recorded_memories: list[Memory] | None = None
         self._new_sections: list[NewSection] = []
         self._values: dict[Path, PropertyValue] = {}
 
@@ -93,14 +93,14 @@ class PropertyStore:
             ValueError: when the property does not accept the value.
         """
         spec = self._spec(path)
-        taken = accept(spec, value)
-        if taken != self._value(path, spec):
-            self._values[path] = taken
-            self._write(path, spec, to_text(spec, taken))
-        return taken
+        accepted_value = accept(spec, value)
+        if accepted_value != self._value(path, spec):
+            self._values[path] = accepted_value
+            self._write(path, spec, to_text(spec, accepted_value))
+        return accepted_value
 
     def set_read_only(self, path: Path, value: PropertyValue) -> bool:
-        """Set a value without storing it in the file, such as that of a read-only property.
+        """Set a value without storing it in the file, such as the value of a read-only property.
 
         Return whether the value changed.
 
@@ -115,33 +115,35 @@ class PropertyStore:
 
     @contextmanager
     def recording(self) -> Iterator[list[Memory]]:
-        """Collect, for `recall`, the former entries of the keys that are set inside the block."""
+        """Collect the previous entries of the keys that are set inside the block, for `recall`."""
         memories: list[Memory] = []
-        self._recorded = memories
+        self._recorded_memories = memories
         try:
             yield memories
         finally:
-            self._recorded = None
+            self._recorded_memories = None
 
-    def memories(self, of: Iterable[Memory]) -> list[Memory]:
-        """Return the current entries of the keys of other memories, for `recall`."""
-        return [self._place().memory(memory.key) for memory in of]
+    def memories(self, memories: Iterable[Memory]) -> list[Memory]:
+        """Return the current entries of the keys that the given memories refer to, for `recall`."""
+        return [self._place().memory(memory.key) for memory in memories]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
-        """Restore former entries of the file, and return the paths of the properties that changed."""
+        """Restore previous entries of the file, and return the paths of the properties whose values changed."""
         keys = {memory.key for memory in memories}
-        place = self._place()
+        section = self._place()
         for memory in memories:
-            place.recall(memory)
+            section.recall(memory)
         self._new_sections = remove_unchanged(self._new_sections)
-        old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_stored(path)}
-        for path in old:
+        previous_values = {
+            path: value for path, value in self._values.items() if self._key(path) in keys and self._is_stored(path)
+        }
+        for path in previous_values:
             del self._values[path]
-        return [path for path, value in old.items() if self.get(*path) != value]
+        return [path for path, value in previous_values.items() if self.get(*path) != value]
 
     def find(self, identity: str) -> Path | None:
         """Return the path of the property with an ID, or None if there is no such property."""
-        specs = self._schema()
+        specs = self._get_schema()
         owner, *names = identity.split("/")
         path = tuple(name.replace("%2F", "/").replace("%25", "%") for name in names)
         if owner != self._owner or not path:
@@ -158,44 +160,44 @@ class PropertyStore:
         return property_id(self._owner, path)
 
     def rows(self) -> list[Property]:
-        """Return the rows that the page shows: the properties that are not hidden and whose conditions hold."""
-        return [self._row(spec, ()) for spec in self._schema() if self._shown(spec)]
+        """Return the rows that the page shows: properties that are not hidden and meet their conditions."""
+        return [self._row(spec, ()) for spec in self._get_schema() if self._is_shown(spec)]
 
     def is_condition(self, path: Path) -> bool:
-        """Return whether the value at a path decides which other rows are shown."""
-        return any(_depends_on(spec, path) for spec in self._schema())
+        """Return whether other rows are shown or hidden depending on the value at a path."""
+        return any(_depends_on(spec, path) for spec in self._get_schema())
 
     def frame_changes(self) -> list[PropertyChanged]:
         """Return a change message for each ``frame`` property, with the frame names that it offers now."""
         return [
-            PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._frames())
-            for spec in self._schema()
+            PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._get_frames())
+            for spec in self._get_schema()
             if spec.kind == "frame"
         ]
 
     def offer_frames(self, frames: Callable[[], list[str]]) -> None:
         """Set the function that returns the frame names offered for properties of kind ``frame``."""
-        self._frames = frames
+        self._get_frames = frames
 
-    def _row(self, spec: PropertySpec, above: Path) -> Property:
-        path = (*above, spec.name)
+    def _row(self, spec: PropertySpec, parent_path: Path) -> Property:
+        path = (*parent_path, spec.name)
         return Property(
             id=property_id(self._owner, path),
             name=spec.name,
             kind=spec.kind,
             value=None if spec.kind == "group" else self._value(path, spec),
             description=spec.description,
-            options=self._frames() if spec.kind == "frame" else list(spec.options),
+            options=self._get_frames() if spec.kind == "frame" else list(spec.options),
             minimum=spec.minimum,
             maximum=spec.maximum,
             read_only=spec.read_only,
             expanded=spec.expanded,
-            children=[self._row(child, path) for child in spec.children if self._shown(child)],
+            children=[self._row(child, path) for child in spec.children if self._is_shown(child)],
             details=spec.details,
             topics=TopicOffer(list(spec.messages), list(spec.words)) if spec.messages else None,
         )
 
-    def _shown(self, spec: PropertySpec) -> bool:
+    def _is_shown(self, spec: PropertySpec) -> bool:
         return not spec.hidden and self._condition_holds(spec)
 
     def _condition_holds(self, spec: PropertySpec) -> bool:
@@ -208,10 +210,10 @@ class PropertyStore:
         try:
             return self._values[path]
         except KeyError:
-            value = self._values[path] = self._from_file(path, spec)
+            value = self._values[path] = self._read_value(path, spec)
             return value
 
-    def _from_file(self, path: Path, spec: PropertySpec) -> PropertyValue:
+    def _read_value(self, path: Path, spec: PropertySpec) -> PropertyValue:
         scalar = None if spec.read_only else self._scalar(path)
         if scalar is None or spec.kind == "group":
             return spec.default
@@ -221,93 +223,98 @@ class PropertyStore:
             return from_text(spec, scalar.text)
         except ValueError as error:
             value = fallback_value(spec)
-            message = phrase("'{name}': {error}; {value} is used", name=spec.name, error=error, value=repr(value))
+            message = phrase(
+                ("'{name}': {error}; {value} is used instead"), name=spec.name, error=error, value=repr(value)
+            )
             self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
             return value
 
     def _scalar(self, path: Path) -> Scalar | None:
         scalar = self._section.scalar(*self._base, *path)
-        former = self._former.get(path)
-        if scalar is None and former is not None:
-            scalar = self._section.scalar(*self._base, former.key)
-            return scalar and Scalar(former.read(scalar.text), scalar.span)
+        former_key = self._former_keys.get(path)
+        if scalar is None and former_key is not None:
+            scalar = self._section.scalar(*self._base, former_key.key)
+            return scalar and Scalar(former_key.read(scalar.text), scalar.span)
         return scalar
 
     def _write(self, path: Path, spec: PropertySpec, text: str) -> None:
-        former = self._former_key(path)
-        string = spec.kind in ("string", "frame", "enum", "color", "topic")
-        nested = spec.nested or bool(spec.children)
-        if former is not None:
-            path, text, nested = (former.key,), former.write(text), False
-            string = string and text not in ("true", "false")  # `Unreliable` is a boolean in RViz 1, a policy in RViz 2
-        if self._recorded is not None and path[0] not in (memory.key for memory in self._recorded):
-            self._recorded.append(self._place().memory(path[0]))
-        self._place().put(path, text, string=string, nested=nested)
+        former_key = self._former_key(path)
+        is_string = spec.kind in ("string", "frame", "enum", "color", "topic")
+        is_nested = spec.nested or bool(spec.children)
+        if former_key is not None:
+            path, text, is_nested = (former_key.key,), former_key.write(text), False
+            is_string = is_string and text not in (
+                "true",
+                "false",
+            )  # `Unreliable` is a boolean in RViz 1, a policy in RViz 2
+        if self._recorded_memories is not None and path[0] not in (memory.key for memory in self._recorded_memories):
+            self._recorded_memories.append(self._place().memory(path[0]))
+        self._place().put(path, text, string=is_string, nested=is_nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
         """Return the RViz 1 key of a property, or None if it has none or the file has the current key."""
-        return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
+        return self._former_keys.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
-        """Return the mapping with the values, created if it is missing."""
-        place, made = make_section(self._section, *self._base)
-        self._new_sections += made
-        return place
+        """Return the mapping with the values; create it if it is missing."""
+        section, new_sections = make_section(self._section, *self._base)
+        self._new_sections += new_sections
+        return section
 
     def _key(self, path: Path) -> str:
-        former = self._former_key(path)
-        return former.key if former else path[0]
+        former_key = self._former_key(path)
+        return former_key.key if former_key else path[0]
 
     def _is_stored(self, path: Path) -> bool:
-        """Return whether the schema has the property and the file stores it, unlike a read-only one."""
+        """Return whether the schema has the property and the property is not read-only."""
         try:
             return not self._spec(path).read_only
         except KeyError:
             return False
 
-    def _named(self, specs: Schema, name: str) -> PropertySpec | None:
-        """Return the first property with a name, or None; long lists, such as a robot's links, are indexed."""
-        if len(specs) < _MANY:
+    def _find_spec(self, specs: Schema, name: str) -> PropertySpec | None:
+        """Return the first property with a name, or None; use an index for long lists."""
+        if len(specs) < _MIN_INDEXED_PROPERTIES:
             return next((spec for spec in specs if spec.name == name), None)
-        if self._many[0] is not specs:
-            self._many = specs, {spec.name: spec for spec in reversed(specs)}
-        return self._many[1].get(name)
+        if self._index[0] is not specs:
+            self._index = specs, {spec.name: spec for spec in reversed(specs)}
+        return self._index[1].get(name)
 
     def _spec(self, path: Path) -> PropertySpec:
-        specs = self._schema()
-        found: PropertySpec | None = None
+        specs = self._get_schema()
+        spec: PropertySpec | None = None
         for name in path:
-            found = self._named(specs, name)
-            if found is None:
+            spec = self._find_spec(specs, name)
+            if spec is None:
                 raise KeyError(f"no property {' > '.join(path)} in {self._owner}")
-            specs = found.children
-        if found is None:
+            specs = spec.children
+        if spec is None:
             raise KeyError(f"no property named in {self._owner}")
-        return found
+        return spec
 
 
 def _depends_on(spec: PropertySpec, path: Path) -> bool:
-    condition = spec.when is not None and spec.when[0] == path
-    return condition or any(_depends_on(child, path) for child in spec.children)
+    is_condition = spec.when is not None and spec.when[0] == path
+    return is_condition or any(_depends_on(child, path) for child in spec.children)
 
 
-def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:
+def qos_of(properties: PropertyStore, name: str = "Topic", *, transient_local: bool | None = None) -> QoSProfile:
     """Return the QoS profile that a topic property and its child properties describe.
 
     Args:
         properties: the display's properties.
         name: the name of the topic property.
-        lasting: whether the durability is transient local, so that earlier messages are received too; None to use the
-            durability of the property.
+        transient_local: whether the durability is transient local, with which earlier messages are also received;
+            None to use the durability of the property.
     """
     get = properties.text
     keep_all = get(name, "History Policy") == "Keep All"
     best_effort = get(name, "Reliability Policy") == "Best Effort"
-    if lasting is None:
-        lasting = get(name, "Durability Policy") == "Transient Local"
+    if transient_local is None:
+        transient_local = get(name, "Durability Policy") == "Transient Local"
     return QoSProfile(
         depth=int(properties.number(name, "Depth")),
         history=HistoryPolicy.KEEP_ALL if keep_all else HistoryPolicy.KEEP_LAST,
         reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if lasting else DurabilityPolicy.VOLATILE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if transient_local else DurabilityPolicy.VOLATILE,
     )

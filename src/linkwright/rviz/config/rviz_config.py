@@ -61,9 +61,9 @@ GLOBAL_OPTIONS = (
 )
 
 _MANAGER = "Visualization Manager"
-_OTHER_KEYS = ("Panels", "Toolbars", "Window Geometry")
-"""A file with one of these is a configuration, even one without displays."""
-_OWN_PREFIX = "rviz_default_plugins/"
+_CONFIGURATION_KEYS = ("Panels", "Toolbars", "Window Geometry")
+"""Keys of a configuration: a file with one of them is accepted even if it has no displays."""
+_DEFAULT_PLUGINS = "rviz_default_plugins/"
 
 _DEFAULT = """\
 Panels:
@@ -108,8 +108,8 @@ Visualization Manager:
     Saved: ~
 """
 
-_KEY = "Displays"
-_BOX = ("Enabled", "Value")
+_DISPLAYS = "Displays"
+_CHECK_BOX_KEYS = ("Enabled", "Value")
 
 
 class DisplayConfig:
@@ -121,8 +121,8 @@ class DisplayConfig:
         report: called with findings about entries of the group that cannot be used.
 
     Attributes:
-        cls: RViz 2's name of the display's class, even if the file has RViz 1's.
-        displays: the displays in a group; empty for other displays.
+        cls: the class name of the display in RViz 2, even if the file has the name in RViz 1.
+        displays: the displays in the group; empty if the display is not a group.
         identity: the display's ID in pages; empty until it is assigned.
     """
 
@@ -148,7 +148,7 @@ class DisplayConfig:
 
     @property
     def name(self) -> str:
-        """The display's name in the Displays panel; if the file has none, its class without the package."""
+        """The name of the display in the Displays panel; by default its class name without the package."""
         scalar = self.section.scalar("Name")
         return scalar.text if scalar else self.cls.rpartition("/")[2]
 
@@ -158,7 +158,7 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """Whether the check box is on: ``Enabled``, or else ``Value``, or else off, as in RViz."""
+        """Whether the check box is on: the value of ``Enabled`` or, if it is missing, of ``Value``; off by default."""
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -168,14 +168,14 @@ class DisplayConfig:
     def checked(self, value: bool) -> None:
         if value == self.checked:
             return
-        present = [key for key in _BOX if self.section.scalar(key)]
-        for key in present or _BOX[:1]:
+        existing_keys = [key for key in _CHECK_BOX_KEYS if self.section.scalar(key)]
+        for key in existing_keys or _CHECK_BOX_KEYS[:1]:
             self.section.put((key,), "true" if value else "false")
 
     @property
     def box(self) -> list[Memory]:
-        """The current entries of the check box's keys in the file; assign them to restore them."""
-        return [self.section.memory(key) for key in _BOX]
+        """The current entries of the check box in the file, which can be assigned later to restore them."""
+        return [self.section.memory(key) for key in _CHECK_BOX_KEYS]
 
     @box.setter
     def box(self, memories: list[Memory]) -> None:
@@ -184,7 +184,7 @@ class DisplayConfig:
 
     @property
     def enabled(self) -> bool:
-        """Whether the display is drawn: its check box and those of all enclosing groups are on."""
+        """Whether the display is drawn: its check box is on, and so are the check boxes of all enclosing groups."""
         return self.checked and (self.group is None or self.group.enabled)
 
     def walk(self) -> Iterator[DisplayConfig]:
@@ -202,9 +202,9 @@ def read_displays(
     Entries without a class are reported (RVIZ202) and ignored.
     """
     displays = []
-    for section in parent.sections(_KEY):
+    for section in parent.sections(_DISPLAYS):
         if section.scalar("Class") is None:
-            message = phrase("a display without a 'Class' is left out")
+            message = phrase("a display without a 'Class' is ignored")
             report(Diagnostic("RVIZ202", message, section.span(), Severity.WARNING, source=section.source))
         else:
             displays.append(DisplayConfig(section, group, report))
@@ -213,14 +213,14 @@ def read_displays(
 
 def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
     """Insert a display before the sibling at `index`, both in the list and in the file."""
-    before = siblings[index].section if index < len(siblings) else None
-    yaml_tree.insert_section(parent, _KEY, display.section, before)
+    next_section = siblings[index].section if index < len(siblings) else None
+    yaml_tree.insert_section(parent, _DISPLAYS, display.section, next_section)
     siblings.insert(index, display)
 
 
 def remove_display(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
     """Remove a display from its list of siblings and from the file."""
-    yaml_tree.remove_section(parent, _KEY, display.section)
+    yaml_tree.remove_section(parent, _DISPLAYS, display.section)
     siblings.remove(display)
 
 
@@ -229,15 +229,20 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
     ("TF", {}),
 )
 _MODEL_GRID = {"Alpha": "0.6", "Color": "136; 142; 150", "Plane Cell Count": "20"}
-"""Lines that are visible on the grounds of both themes, and reach beyond the visible area."""
+"""A grid that is visible on the ground of both themes, and extends beyond the visible area."""
 _MODEL_DISTANCE = 3.0
 _MODEL_PITCH = 0.5
-"""A view from a little above: a standing robot hides less of itself than from RViz's 45 degrees."""
+"""A view from slightly above, in rad: the robot hides less of itself than at the default pitch of RViz, 45 degrees."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """The order and grouping of the displays: the items of ``Displays`` for each group."""
+    """The order and grouping of the displays.
+
+    Attributes:
+    displays: the displays in each group, and at the top level under the key None.
+    memories: the ``Displays`` sequences of the file, by the same keys.
+    """
 
     displays: dict[DisplayConfig | None, list[DisplayConfig]]
     memories: dict[DisplayConfig | None, SequenceMemory]
@@ -253,12 +258,12 @@ class RvizConfig:
     Attributes:
         path: the file that the configuration was read from or saved to, or None.
         document: the root mapping of the file.
-        displays: the top-level entries of ``Displays``; a group has its own `displays`.
+        displays: the top-level entries of ``Displays``; each group contains further displays.
         options: the values of the Global Options.
         views: the current view and the saved views.
         tools: the entries of ``Tools``.
         panels: the open panels.
-        warnings: findings about parts of the file that cannot be used.
+        warnings: findings about entries of the file that cannot be used.
     """
 
     def __init__(self, document: Section, path: Path | None = None, form: FileForm | None = None) -> None:
@@ -275,15 +280,15 @@ class RvizConfig:
             self.warnings.append,
             base=(_MANAGER, "Global Options"),
         )
-        self.options.rows()  # read all options now so that their findings are in `warnings` from the start
+        self.options.rows()  # reads all options, so that their findings are in `warnings` from the start
         self.displays: list[DisplayConfig] = read_displays(
             document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
         )
         self.views = ViewsConfig(document, self.warnings.append)
         self.tools = ToolsConfig(document, self.warnings.append)
         self.panels = PanelsConfig(document, self.warnings.append)
-        self._unchosen_view: View | None = None
-        self._proposed: _ProposedSizes | None = None
+        self._proposed_view: View | None = None
+        self._proposed_sizes: _ProposedSizes | None = None
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
@@ -307,9 +312,9 @@ class RvizConfig:
             LinkwrightError: RVIZ102, the text is not YAML; RVIZ103, it is not a configuration.
         """
         document = yaml_tree.parse(text, name)
-        if document.section(_MANAGER) is None and not set(_OTHER_KEYS) & set(document.keys()):
+        if document.section(_MANAGER) is None and not set(_CONFIGURATION_KEYS) & set(document.keys()):
             message = phrase(
-                "'{name}' is not an RViz configuration: it has no '{manager}'", name=name, manager=_MANAGER
+                "'{name}' is not an RViz configuration: the key '{manager}' is missing", name=name, manager=_MANAGER
             )
             raise LinkwrightError(Diagnostic("RVIZ103", message, document.span(), source=document.source))
         return cls(document, path, form)
@@ -327,13 +332,13 @@ class RvizConfig:
 
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
-            size: the size of the robot, from which grid and axes are scaled; None for RViz's default sizes.
-            frames: whether TF is enabled; its axes would cover a robot that has visuals.
+            size: the size of the robot, which determines the sizes of grid and axes; None for RViz's default sizes.
+            frames: whether TF is enabled, although its axes cover a robot that has visuals.
             name: the name of the model's file, under which unsaved edits are stored.
         """
         config = cls.parse(_DEFAULT, name)
         for name, values in _MODEL_DISPLAYS:
-            display = config.make(_OWN_PREFIX + name, name)
+            display = config.make(_DEFAULT_PLUGINS + name, name)
             for key, value in values.items():
                 display.section.put((key,), value, string=True, nested=True)
             display.checked = frames or name != "TF"
@@ -346,11 +351,11 @@ class RvizConfig:
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
         if size is not None:
-            for display_config, path, length in _sizes(config.displays, size):
+            for display_config, path, length in _fitted_sizes(config.displays, size):
                 display_config.section.put(path, f"{length:g}")
             view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
         config.propose_view(view.values)
-        config._proposed = _ProposedSizes(config.displays, size)
+        config._proposed_sizes = _ProposedSizes(config.displays, size)
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
@@ -358,7 +363,7 @@ class RvizConfig:
         view = self.views.current
         view.values |= values
         self.views.current = view
-        self._unchosen_view = self.views.current
+        self._proposed_view = self.views.current
 
     def follow(self, frame: str, distance: float) -> None:
         """Make the view follow a mobile robot's frame, and keep the current sizes of grid and axes.
@@ -370,17 +375,17 @@ class RvizConfig:
         view = self.views.current
         view.values |= {"Target Frame": frame, "Distance": distance}
         self.views.current = view
-        self._proposed = None
+        self._proposed_sizes = None
 
     @property
     def shows_whole_robot(self) -> bool:
         """Whether the user has not chosen a view yet, so that pages fit the camera to the robot."""
-        return self._unchosen_view == self.views.current
+        return self._proposed_view == self.views.current
 
     @property
     def awaits_size(self) -> bool:
-        """Whether `take_sizes` still has sizes to set, because no page has measured the robot yet."""
-        return self._proposed is not None
+        """Whether no page has measured the robot yet, so that `take_sizes` can return sizes."""
+        return self._proposed_sizes is not None
 
     @property
     def spacing(self) -> float | None:
@@ -388,32 +393,33 @@ class RvizConfig:
 
         The distance is also None after `take_sizes` was called.
         """
-        size = None if self._proposed is None else self._proposed.size
+        size = None if self._proposed_sizes is None else self._proposed_sizes.size
         return None if size is None else size.spacing
 
     def take_sizes(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return the sizes of grid and axes that fit a robot which a page has just measured.
+        """Return the sizes of grid and axes that fit the robot, given the measurements of a page.
 
         Each item is a display, the path of a property and its new value. Properties that the user has changed are
-        omitted.
-        Only the first call returns sizes; later calls return an empty list.
+        omitted. Only the first call returns sizes; later calls return an empty list.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.
             ground: the height of the ground below the robot, in the Fixed Frame, m.
         """
-        proposed, self._proposed = self._proposed, None
-        if proposed is None or not isfinite(diagonal + ground) or diagonal <= 0:
+        proposed_sizes, self._proposed_sizes = self._proposed_sizes, None
+        if proposed_sizes is None or not isfinite(diagonal + ground) or diagonal <= 0:
             return []
-        return proposed.corrections(diagonal, ground)
+        return proposed_sizes.corrections(diagonal, ground)
 
     def copy(self) -> RvizConfig:
         """Return a copy of the configuration that has no file."""
-        copied = RvizConfig.parse(self.text(), self.document.source.name)
-        copied._unchosen_view = self._unchosen_view
-        if self._proposed is not None:
-            copied._proposed = self._proposed.among(dict(zip(self.walk(), copied.walk(), strict=True)))
-        return copied
+        copied_config = RvizConfig.parse(self.text(), self.document.source.name)
+        copied_config._proposed_view = self._proposed_view
+        if self._proposed_sizes is not None:
+            copied_config._proposed_sizes = self._proposed_sizes.for_copies(
+                dict(zip(self.walk(), copied_config.walk(), strict=True))
+            )
+        return copied_config
 
     # --- displays ----------------------------------------------------------------------------------------------
 
@@ -423,7 +429,7 @@ class RvizConfig:
             yield from display.walk()
 
     def make(self, cls: str, name: str) -> DisplayConfig:
-        """Return an enabled display with the defaults of its class; `insert` puts it into the file."""
+        """Return a new enabled display with the defaults of its class, which `insert` can add to the file."""
         section = yaml_tree.new_section(self.document.source)
         section.put(("Class",), cls, string=True)
         section.put(("Enabled",), "true")
@@ -433,11 +439,11 @@ class RvizConfig:
         return DisplayConfig(section, None)
 
     def duplicate(self, display: DisplayConfig) -> DisplayConfig:
-        """Return a copy of a display's entry; `insert` puts it into the file."""
+        """Return a copy of the entry of a display, which `insert` can add to the file."""
         return DisplayConfig(yaml_tree.copy_section(display.section), None)
 
     def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
-        """Insert a display into a group, or at the top level: before the display at `index`, or at the end.
+        """Insert a display into a group or at the top level, before the display at `index` or at the end.
 
         Raises:
             ValueError: the target is not a group, or it is the display itself or a group inside the display.
@@ -453,7 +459,7 @@ class RvizConfig:
         remove_display(display, self._parent(display.group), self.siblings(display.group))
 
     def make_group(self, name: str) -> DisplayConfig:
-        """Return an empty group; `insert` puts it into the file."""
+        """Return an empty group, which `insert` can add to the file."""
         return self.make(GROUP, name)
 
     def arrangement(self) -> Arrangement:
@@ -461,7 +467,7 @@ class RvizConfig:
         groups = [None, *(display for display in self.walk() if display.is_group)]
         return Arrangement(
             {group: list(self.siblings(group)) for group in groups},
-            {group: self._remember(group) for group in groups},
+            {group: self._sequence_memory(group) for group in groups},
         )
 
     def arrange(self, arrangement: Arrangement) -> None:
@@ -477,19 +483,19 @@ class RvizConfig:
         """Return the displays in a group, or the top-level displays if `group` is None."""
         return self.displays if group is None else group.displays
 
-    def _remember(self, group: DisplayConfig | None) -> SequenceMemory:
-        holder = group.section if group is not None else self.document.section(_MANAGER)
-        return yaml_tree.remember_sequence(holder, "Displays") if holder is not None else SequenceMemory(None, None)
+    def _sequence_memory(self, group: DisplayConfig | None) -> SequenceMemory:
+        section = group.section if group is not None else self.document.section(_MANAGER)
+        return yaml_tree.remember_sequence(section, "Displays") if section is not None else SequenceMemory(None, None)
 
     def _parent(self, group: DisplayConfig | None) -> Section:
-        """Return the section that contains a group's ``Displays``, or those of the top level.
+        """Return the section that contains the ``Displays`` of a group or of the top level.
 
         The top-level section is created if it is missing.
         """
         if group is not None:
             return group.section
-        manager, made = yaml_tree.make_section(self.document, _MANAGER)
-        self._new_sections += made
+        manager, new_sections = yaml_tree.make_section(self.document, _MANAGER)
+        self._new_sections += new_sections
         return manager
 
     # --- file --------------------------------------------------------------------------------------------------
@@ -502,7 +508,7 @@ class RvizConfig:
         return yaml_tree.write(self.document).replace("\n", self._form.newline)
 
     def save(self, path: str | Path | None = None) -> None:
-        """Write the configuration to a file, by default its current one.
+        """Write the configuration to a file, by default to its current file.
 
         `path` becomes the configuration's file.
 
@@ -524,7 +530,7 @@ class RvizConfig:
 
 
 class _ProposedSizes:
-    """The proposed sizes of grid and axes for a robot whose meshes are not yet measured.
+    """The proposed sizes of grid and axes, used until the meshes of the robot are measured.
 
     Args:
         displays: the displays of `RvizConfig.for_model`.
@@ -534,25 +540,25 @@ class _ProposedSizes:
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
         self.size = size
-        found = _sizes(displays, size or _ANY_SIZE, ground=1.0)
-        self._texts = {path: display.section.text(*path) for display, path, _ in found}
+        sizes = _fitted_sizes(displays, size or _UNKNOWN_SIZE, ground=1.0)
+        self._proposed_texts = {path: display.section.text(*path) for display, path, _ in sizes}
 
     def corrections(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return the sizes for the measured robot, omitting those that the user has changed since."""
+        """Return the sizes for the measured robot, without the properties that the user has changed."""
         spacing = diagonal if self.size is None else self.size.spacing
-        found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
-        return [change for change in found if change[0].section.text(*change[1]) == self._texts[change[1]]]
+        sizes = _fitted_sizes(self._displays, ModelSize(diagonal, spacing), ground)
+        return [change for change in sizes if change[0].section.text(*change[1]) == self._proposed_texts[change[1]]]
 
-    def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _ProposedSizes | None:
+    def for_copies(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _ProposedSizes | None:
         """Return the same proposal for copies of the displays, or None if a display was removed."""
-        found = [copies[display] for display in self._displays if display in copies]
-        return _ProposedSizes(found, self.size) if len(found) == len(self._displays) else None
+        copied_displays = [copies[display] for display in self._displays if display in copies]
+        return _ProposedSizes(copied_displays, self.size) if len(copied_displays) == len(self._displays) else None
 
 
-_ANY_SIZE = ModelSize(1.0, 1.0)
+_UNKNOWN_SIZE = ModelSize(1.0, 1.0)
 
 
-def _sizes(
+def _fitted_sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
     """Return the sizes of grid and axes for a robot, given the displays of `RvizConfig.for_model`.

@@ -19,15 +19,15 @@ Path = tuple[str, ...]
 FIXED_FRAME = "<Fixed Frame>"
 """The value of a frame property that refers to the Fixed Frame, as in RViz."""
 
-MAXIMUM_TEXT = 4096
-"""Longest string accepted from a page, characters."""
+MAX_TEXT_LENGTH = 4096
+"""The length of the longest string that is accepted from a page, in characters."""
 
 _HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
 _SHORT_COLOUR = re.compile(r"#[0-9a-fA-F]{3}")
 _RVIZ_COLOUR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*(;.*)?")
 _YAML_NUMBER = re.compile(r"[+-]?\.(inf|nan)", re.IGNORECASE)
-_INFINITE = 3.4028234663852886e38
-"""Replaces infinity, which JSON lacks: the largest 32-bit float, as in RViz."""
+_INFINITY_SUBSTITUTE = 3.4028234663852886e38
+"""The largest 32-bit float, which replaces infinity as in RViz, because JSON cannot represent infinity."""
 _BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("false", "", "0"), False)
 
 
@@ -37,23 +37,24 @@ class PropertySpec:
 
     Attributes:
         name: the name that RViz shows, which is also the key in the file.
-        kind: the kind of its values; a ``group`` has none.
-        default: RViz's default.
+        kind: the kind of its values; a ``group`` has no value.
+        default: the default value, as in RViz.
         description: the tooltip.
         options: the values of an ``enum``.
         minimum: the lower bound of an ``int`` or ``float``, inclusive.
         maximum: the upper bound of an ``int`` or ``float``, inclusive.
-        messages: for a ``topic``, the message types of the topics offered; by default the display's types.
-        words: for a ``topic``, words in lower case, at least one of which an offered topic name contains; by default
-            any name is offered.
+        messages: for a ``topic``, the message types of the topics that the page offers; by default the display's
+            types.
+        words: for a ``topic``, lower-case words; the page offers only topics with a name that contains at least one of
+            them; by default it offers all.
         children: the rows below the property's row.
         when: the condition for this row to be shown: the path of another property of the display, and the value that it
-            must have. The conditions of that property must hold too.
+            must have. The condition of that property must also hold.
         expanded: whether the children are shown at the start.
         nested: whether the file stores the value under ``Value``, because the key has children in the file.
-        hidden: whether the property has a value in the file but no row, like properties that RViz hides.
+        hidden: whether the property has a value in the file but no row in the page, as for properties that RViz hides.
         read_only: whether only the program sets the property; it is not stored in the file.
-        details: the subject of read-only rows that pages add below the property's row, see `Property`.
+        details: the subject of the read-only rows that a page adds below this row, see `Property`.
     """
 
     name: str
@@ -87,8 +88,8 @@ def vector(name: str, description: str) -> PropertySpec:
     )
 
 
-BILLBOARDS = (("Line Style",), "Billboards")
-"""The condition for the width of lines."""
+IS_BILLBOARDS = (("Line Style",), "Billboards")
+"""The condition for a property of the line width, as a `PropertySpec.when`."""
 
 
 def alpha(
@@ -117,7 +118,9 @@ def line_style_spec(*children: PropertySpec) -> PropertySpec:
 
 def line_width_spec() -> PropertySpec:
     """Return the declaration of ``Line Width`` in metres, which is shown for billboards."""
-    return PropertySpec("Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=BILLBOARDS)
+    return PropertySpec(
+        "Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=IS_BILLBOARDS
+    )
 
 
 def accept(spec: PropertySpec, value: object) -> PropertyValue:
@@ -130,16 +133,16 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
     """
     if spec.read_only:
         raise ValueError("only the program sets it")
-    taken = _validate(spec, value)
-    if taken is None:
+    accepted_value = _validate(spec, value)
+    if accepted_value is None:
         raise ValueError(
             phrase(
                 "{format}, not {value}",
-                format=_EXPECTED[spec.kind].format(options=", ".join(spec.options)),
-                value=_shown(value),
+                format=_EXPECTATIONS[spec.kind].format(options=", ".join(spec.options)),
+                value=_shortened_repr(value),
             )
         )
-    return taken
+    return accepted_value
 
 
 def from_text(spec: PropertySpec, text: str) -> PropertyValue:
@@ -148,13 +151,13 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
     Raises:
         ValueError: the text is not a valid value; the message states the expected value.
     """
-    return accept(spec, _converted(spec, text.strip()))
+    return accept(spec, _read_as_qt(spec, text.strip()))
 
 
 def fallback_value(spec: PropertySpec) -> PropertyValue:
-    """Return the value that replaces an invalid text in a file: true for a ``bool``, else the default.
+    """Return the value used for an invalid text in a file: true for a ``bool``, the default for other kinds.
 
-    To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
+    Qt, and therefore RViz, reads every text as true except ``false``, ``0`` and an empty text; even ``no`` is true.
     """
     return True if spec.kind == "bool" else spec.default
 
@@ -177,12 +180,12 @@ def to_text(spec: PropertySpec, value: PropertyValue) -> str:
     return str(value)
 
 
-_EXPECTED = {
+_EXPECTATIONS = {
     "group": phrase("no value is expected"),
     "bool": phrase("true or false is expected"),
     "int": phrase("an integer is expected"),
     "float": phrase("a finite number is expected"),
-    "string": phrase("a string of at most {maximum_text} characters is expected", maximum_text=MAXIMUM_TEXT),
+    "string": phrase("a string of at most {maximum_text} characters is expected", maximum_text=MAX_TEXT_LENGTH),
     "color": "a colour such as #a0a0a4 is expected",
     "enum": "one of {options} is expected",
     "frame": phrase("the name of a frame is expected"),
@@ -195,8 +198,8 @@ def _validate(spec: PropertySpec, value: object) -> PropertyValue:
     if kind == "bool":
         return value if isinstance(value, bool) else None
     if kind in ("int", "float"):
-        return _number(spec, value)
-    if not isinstance(value, str) or len(value) > MAXIMUM_TEXT or kind == "group":
+        return _accept_number(spec, value)
+    if not isinstance(value, str) or len(value) > MAX_TEXT_LENGTH or kind == "group":
         return None
     if kind == "enum":
         return value if value in spec.options else None
@@ -207,7 +210,7 @@ def _validate(spec: PropertySpec, value: object) -> PropertyValue:
     return value
 
 
-def _number(spec: PropertySpec, value: object) -> int | float | None:
+def _accept_number(spec: PropertySpec, value: object) -> int | float | None:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
     try:
@@ -225,8 +228,8 @@ def _number(spec: PropertySpec, value: object) -> int | float | None:
     return int(number) if number.is_integer() and abs(number) < 2**53 else None
 
 
-def _converted(spec: PropertySpec, text: str) -> object:
-    """Return the value that Qt reads from a text, or the text itself, which `accept` then refuses."""
+def _read_as_qt(spec: PropertySpec, text: str) -> object:
+    """Return the value that Qt reads from a text; if Qt cannot read it, return the text, which `accept` rejects."""
     kind = spec.kind
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
@@ -245,14 +248,14 @@ def _parse_number(spec: PropertySpec, text: str) -> object:
     except ValueError:
         return text
     if math.isnan(number):
-        return spec.default  # RViz writes NaN when its camera has an invalid pose, with which nothing would be drawn
-    return number if math.isfinite(number) else math.copysign(_INFINITE, number)
+        return spec.default  # RViz writes NaN when its camera has an invalid pose, and nothing could be drawn with NaN
+    return number if math.isfinite(number) else math.copysign(_INFINITY_SUBSTITUTE, number)
 
 
 def _parse_colour(text: str) -> str:
-    found = _RVIZ_COLOUR.fullmatch(text)
-    if found:  # ignore a fourth part, such as an alpha
-        return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])
+    match = _RVIZ_COLOUR.fullmatch(text)
+    if match:  # a fourth number, such as alpha, is ignored
+        return "#" + "".join(f"{min(max(int(component), 0), 255):02x}" for component in match.groups()[:3])
     if _SHORT_COLOUR.fullmatch(text):
         return "#" + "".join(2 * digit for digit in text[1:])
     if text.isalpha():
@@ -263,7 +266,7 @@ def _parse_colour(text: str) -> str:
     return text
 
 
-def _shown(value: object) -> str:
+def _shortened_repr(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -290,13 +293,13 @@ def topic_spec(
         name: the name of the property.
         default: the default topic.
         description: the tooltip.
-        depth: RViz's default for the queue size.
-        durability: RViz's default for the durability policy.
+        depth: the default of the queue size, as in RViz.
+        durability: the default of the durability policy, as in RViz.
         filter_size: default number of messages that are queued until their transforms are available; None for a display
             without such a queue.
         durability_help: the tooltip of ``Durability Policy``.
-        when: as `PropertySpec.when`.
-        messages: as `PropertySpec.messages`.
+        when: the condition of the row, see `PropertySpec.when`.
+        messages: the message types of the topics that the page offers, see `PropertySpec.messages`.
     """
     children = [
         PropertySpec("Depth", "int", depth, "The size of the message queue.", minimum=1, maximum=1000),

@@ -1,7 +1,7 @@
 """RViz's tools: the properties of each class, and the tools of a .rviz file.
 
 The page implements what the mouse does in each tool, see `frontend/src/scene/tools`. Names, topics and defaults are
-RViz's (rviz_default_plugins) and nav2's (nav2_rviz_plugins).
+the same as in rviz_default_plugins and nav2_rviz_plugins.
 """
 
 from __future__ import annotations
@@ -90,10 +90,10 @@ TOOL_KINDS: dict[str, ToolKind] = {
     ),
     "nav2_rviz_plugins/GoalTool": ToolKind("Nav2 Goal", action=("navigate_to_pose", "nav2_msgs/action/NavigateToPose")),
 }
-"""The classes in the order of RViz's default toolbar, then those of other packages."""
+"""The tools of RViz in the order of its default toolbar, followed by the tools of other packages, by class."""
 
-USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_plugins/"))
-"""The toolbar of a file that lists no tools."""
+DEFAULT_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_plugins/"))
+"""The classes of the tools that are shown if a file lists no tools."""
 
 
 def tool_name(cls: str) -> str:
@@ -108,8 +108,8 @@ def tool_name(cls: str) -> str:
 _MANAGER = "Visualization Manager"
 _TOOLS = "Tools"
 
-MAXIMUM_TOOLS = 100
-"""Most tools that pages may add; each may have a publisher."""
+MAX_TOOLS = 100
+"""The number of tools up to which pages may add one; it is limited because each tool may have a publisher."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ class ToolEntry:
 
     Attributes:
         id: an ID that is stable while the file is open.
-        cls: RViz 2's name of the tool's class, even if the file has RViz 1's.
+        cls: the class name of the tool in RViz 2, even if the file has the name in RViz 1.
         section: the tool's section of the file, which stays unchanged if the class is unknown.
         properties: the values of the tool's properties.
     """
@@ -145,11 +145,11 @@ class ToolsConfig:
         for section in document.sections(_MANAGER, _TOOLS):
             scalar = section.scalar("Class")
             if scalar is not None:
-                self._remember(scalar.text, section)
-        self._are_listed = bool(self._entries)
+                self._append_entry(scalar.text, section)
+        self._is_listed_in_file = bool(self._entries)
         if not self._entries:
-            for cls in USUAL_TOOLS:
-                self._remember(cls, self._new(cls))
+            for cls in DEFAULT_TOOLS:
+                self._append_entry(cls, self._new(cls))
 
     @property
     def entries(self) -> list[ToolEntry]:
@@ -164,16 +164,16 @@ class ToolsConfig:
         """Add a tool of a class at the end, write it to the file, and return it.
 
         Raises:
-            ValueError: there is no such class, or there are `MAXIMUM_TOOLS` tools already.
+            ValueError: there is no such class, or there are `MAX_TOOLS` tools already.
         """
-        if len(self._entries) >= MAXIMUM_TOOLS:
-            raise ValueError(f"there are {MAXIMUM_TOOLS} tools already")
+        if len(self._entries) >= MAX_TOOLS:
+            raise ValueError(f"there are {MAX_TOOLS} tools already")
         if cls not in TOOL_KINDS:
             raise ValueError(f"no tool is of the class {cls!r}")
         self.write_defaults()
         section = self._new(cls)
         insert_section(self._manager(), _TOOLS, section)
-        return self._remember(cls, section)
+        return self._append_entry(cls, section)
 
     def remove(self, identity: str) -> ToolEntry:
         """Remove a tool and return it.
@@ -188,11 +188,11 @@ class ToolsConfig:
         return entry
 
     def write_defaults(self) -> None:
-        """Write the default tools to a file that lists none, before one of them is changed."""
-        if not self._are_listed:
+        """Write the default tools to the file if it lists no tools; to be called before one of them is changed."""
+        if not self._is_listed_in_file:
             for entry in self._entries.values():
                 insert_section(self._manager(), _TOOLS, entry.section)
-        self._are_listed = True
+        self._is_listed_in_file = True
 
     def _manager(self) -> Section:
         return ensure_section(self._document, _MANAGER)
@@ -202,13 +202,13 @@ class ToolsConfig:
         section.put(("Class",), cls, string=True)
         return section
 
-    def _remember(self, written: str, section: Section) -> ToolEntry:
-        """Append a tool to the entries, given its class name as written, of RViz 1 or RViz 2."""
-        cls = modern_class(written)
+    def _append_entry(self, written_class: str, section: Section) -> ToolEntry:
+        """Append a tool to the entries and return it, given its class name of RViz 1 or RViz 2."""
+        cls = modern_class(written_class)
         self._count += 1
         identity = f"tool-{self._count}"
         schema: Schema = TOOL_KINDS[cls].schema if cls in TOOL_KINDS else ()
-        store = PropertyStore(identity, section, lambda: schema, self._report, former=former_keys(written))
+        store = PropertyStore(identity, section, lambda: schema, self._report, former=former_keys(written_class))
         entry = ToolEntry(identity, cls, section, store)
         self._entries[identity] = entry
         return entry

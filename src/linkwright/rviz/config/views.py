@@ -2,7 +2,7 @@
 
 The properties determine the rows of the Views panel, how ``Views`` is read and written, and how values from pages are
 checked. The page implements the camera of each class and what the mouse does, see `frontend/src/state/views`. Names
-and defaults are RViz's (rviz_common ``ViewController``, rviz_default_plugins).
+and defaults are the same as in rviz_common (``ViewController``) and rviz_default_plugins.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from linkwright.page.protocol.configuration import Property, PropertyValue
 from linkwright.page.protocol.views_and_tools import View, ViewClass
 from linkwright.rviz.config.former_names import modern_class
 from linkwright.rviz.config.property_store import PropertyStore
-from linkwright.rviz.config.schema import FIXED_FRAME, MAXIMUM_TEXT, Path, PropertySpec, Schema, vector
+from linkwright.rviz.config.schema import FIXED_FRAME, MAX_TEXT_LENGTH, Path, PropertySpec, Schema, vector
 from linkwright.rviz.config.yaml_tree import (
     Memory,
     Section,
@@ -26,9 +26,9 @@ from linkwright.rviz.config.yaml_tree import (
     remove_section,
 )
 
-_RVIZ_AXIS = 0.2
-"""Length of an axis of the TF display at Marker Scale 1, m."""
-_LARGEST_FOCAL_SHAPE = 0.05
+_AXIS_LENGTH = 0.2
+"""The length of an axis of the TF display at Marker Scale 1, in m."""
+_MAX_FOCAL_SHAPE = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +52,12 @@ class ModelSize:
     def marker_scale(self) -> float:
         """The TF display's marker scale at which the axes are visible but do not cover the links."""
         axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
-        return _rounded(axis / _RVIZ_AXIS)
+        return _rounded(axis / _AXIS_LENGTH)
 
     @property
     def focal_shape(self) -> float:
-        """The diameter of the disc at the focal point, m; RViz's default for large robots."""
-        return min(_LARGEST_FOCAL_SHAPE, _rounded(self.diagonal / 15))
+        """The diameter of the disc at the focal point in m, at most the default of RViz."""
+        return min(_MAX_FOCAL_SHAPE, _rounded(self.diagonal / 15))
 
     @property
     def cell(self) -> float:
@@ -96,7 +96,7 @@ _STEREO = PropertySpec(
         PropertySpec("Swap Stereo Eyes", "bool", False),
     ),
 )
-"""Properties for stereo screens: RViz too hides these rows on other screens. The file keeps them."""
+"""Properties for stereo screens. RViz hides these rows on other screens, and their values stay in the file."""
 _INVERT_Z = PropertySpec(
     "Invert Z Axis", "bool", False, "Turns the camera upside down, for frames whose z axis points down."
 )
@@ -156,8 +156,8 @@ VIEW_SCHEMAS: dict[str, Schema] = {
 }
 """The properties of each class, in the order in which RViz lists the classes."""
 
-STAND_INS = {"rviz_default_plugins/FrameAligned": FPS}
-"""Classes that are shown as a similar one: a FrameAligned is an FPS that can be aligned and locked."""
+SIMILAR_CLASSES = {"rviz_default_plugins/FrameAligned": FPS}
+"""The classes that replace similar classes: FrameAligned is an FPS that can be aligned and locked."""
 
 
 def value_paths(schema: Schema) -> dict[str, Path]:
@@ -180,16 +180,16 @@ def _defaults(schema: Schema) -> dict[str, PropertyValue]:
     return {"/".join(path): spec.default for path, spec in _walk(schema, ()) if spec.kind != "group"}
 
 
-def _walk(schema: Schema, above: Path) -> list[tuple[Path, PropertySpec]]:
-    found = []
+def _walk(schema: Schema, parent_path: Path) -> list[tuple[Path, PropertySpec]]:
+    specs = []
     for spec in schema:
-        path = (*above, spec.name)
-        found += [(path, spec), *_walk(spec.children, path)]
-    return found
+        path = (*parent_path, spec.name)
+        specs += [(path, spec), *_walk(spec.children, path)]
+    return specs
 
 
-def _row(spec: PropertySpec, above: Path) -> Property:
-    path = (*above, spec.name)
+def _row(spec: PropertySpec, parent_path: Path) -> Property:
+    path = (*parent_path, spec.name)
     return Property(
         id="/".join(path),
         name=spec.name,
@@ -207,17 +207,17 @@ _MANAGER = "Visualization Manager"
 _VIEWS = "Views"
 _SAVED = "Saved"
 
-MAXIMUM_SAVED = 1000
-"""Most saved views; pages may not add more."""
+MAX_SAVED_VIEWS = 1000
+"""The maximum number of saved views."""
 
 Report = Callable[[Diagnostic], None]
 
 
 class ViewEntry:
-    """An entry of ``Views``; its unknown keys stay in the file.
+    """An entry of ``Views``. Unknown keys of the entry stay in the file.
 
-    A view of a class that `VIEW_SCHEMAS` lacks is shown as the class that replaces it, or else as an Orbit, and stays
-    unchanged in the file until a value is set.
+    If `VIEW_SCHEMAS` does not have the class of the view, the view is shown as a similar class or as an Orbit. It
+    stays unchanged in the file until a value is set.
 
     Args:
         section: the file, or the view's section of it.
@@ -229,7 +229,7 @@ class ViewEntry:
         self._section = section
         self._base = base
         self._report = report
-        self._cls = self._known_class()
+        self._cls = self._supported_class()
         self._store = self._make_store(self._cls)
         self._view = self._read()
 
@@ -246,8 +246,8 @@ class ViewEntry:
         """
         if view == self._view:
             return
-        if len(view.name) > MAXIMUM_TEXT:
-            raise ValueError(f"the name of a view has at most {MAXIMUM_TEXT} characters")
+        if len(view.name) > MAX_TEXT_LENGTH:
+            raise ValueError(f"the name of a view has at most {MAX_TEXT_LENGTH} characters")
         if view.cls not in VIEW_SCHEMAS:
             raise ValueError(f"no view is of the class {view.cls!r}")
         paths = value_paths(VIEW_SCHEMAS[view.cls])
@@ -265,15 +265,15 @@ class ViewEntry:
         self._view = self._read()
 
     def _write_class(self, cls: str) -> None:
-        """Change the class of the view, and remove the keys of the former class that the new one lacks."""
+        """Change the class of the view, and remove the keys that the new class does not have."""
         scalar = self._section.scalar(*self._base, "Class")
-        written = modern_class(scalar.text) if scalar else ""
-        if cls in (written, STAND_INS.get(written)):
+        written_class = modern_class(scalar.text) if scalar else ""
+        if cls in (written_class, SIMILAR_CLASSES.get(written_class)):
             return
         section = ensure_section(self._section, *self._base)
-        known = {spec.name for spec in VIEW_SCHEMAS[cls]}
+        new_keys = {spec.name for spec in VIEW_SCHEMAS[cls]}
         for spec in VIEW_SCHEMAS[self._cls]:
-            if spec.name not in known:
+            if spec.name not in new_keys:
                 section.recall(Memory(spec.name, None))
         section.put(("Class",), cls, string=True)
         section.put(("Name",), self._name(), string=True)
@@ -292,19 +292,21 @@ class ViewEntry:
         schema: Schema = VIEW_SCHEMAS[cls]
         return PropertyStore("view", self._section, lambda: schema, self._report, base=self._base)
 
-    def _known_class(self) -> str:
+    def _supported_class(self) -> str:
         scalar = self._section.scalar(*self._base, "Class")
         if scalar is None:
             return ORBIT
         cls = modern_class(scalar.text)
         if cls in VIEW_SCHEMAS:
             return cls
-        shown = STAND_INS.get(cls, ORBIT)
+        shown_class = SIMILAR_CLASSES.get(cls, ORBIT)
         message = phrase(
-            "the view '{text}' is shown as an {rpartition} view", text=scalar.text, rpartition=shown.rpartition("/")[2]
+            "the view '{text}' is shown as an {rpartition} view",
+            text=scalar.text,
+            rpartition=shown_class.rpartition("/")[2],
         )
         self._report(Diagnostic("RVIZ203", message, scalar.span, Severity.WARNING, source=self._section.source))
-        return shown
+        return shown_class
 
 
 class ViewsConfig:
@@ -312,7 +314,7 @@ class ViewsConfig:
 
     Args:
         document: the file.
-        report: called with findings about unusable parts.
+        report: called with findings about views that cannot be used as written.
     """
 
     def __init__(self, document: Section, report: Report) -> None:
@@ -322,7 +324,7 @@ class ViewsConfig:
         self._count = 0
         for section in document.sections(_MANAGER, _VIEWS, _SAVED):
             if section.scalar("Class") is not None:  # RViz skips views without a class
-                self._remember(section, ViewEntry(section, (), report))
+                self._add_saved(section, ViewEntry(section, (), report))
 
     @property
     def current(self) -> View:
@@ -349,13 +351,13 @@ class ViewsConfig:
         Raises:
             ValueError: the view is not valid, or there are too many saved views.
         """
-        if len(self._saved) >= MAXIMUM_SAVED:
-            raise ValueError(f"there are {MAXIMUM_SAVED} saved views already")
+        if len(self._saved) >= MAX_SAVED_VIEWS:
+            raise ValueError(f"there are {MAX_SAVED_VIEWS} saved views already")
         section = new_section(self._document.source)
-        entry = ViewEntry(section, (), _unheard)
+        entry = ViewEntry(section, (), _ignore_finding)
         entry.set(view)
         insert_section(ensure_section(self._document, _MANAGER, _VIEWS), _SAVED, section)
-        return self._remember(section, entry)
+        return self._add_saved(section, entry)
 
     def change(self, identity: str, view: View) -> None:
         """Change the name or the values of a saved view.
@@ -375,12 +377,12 @@ class ViewsConfig:
         section, _ = self._saved.pop(identity)
         remove_section(ensure_section(self._document, _MANAGER, _VIEWS), _SAVED, section)
 
-    def _remember(self, section: Section, entry: ViewEntry) -> str:
+    def _add_saved(self, section: Section, entry: ViewEntry) -> str:
         self._count += 1
         identity = f"view-{self._count}"
         self._saved[identity] = (section, entry)
         return identity
 
 
-def _unheard(diagnostic: Diagnostic) -> None:
+def _ignore_finding(diagnostic: Diagnostic) -> None:
     """Ignore a finding, because the values that were just written are valid."""

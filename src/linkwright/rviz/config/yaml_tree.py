@@ -1,6 +1,6 @@
-"""YAML as a tree that is edited in place: untouched parts are written back as they were read.
+"""YAML as a tree that is edited in place: values without edits are written back as they were read.
 
-RViz's files contain much that this program does not know. The tree consists of PyYAML's nodes, so that key order,
+RViz's files contain many keys that this program does not know. The tree consists of PyYAML's nodes, so that key order,
 quoting and the spelling of every scalar survive, and every value has its line number.
 """
 
@@ -19,11 +19,11 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Resolver: Any = yaml.resolver.Resolver
 
-MAXIMUM_DEPTH = 100
-"""Deepest nesting that is read. PyYAML builds nodes by recursion, without a bound of its own."""
+MAX_DEPTH = 100
+"""The deepest nesting that is read. PyYAML builds nodes by recursion, without a limit."""
 
 MAXIMUM_NODES = 1_000_000
-"""Most keys and values of a document with its aliases expanded: a few lines of YAML can expand to billions."""
+"""The largest number of nodes after aliases are expanded; a few lines of YAML can expand to billions of nodes."""
 
 _STRING = "tag:yaml.org,2002:str"
 _NULL = "tag:yaml.org,2002:null"
@@ -41,7 +41,7 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """The former value of a key in a mapping; None if the mapping did not have the key."""
+    """A key of a mapping and its previous value, or None if the mapping did not have the key."""
 
     key: str
     value: yaml.Node | None
@@ -98,35 +98,35 @@ class Section:
             path: keys, at least one.
             text: the spelling of the value.
             string: whether the value is a string regardless of its spelling (it is then quoted if necessary).
-            nested: whether the value has children of its own, and so is stored under ``Value``.
+            nested: whether the value has children, so that it is stored under ``Value``.
         """
         tag = _STRING if string else _Resolver().resolve(yaml.ScalarNode, text, (True, False))
         parent = self.node
         for key in path[:-1]:
             parent = _child_mapping(parent, key)
-        there = _child(parent, path[-1])
-        # RViz 1 writes a topic as a scalar, although its settings are children here.
-        plain = isinstance(there, yaml.ScalarNode) and there.tag != _NULL
-        if isinstance(there, yaml.MappingNode) or (nested and not plain):
-            parent, last = _child_mapping(parent, path[-1]), "Value"
+        existing_node = _child(parent, path[-1])
+        # RViz 1 writes a topic as a scalar, although in RViz 2 its settings are children of the topic.
+        is_scalar = isinstance(existing_node, yaml.ScalarNode) and existing_node.tag != _NULL
+        if isinstance(existing_node, yaml.MappingNode) or (nested and not is_scalar):
+            parent, last_key = _child_mapping(parent, path[-1]), "Value"
         else:
-            last = path[-1]
-        _set(parent, last, yaml.ScalarNode(tag, text))
+            last_key = path[-1]
+        _set_value(parent, last_key, yaml.ScalarNode(tag, text))
 
     def memory(self, key: str) -> Memory:
         """Return the current value of a key, for `recall`."""
-        there = _child(self.node, key)
-        return Memory(key, None if there is None else _copy(there))
+        node = _child(self.node, key)
+        return Memory(key, None if node is None else _copy(node))
 
     def recall(self, memory: Memory) -> None:
-        """Restore the former value of a key, or remove the key if it had none."""
+        """Restore the previous value of a key, or remove the key if it had no value."""
         if memory.value is not None:
-            _set(self.node, memory.key, _copy(memory.value))
+            _set_value(self.node, memory.key, _copy(memory.value))
             return
         self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
 
     def span(self, node: yaml.Node | None = None) -> Span:
-        """Return the range of a node in its file; by default that of the mapping itself."""
+        """Return the range of a node in the file, by default the range of this mapping."""
         return _span(node or self.node, self.source)
 
     def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
@@ -156,7 +156,7 @@ def parse(text: str, name: str) -> Section:
         # RViz reads only the first document of a file.
         root = next(yaml.compose_all(text, Loader=_Loader), None)
     except yaml.YAMLError as error:
-        raise LinkwrightError(_not_yaml(error, source)) from None
+        raise LinkwrightError(_yaml_diagnostic(error, source)) from None
     if not isinstance(root, yaml.MappingNode):
         message = (
             phrase("'{name}' is empty", name=name)
@@ -175,9 +175,9 @@ def write(section: Section) -> str:
     return _text_in_layout(section.node, section.source.text)
 
 
-def same(one: Section, other: Section) -> bool:
+def same(first: Section, other: Section) -> bool:
     """Return whether two documents would be written as the same text."""
-    return _plain(one.node) == _plain(other.node)
+    return _default_text(first.node) == _default_text(other.node)
 
 
 def new_section(source: SourceText) -> Section:
@@ -204,12 +204,14 @@ def insert_section(parent: Section, key: str, section: Section, before: Section 
     sequence = _child(parent.node, key)
     if not isinstance(sequence, yaml.SequenceNode):
         sequence = yaml.SequenceNode(_SEQUENCE, [], flow_style=False)
-        _set(parent.node, key, sequence)
+        _set_value(parent.node, key, sequence)
     elif sequence.flow_style and not sequence.value:
         sequence.flow_style = False
     items = sequence.value
-    at = next((index for index, item in enumerate(items) if before is not None and item is before.node), len(items))
-    items.insert(at, section.node)
+    insert_index = next(
+        (index for index, item in enumerate(items) if before is not None and item is before.node), len(items)
+    )
+    items.insert(insert_index, section.node)
 
 
 def remove_section(parent: Section, key: str, section: Section) -> None:
@@ -227,7 +229,7 @@ def entries(parent: Section, key: str) -> list[yaml.Node] | None:
 
 @dataclass(frozen=True, slots=True)
 class SequenceMemory:
-    """The former node of a key, with its items if the node was a sequence; nothing is copied."""
+    """The previous node of a key, without a copy, and its items if the node was a sequence."""
 
     node: yaml.Node | None
     items: list[yaml.Node] | None
@@ -239,13 +241,13 @@ def remember_sequence(parent: Section, key: str) -> SequenceMemory:
 
 
 def recall_sequence(parent: Section, key: str, memory: SequenceMemory) -> None:
-    """Restore the value of the key of a sequence, with its items."""
+    """Restore the node of a key, and the items of its sequence, from `remember_sequence`."""
     if memory.node is None:
         parent.recall(Memory(key, None))
         return
     if isinstance(memory.node, yaml.SequenceNode):
         memory.node.value[:] = memory.items or []
-    _set(parent.node, key, memory.node)
+    _set_value(parent.node, key, memory.node)
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,9 +255,9 @@ class NewSection:
     """A mapping that was created on demand, for `remove_unchanged`.
 
     Attributes:
-        holder: the mapping that contains the new one.
-        memory: the former value of the holder's key.
-        section: the new mapping itself.
+        holder: the mapping that contains the new mapping.
+        memory: the previous value of the holder's key.
+        section: the new mapping.
         keys: the keys that the new mapping had when it was created.
     """
 
@@ -266,32 +268,32 @@ class NewSection:
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection]]:
-    """Return the mapping at a path, created if it is missing, and all mappings created for it."""
+    """Return the mapping at a path, creating it if it is missing, and the list of created mappings."""
     new_sections = []
     for key in path:
-        there = section.section(key)
-        if there is None:
+        child_section = section.section(key)
+        if child_section is None:
             memory = section.memory(key)
-            there = ensure_section(section, key)
-            new_sections.append(NewSection(section, memory, there, there.keys()))
-        section = there
+            child_section = ensure_section(section, key)
+            new_sections.append(NewSection(section, memory, child_section, child_section.keys()))
+        section = child_section
     return section, new_sections
 
 
 def remove_unchanged(new_sections: list[NewSection]) -> list[NewSection]:
-    """Remove new mappings that have no added keys, and return the others.
+    """Remove new mappings that got no further keys, and return the remaining ones.
 
-    The mappings are removed from the last to the first, until one of them has added keys.
+    The mappings are removed from the last to the first, up to the first that has further keys.
     """
-    left = list(new_sections)
-    while left and left[-1].section.keys() == left[-1].keys:
-        gone = left.pop()
-        gone.holder.recall(gone.memory)
-    return left
+    remaining_sections = list(new_sections)
+    while remaining_sections and remaining_sections[-1].section.keys() == remaining_sections[-1].keys:
+        removed_section = remaining_sections.pop()
+        removed_section.holder.recall(removed_section.memory)
+    return remaining_sections
 
 
 def ensure_section(section: Section, *path: str) -> Section:
-    """Return the mapping at a path, created if it is missing."""
+    """Return the mapping at a path, creating it if it is missing."""
     node = section.node
     for key in path:
         node = _child_mapping(node, key)
@@ -322,36 +324,38 @@ def _span(node: yaml.Node, source: SourceText) -> Span:
 
 
 def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
-    found: yaml.Node | None = None
+    child: yaml.Node | None = None
     for name, value in node.value:
         if isinstance(name, yaml.ScalarNode) and name.value == key:
-            found = value  # the last one wins, as in RViz
-    return found
+            child = value  # the last of several equal keys is used, as in RViz
+    return child
 
 
 def _child_mapping(node: yaml.MappingNode, key: str) -> yaml.MappingNode:
-    found = _child(node, key)
-    if isinstance(found, yaml.MappingNode):
-        if found.flow_style and not found.value:
-            found.flow_style = False
-        return found
+    child = _child(node, key)
+    if isinstance(child, yaml.MappingNode):
+        if child.flow_style and not child.value:
+            child.flow_style = False
+        return child
     mapping = yaml.MappingNode(_MAPPING, [], flow_style=False)
-    if isinstance(found, yaml.ScalarNode) and found.tag != _NULL:
-        _set(mapping, "Value", found)
-    _set(node, key, mapping)
+    if isinstance(child, yaml.ScalarNode) and child.tag != _NULL:
+        _set_value(mapping, "Value", child)
+    _set_value(node, key, mapping)
     return mapping
 
 
-def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
+def _set_value(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
     for index in range(len(node.value) - 1, -1, -1):
         name = node.value[index][0]
         if isinstance(name, yaml.ScalarNode) and name.value == key:
             node.value[index] = (name, value)
             return
     names = [name.value for name, _ in node.value if isinstance(name, yaml.ScalarNode)]
-    ordered = len(names) == len(node.value) and names == sorted(names)
-    at = bisect(names, key) if ordered else len(names)  # as in RViz, whose keys are mostly in alphabetical order
-    node.value.insert(at, (yaml.ScalarNode(_STRING, key), value))
+    is_sorted = len(names) == len(node.value) and names == sorted(names)
+    position = (
+        bisect(names, key) if is_sorted else len(names)
+    )  # as in RViz, whose keys are mostly in alphabetical order
+    node.value.insert(position, (yaml.ScalarNode(_STRING, key), value))
 
 
 def _check_depth(text: str, source: SourceText) -> None:
@@ -359,44 +363,46 @@ def _check_depth(text: str, source: SourceText) -> None:
     for event in yaml.parse(text, Loader=_Loader):
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1
-            if depth > MAXIMUM_DEPTH:
-                at = event.start_mark
-                span = source.span(source.offset(at.line + 1, at.column + 1)) if at else None
-                message = phrase("nested deeper than {maximum_depth} levels", maximum_depth=MAXIMUM_DEPTH)
+            if depth > MAX_DEPTH:
+                mark = event.start_mark
+                span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
+                message = phrase(
+                    ("the document is nested more than {maximum_depth} levels deep"), maximum_depth=MAX_DEPTH
+                )
                 raise LinkwrightError(Diagnostic("RVIZ102", message, span, source=source))
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
 
 
 def _expand_aliases(root: yaml.Node, source: SourceText) -> None:
-    """Replace each alias with a copy of its node, so that an edit of one does not change the others."""
-    seen: set[int] = set()
+    """Replace each alias with a copy of its node, so that an edit of one copy does not change the others."""
+    visited_ids: set[int] = set()
     count = 0
 
-    def visit(node: yaml.Node, above: tuple[int, ...]) -> yaml.Node:
+    def visit(node: yaml.Node, ancestors: tuple[int, ...]) -> yaml.Node:
         nonlocal count
         count += 1
-        if id(node) in above or count > MAXIMUM_NODES:
+        if id(node) in ancestors or count > MAXIMUM_NODES:
             message = (
                 phrase("an alias refers to itself")
-                if id(node) in above
-                else phrase("it has more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
+                if id(node) in ancestors
+                else phrase("the file has more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
             )
             raise LinkwrightError(Diagnostic("RVIZ102", message, _span(node, source), source=source))
-        if id(node) in seen:
+        if id(node) in visited_ids:
             node = _copy(node, deep=False)
-        seen.add(id(node))
-        below = (*above, id(node))
+        visited_ids.add(id(node))
+        path = (*ancestors, id(node))
         if isinstance(node, yaml.SequenceNode):
-            node.value[:] = [visit(item, below) for item in node.value]
+            node.value[:] = [visit(item, path) for item in node.value]
         elif isinstance(node, yaml.MappingNode):
-            node.value[:] = [(visit(key, below), visit(value, below)) for key, value in node.value]
+            node.value[:] = [(visit(key, path), visit(value, path)) for key, value in node.value]
         return node
 
     visit(root, ())
 
 
-def _not_yaml(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
+def _yaml_diagnostic(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
     span = None
@@ -406,33 +412,37 @@ def _not_yaml(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
     if span is not None and "\t" in source.line(span.line):
         hint = phrase("indent with spaces: YAML does not allow tabs")
     return Diagnostic(
-        "RVIZ102", phrase("not valid YAML: {problem}", problem=foreign(problem)), span, hint=hint, source=source
+        "RVIZ102",
+        phrase("the file is not valid YAML: {problem}", problem=foreign(problem)),
+        span,
+        hint=hint,
+        source=source,
     )
 
 
 _PlainDumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
-_ENDLESS = 2**30
+_UNLIMITED_WIDTH = 2**30
 """A width at which lines are never broken."""
 
-_EMPTY_BELOW = re.compile(r"^ +\{\}\r?$", re.MULTILINE)
+_EMPTY_MAPPING_LINE = re.compile(r"^ +\{\}\r?$", re.MULTILINE)
 _INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
 
 
 def _text_in_layout(node: yaml.Node, source: str) -> str:
     """Return a node as text in the layout of a source text."""
     if not _INDENTED_ITEMS.search(source):
-        return _plain(node)
-    return _serialize(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
+        return _default_text(node)
+    return _serialize(node, _RvizDumper if _EMPTY_MAPPING_LINE.search(source) else _IndentingDumper)
 
 
-def _plain(node: yaml.Node) -> str:
+def _default_text(node: yaml.Node) -> str:
     """Return a document as text in libyaml's default layout, which is fast."""
     return _serialize(node, _PlainDumper)
 
 
 def _serialize(node: yaml.Node, dumper: Any) -> str:
-    text: str = yaml.serialize(node, Dumper=dumper, width=_ENDLESS, allow_unicode=True)
+    text: str = yaml.serialize(node, Dumper=dumper, width=_UNLIMITED_WIDTH, allow_unicode=True)
     return text
 
 
@@ -444,7 +454,7 @@ class _IndentingDumper(yaml.SafeDumper):
 
 
 class _RvizDumper(_IndentingDumper):
-    """A YAML dumper with RViz's layout, in which even an empty mapping is on a line of its own."""
+    """A YAML dumper with the layout of RViz, which puts even an empty mapping on a separate line."""
 
     def expect_block_mapping_simple_value(self) -> None:
         if not (isinstance(self.event, yaml.MappingStartEvent) and self.check_empty_mapping()):

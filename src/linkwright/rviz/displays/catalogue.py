@@ -1,6 +1,7 @@
 """The registry of display classes, by the names that .rviz files use for them.
 
-Displays are found through the entry points ``linkwright.displays``, which are named as .rviz files name the class. A
+Displays are registered as entry points of the group ``linkwright.displays``. The name of an entry point is the name of
+the class in .rviz files. A
 display class is imported when its first display is created: most configurations use only a few classes, and the program
 must start quickly.
 """
@@ -35,7 +36,10 @@ class UnsupportedDisplay(ViewerDisplay):
 
     def enabled_changed(self) -> None:
         """Show in the status that displays of this class are not drawn, if the display is enabled."""
-        text = phrase("Displays of class '{name}' are kept in the file but not drawn", name=self.config.cls)
+        text = phrase(
+            ("Displays of class '{name}' are not supported: they stay in the file but are not drawn"),
+            name=self.config.cls,
+        )
         self.set_status([StatusRow("Class", "warn", text)])
 
 
@@ -44,33 +48,33 @@ GROUP = "linkwright.displays"
 
 
 def has_display(cls: str) -> bool:
-    """Return whether a display class has an entry point; groups have one too."""
+    """Return whether a display class has an entry point, as every available class has, including groups."""
     return cls in extensions(GROUP)
 
 
 def display_classes() -> list[type[ViewerDisplay]]:
     """Return the display classes that can be imported, including the group class."""
-    return [found for cls in extensions(GROUP) if isinstance(found := _display_class(cls), type)]
+    return [display_class for cls in extensions(GROUP) if isinstance(display_class := _display_class(cls), type)]
 
 
 def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
-    """Create the display for an entry of the file; an `UnsupportedDisplay` if its class is not available."""
+    """Return a new display for an entry of the file; an `UnsupportedDisplay` if its class is not available."""
     if not has_display(config.cls):
         return UnsupportedDisplay(host, identity, config)
-    found = _display_class(config.cls)
-    if isinstance(found, str):
-        host.context.node.get_logger().error(f"Displays of class '{config.cls}' cannot be imported: {found}")
+    display_class = _display_class(config.cls)
+    if isinstance(display_class, str):
+        host.context.node.get_logger().error(f"Displays of class '{config.cls}' cannot be imported: {display_class}")
         return UnsupportedDisplay(host, identity, config)
-    return found(host, identity, config)
+    return display_class(host, identity, config)
 
 
 @cache
 def _display_class(cls: str) -> type[ViewerDisplay] | str:
     """Return the class that an entry point names, or the reason why the class cannot be loaded."""
     try:
-        found = extensions(GROUP)[cls].load()
+        display_class = extensions(GROUP)[cls].load()
     except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
         return f"{type(error).__name__}: {error}"
-    if not (isinstance(found, type) and issubclass(found, ViewerDisplay)):
-        return f"{found!r} is not a class derived from ViewerDisplay"
-    return found
+    if not (isinstance(display_class, type) and issubclass(display_class, ViewerDisplay)):
+        return f"{display_class!r} is not a class derived from ViewerDisplay"
+    return display_class

@@ -1,4 +1,4 @@
-"""The colours of detection classes: a class name has the same colour wherever it is shown."""
+"""The colours of detection classes, which are the same in all displays."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TypeAlias
 import yaml
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.images.colour_words import paint_of
+from linkwright.images.colour_words import find_rgb
 
 Color: TypeAlias = tuple[int, int, int]
 
@@ -22,7 +22,7 @@ KNOWN: dict[str, Color] = {
 }
 """The classes to which vision_msgs_rviz_plugins gives fixed colours."""
 
-UNNAMED: Color = (255, 22, 80)
+UNCLASSIFIED_COLOR: Color = (255, 22, 80)
 """The colour of detections without a class, as in vision_msgs_rviz_plugins."""
 
 _PALETTE: tuple[Color, ...] = (
@@ -44,14 +44,14 @@ _PALETTE: tuple[Color, ...] = (
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
     """Return the colour of a detection class.
 
-    The colour is taken from the table, or else from vision_msgs_rviz_plugins, from a colour word in the name, or from a
-    palette. Detections without a class have the colour `UNNAMED`.
+    The colour is the first that is found in the table, in vision_msgs_rviz_plugins, as a colour word in the name, or
+    in a palette. Detections without a class have the colour `UNCLASSIFIED_COLOR`.
     """
     if not name:
-        return UNNAMED
-    lower = name.lower()
-    known = table.get(lower) or KNOWN.get(lower) or paint_of(name)
-    return known or _PALETTE[zlib.crc32(name.encode()) % len(_PALETTE)]
+        return UNCLASSIFIED_COLOR
+    lower_name = name.lower()
+    color = table.get(lower_name) or KNOWN.get(lower_name) or find_rgb(name)
+    return color or _PALETTE[zlib.crc32(name.encode()) % len(_PALETTE)]
 
 
 def read_class_colors(path: str) -> dict[str, Color]:
@@ -60,22 +60,26 @@ def read_class_colors(path: str) -> dict[str, Color]:
     An entry is ``NAME: {r: 255, g: 165, b: 0}``.
 
     Raises:
-        ValueError: the file cannot be read, or is not such a table; the message gives the reason.
+        ValueError: the file cannot be read, or does not contain such a table; the message gives the reason.
     """
     try:
         document = yaml.safe_load(Path(path).expanduser().read_text(encoding="utf-8"))
     except OSError as error:
         raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(error.strerror))) from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
-        text = " ".join(str(error).split())
-        raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(text))) from None
+        reason = " ".join(str(error).split())
+        raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason))) from None
     if not isinstance(document, dict) or not all(_is_color(color) for color in document.values()):
-        raise ValueError(phrase("'{path}' contains no colours, such as: 'ball: {{r: 255, g: 0, b: 0}}'", path=path))
+        raise ValueError(
+            phrase(
+                ("'{path}' is not a table of colours: write entries such as 'ball: {{r: 255, g: 0, b: 0}}'"), path=path
+            )
+        )
     return {str(name).lower(): (color["r"], color["g"], color["b"]) for name, color in document.items()}
 
 
 def _is_color(value: object) -> bool:
     if not isinstance(value, dict):
         return False
-    parts = [value.get(part) for part in "rgb"]
-    return all(isinstance(part, int) and 0 <= part <= 255 for part in parts)
+    components = [value.get(part) for part in "rgb"]
+    return all(isinstance(part, int) and 0 <= part <= 255 for part in components)

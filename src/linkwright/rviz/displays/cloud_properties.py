@@ -1,4 +1,4 @@
-"""The properties shared by all displays of points: RViz's PointCloudCommon and its transformers."""
+"""The properties shared by all displays of points, as in RViz's PointCloudCommon and its transformers."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ STYLE_SPECS: Schema = (
     ),
 )
 
-_INTENSITY = ((COLOUR_TRANSFORMER,), "Intensity")
-_AXIS = ((COLOUR_TRANSFORMER,), "AxisColor")
-_PLAIN = (("Use rainbow",), False)
+_IS_INTENSITY = ((COLOUR_TRANSFORMER,), "Intensity")
+_IS_AXIS = ((COLOUR_TRANSFORMER,), "AxisColor")
+_WITHOUT_RAINBOW = (("Use rainbow",), False)
 
 TRANSFORMER_SPECS: Schema = (
     PropertySpec(POSITION_TRANSFORMER, "enum", "XYZ", "The source of the points' positions.", options=("XYZ",)),
@@ -52,20 +52,20 @@ TRANSFORMER_SPECS: Schema = (
         "intensity",
         "The channel that contains the intensity.",
         options=("intensity",),
-        when=_INTENSITY,
+        when=_IS_INTENSITY,
     ),
     PropertySpec(
         "Use rainbow",
         "bool",
         True,
         "Use the colours of the rainbow, instead of a gradient between two colours.",
-        when=_INTENSITY,
+        when=_IS_INTENSITY,
     ),
     PropertySpec("Invert Rainbow", "bool", False, "Reverse the rainbow.", when=(("Use rainbow",), True)),
-    PropertySpec("Min Color", "color", "#000000", "Colour of the minimum intensity.", when=_PLAIN),
-    PropertySpec("Max Color", "color", "#ffffff", "Colour of the maximum intensity.", when=_PLAIN),
+    PropertySpec("Min Color", "color", "#000000", "Colour of the minimum intensity.", when=_WITHOUT_RAINBOW),
+    PropertySpec("Max Color", "color", "#ffffff", "Colour of the maximum intensity.", when=_WITHOUT_RAINBOW),
     PropertySpec(
-        AUTO_INTENSITY, "bool", True, "Use the minimum and maximum intensity of each message.", when=_INTENSITY
+        AUTO_INTENSITY, "bool", True, "Use the minimum and maximum intensity of each message.", when=_IS_INTENSITY
     ),
     PropertySpec(
         MIN_INTENSITY, "float", 0.0, "The intensity that is shown in the first colour.", when=((AUTO_INTENSITY,), False)
@@ -77,13 +77,13 @@ TRANSFORMER_SPECS: Schema = (
         "The intensity that is shown in the last colour.",
         when=((AUTO_INTENSITY,), False),
     ),
-    PropertySpec("Axis", "enum", "Z", "The axis along which the colour changes.", options=AXES, when=_AXIS),
+    PropertySpec("Axis", "enum", "Z", "The axis along which the colour changes.", options=AXES, when=_IS_AXIS),
     PropertySpec(
         AUTO_VALUES,
         "bool",
         True,
         "Use the minimum and maximum coordinate of each message.",
-        when=_AXIS,
+        when=_IS_AXIS,
         expanded=True,
         children=(
             PropertySpec(
@@ -107,33 +107,33 @@ TRANSFORMER_SPECS: Schema = (
         "bool",
         True,
         "Use the coordinates in the Fixed Frame, not those in the frame of the message.",
-        when=_AXIS,
+        when=_IS_AXIS,
     ),
     PropertySpec("Color", "color", "#ffffff", "The colour of every point.", when=((COLOUR_TRANSFORMER,), "FlatColor")),
 )
 
 COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
-"""The properties that affect the colours of points; the page applies a single colour itself."""
+"""The properties that affect the computed colours of points; the page itself applies ``Color``."""
 
 
-def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:
+def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool | None = None) -> Schema:
     """Return the properties of a display whose points are coloured by one number, such as a temperature.
 
-    The properties that offer no choice are hidden, as in RViz.
+    Properties with only one possible value are hidden, as in RViz.
 
     Args:
         channel: the channel that contains the number.
-        least: the default of ``Min Intensity``.
-        largest: the default of ``Max Intensity``.
-        inverted: the value of ``Invert Rainbow``, which is then hidden; None to let the user choose.
+        minimum: the default of ``Min Intensity``.
+        maximum: the default of ``Max Intensity``.
+        inverted: the fixed value of ``Invert Rainbow``, whose row is hidden; None to let the user choose.
     """
     changes: dict[str, dict[str, Any]] = {
         POSITION_TRANSFORMER: {"hidden": True},
         COLOUR_TRANSFORMER: {"hidden": True, "default": "Intensity"},
         CHANNEL: {"hidden": True, "default": channel},
         AUTO_INTENSITY: {"hidden": True, "default": False},
-        MIN_INTENSITY: {"default": least},
-        MAX_INTENSITY: {"default": largest},
+        MIN_INTENSITY: {"default": minimum},
+        MAX_INTENSITY: {"default": maximum},
     }
     if inverted is not None:
         changes["Invert Rainbow"] = {"hidden": True, "default": inverted}
@@ -144,8 +144,8 @@ def colour_settings(properties: PropertyStore) -> ColourSettings:
     """Return the colour settings from the values of the properties."""
     flag, number, text = properties.flag, properties.number, properties.text
 
-    def bounds(auto: str, *paths: Path) -> tuple[float, float] | None:
-        return None if flag(auto) else (number(*paths[0]), number(*paths[1]))
+    def bounds(auto_property: str, *paths: Path) -> tuple[float, float] | None:
+        return None if flag(auto_property) else (number(*paths[0]), number(*paths[1]))
 
     return ColourSettings(
         transformer=text(COLOUR_TRANSFORMER),

@@ -110,14 +110,14 @@ DEPTH_SCHEMA: Schema = (
 )
 
 DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPTH_SCHEMA)
-"""The schema for ``Topic Filter`` off: topics of any name are offered."""
+"""The schema if ``Topic Filter`` is off: topics with any name are offered."""
 
-_SYNC_NS = 500_000_000
-"""The largest time between a colour image and its depths, nanoseconds."""
+_MAX_TIME_DIFFERENCE_NS = 500_000_000
+"""The largest time between a colour image and its depth image, in nanoseconds."""
 
 # The camera has moved if its pose changes by more than these values, in metres and radians.
-_MOVED = 0.01
-_TURNED = np.radians(0.5)
+_MOVE_THRESHOLD = 0.01
+_TURN_THRESHOLD = np.radians(0.5)
 
 
 class DepthCloudDisplay(CloudDisplay):
@@ -130,17 +130,17 @@ class DepthCloudDisplay(CloudDisplay):
     TOPIC_ROW: ClassVar[str] = "Depth Map"
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
-        self._filters = True
+        self._is_filtered = True
         super().__init__(host, identity, config)
-        self._filters = self.properties.flag(TOPIC_FILTER)
-        self._infos = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._info_received)
-        self._colours: SideTopic | None = None
+        self._is_filtered = self.properties.flag(TOPIC_FILTER)
+        self._info_topic = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._on_info)
+        self._colour_topic: SideTopic | None = None
         self._depth_unpacker = Unpacker()
         self._colour_unpacker = Unpacker()
         self._builder = DepthCloudBuilder()
         self._info: Any = None
-        self._pixel = 0.0
-        self._recent: deque[Any] = deque()
+        self._pixel_width = 0.0
+        self._recent_colours: deque[Any] = deque()
         self._pending: tuple[Any, Pose] | None = None
         self._camera_pose: Pose | None = None
 
@@ -150,18 +150,22 @@ class DepthCloudDisplay(CloudDisplay):
         return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
-        """Return the maximum number of queued depth images, and of colour images that are stored."""
+        """Return the maximum number of queued depth images, which is also that of stored colour images."""
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
-        """Return the width that a point has per metre of distance, or 0 if ``Auto Size`` is off."""
-        return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
+        """Return the width of a point in m per metre of its distance, or 0 if ``Auto Size`` is off."""
+        return (
+            self._pixel_width * self.properties.number(AUTO_SIZE, SIZE_FACTOR)
+            if self.properties.flag(AUTO_SIZE)
+            else 0.0
+        )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a depth image, or store it until its CameraInfo and its colour image have arrived."""
         assert pose is not None
-        colour = self._colour_of(message) if self._wants_colour() else None
-        if self._info is None or (colour is None and self._wants_colour()):
+        colour = self._nearest_colour(message) if self._has_colour_topic() else None
+        if self._info is None or (colour is None and self._has_colour_topic()):
             self._pending = (message, pose)
             return
         self._pending = None
@@ -169,7 +173,7 @@ class DepthCloudDisplay(CloudDisplay):
 
     def schema(self) -> Schema:
         """Return the properties; with ``Topic Filter``, only topics with suitable names are offered."""
-        return DEPTH_SCHEMA if self._filters else DEPTH_SCHEMA_UNFILTERED
+        return DEPTH_SCHEMA if self._is_filtered else DEPTH_SCHEMA_UNFILTERED
 
     def changed(self, path: Path) -> None:
         """Subscribe to other topics, apply the topic filter, or redraw the last depth image."""
@@ -177,7 +181,7 @@ class DepthCloudDisplay(CloudDisplay):
             self._restart()
             return
         if path == (TOPIC_FILTER,):
-            self._filters = self.properties.flag(TOPIC_FILTER)
+            self._is_filtered = self.properties.flag(TOPIC_FILTER)
             self.publish_properties()
         super().changed(path)
         if path[0] in (AUTO_SIZE, OCCLUSION):
@@ -185,9 +189,9 @@ class DepthCloudDisplay(CloudDisplay):
 
     def time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
-        self._infos.resume()
-        if self._colours is not None:
-            self._colours.resume()
+        self._info_topic.resume()
+        if self._colour_topic is not None:
+            self._colour_topic.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -197,17 +201,17 @@ class DepthCloudDisplay(CloudDisplay):
         self._pending = None
         if self.last is None:
             self._info = None
-            self._recent.clear()
+            self._recent_colours.clear()
         super().reset()
 
     # --- topics ------------------------------------------------------------------------------------------------
 
     def _qos(self) -> QoSProfile:
-        reliable = self.properties.text(RELIABILITY) == "Reliable"
+        is_reliable = self.properties.text(RELIABILITY) == "Reliable"
         return QoSProfile(
             depth=int(self.properties.number(QUEUE_SIZE)),
             history=HistoryPolicy.KEEP_LAST,
-            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+            reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
         )
 
     def _depth_source(self) -> ImageSource:
@@ -219,7 +223,7 @@ class DepthCloudDisplay(CloudDisplay):
     def _subscribe(self) -> None:
         depth, colour = self._depth_source(), self._colour_source()
         for name, source in ((DEPTH_TRANSPORT, depth), (COLOUR_TRANSPORT, colour)):
-            if not source.is_read:
+            if not source.is_supported:
                 choice = phrase("choose raw, compressed or compressedDepth")
                 self.set_status_row(
                     name,
@@ -230,54 +234,54 @@ class DepthCloudDisplay(CloudDisplay):
                         choice=choice,
                     ),
                 )
-        if not (depth.is_read and colour.is_read):
+        if not (depth.is_supported and colour.is_supported):
             return
         super()._subscribe()
         if not depth.topic:
             return
         info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth.base)
-        problem = self._infos.listen(info, self._qos())
+        problem = self._info_topic.listen(info, self._qos())
         self.set_status_row(
             "Depth Camera Info",
             "error" if problem else "warn",
             problem or phrase("No CameraInfo received on [{topic}]", topic=info),
         )
         if colour.topic:
-            self._colours = SideTopic(self.host, colour.message_type, self._colour_received)
-            if problem := self._colours.listen(colour.topic, self._qos()):
+            self._colour_topic = SideTopic(self.host, colour.message_type, self._on_colour)
+            if problem := self._colour_topic.listen(colour.topic, self._qos()):
                 self.set_status_row("Message", "error", problem)
             self.choose_transformer("RGB8")
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
-        self._infos.close()
-        if self._colours is not None:
-            self._colours.close()
-            self._colours = None
+        self._info_topic.close()
+        if self._colour_topic is not None:
+            self._colour_topic.close()
+            self._colour_topic = None
 
-    def _info_received(self, info: Any) -> None:
+    def _on_info(self, info: Any) -> None:
         self._info = info
         self.set_status_row("Depth Camera Info", "ok", phrase("OK"))
         self._try_pending()
 
-    def _colour_received(self, message: Any) -> None:
-        self._recent.append(message)
-        while len(self._recent) > self.most_waiting():
-            self._recent.popleft()
+    def _on_colour(self, message: Any) -> None:
+        self._recent_colours.append(message)
+        while len(self._recent_colours) > self.most_waiting():
+            self._recent_colours.popleft()
         self._try_pending()
 
     def _try_pending(self) -> None:
         if self._pending is not None:
             self.process_message(*self._pending)
 
-    def _wants_colour(self) -> bool:
+    def _has_colour_topic(self) -> bool:
         return bool(self.properties.text(COLOUR_TOPIC).strip())
 
-    def _colour_of(self, depth: Any) -> Any:
-        """Return the colour image nearest in time, or None if none is close enough."""
-        at = self.frame_of(depth)[1]
-        nearest = min(self._recent, key=lambda image: abs(self.frame_of(image)[1] - at), default=None)
-        if nearest is None or abs(self.frame_of(nearest)[1] - at) > _SYNC_NS:
+    def _nearest_colour(self, depth: Any) -> Any:
+        """Return the colour image that is nearest in time to a depth image, or None if none is close enough."""
+        stamp_ns = self.frame_of(depth)[1]
+        nearest = min(self._recent_colours, key=lambda image: abs(self.frame_of(image)[1] - stamp_ns), default=None)
+        if nearest is None or abs(self.frame_of(nearest)[1] - stamp_ns) > _MAX_TIME_DIFFERENCE_NS:
             return None
         return nearest
 
@@ -285,7 +289,7 @@ class DepthCloudDisplay(CloudDisplay):
 
     def _show_depths(self, message: Any, pose: Pose, colour: Any) -> None:
         try:
-            points = self._points(message, pose, colour)
+            points = self._make_points(message, pose, colour)
         except BadCloudError as error:
             self.set_status_row("Message", "error", foreign(error))
             return
@@ -306,7 +310,7 @@ class DepthCloudDisplay(CloudDisplay):
             self.set_status_row("Message", "ok", phrase("Ok"))
         self.show(points, pose, self.frame_of(message)[1])
 
-    def _points(self, message: Any, pose: Pose, colour: Any) -> Points:
+    def _make_points(self, message: Any, pose: Pose, colour: Any) -> Points:
         depth = self._depth_unpacker.image(message, self._depth_source().transport)
         self.set_status_row(
             "Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height)
@@ -319,18 +323,20 @@ class DepthCloudDisplay(CloudDisplay):
             )
             image = decode_image(colour, RangeFinder())
         camera = DepthCamera.of(self._info, depth.width, depth.height)
-        self._pixel = camera.pixel
-        keep = self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
-        if keep is not None and self._has_moved(pose):
+        self._pixel_width = camera.pixel
+        covered_seconds = (
+            self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
+        )
+        if covered_seconds is not None and self._has_moved(pose):
             self._builder.reset()
-        return self._builder.points(depth, camera, image, keep_covered=keep, now=time.monotonic())
+        return self._builder.points(depth, camera, image, keep_covered=covered_seconds, now=time.monotonic())
 
     def _has_moved(self, pose: Pose) -> bool:
-        before = self._camera_pose
-        if before is not None:
-            distance = float(np.linalg.norm(pose[:3] - before[:3]))
-            turn = 2.0 * np.arccos(min(1.0, abs(float(np.dot(pose[3:], before[3:])))))
-            if distance <= _MOVED and turn <= _TURNED:
+        previous_pose = self._camera_pose
+        if previous_pose is not None:
+            distance = float(np.linalg.norm(pose[:3] - previous_pose[:3]))
+            angle = 2.0 * np.arccos(min(1.0, abs(float(np.dot(pose[3:], previous_pose[3:])))))
+            if distance <= _MOVE_THRESHOLD and angle <= _TURN_THRESHOLD:
                 return False
         self._camera_pose = pose
         return True

@@ -23,26 +23,27 @@ from linkwright.rviz.displays.image import ImageDisplay
 
 DETECTIONS = "Detections Topic"
 THRESHOLD = "Threshold"
-_TYPE = "vision_msgs/msg/Detection2DArray"
-_BOXES = "boxes"
-_MOST_IMAGES = 10
-"""Images that wait for their detections."""
+_DETECTIONS_TYPE = "vision_msgs/msg/Detection2DArray"
+_BOXES_KEY = "boxes"
+_MAX_IMAGES = 10
+"""The largest number of images that wait for their detections."""
 
 _PATIENCE = 1.0
-"""Seconds without detections after which images are shown at once."""
+"""Images are shown immediately after this many seconds without detections."""
 
 
 class DetectionImageDisplay(ImageDisplay):
-    """A display of images in a panel of their own, with boxes around the detected objects.
+    """A display of images in a separate panel, with boxes around the detected objects.
 
-    While detections arrive, each image is stored until the detections with the same stamp have arrived, so that images
-    are delayed by the detector. Detections for an image that is no longer stored are drawn over the current image.
+    While detections arrive, each image is stored until the detections with the same stamp arrive. Images are therefore
+    delayed by the time that the detector
+    needs. Detections for an image that is no longer stored are drawn over the current image.
     """
 
     CLASS = "linkwright/Detections"
     SCHEMA = (
         *ImageDisplay.SCHEMA,
-        topic_spec(DETECTIONS, "/yolo/detections", _TYPE, messages=(_TYPE,)),
+        topic_spec(DETECTIONS, "/yolo/detections", _DETECTIONS_TYPE, messages=(_DETECTIONS_TYPE,)),
         PropertySpec(
             THRESHOLD,
             "float",
@@ -57,10 +58,10 @@ class DetectionImageDisplay(ImageDisplay):
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self._side = SideTopic(host, _TYPE, self._detected)
+        self._detections_topic = SideTopic(host, _DETECTIONS_TYPE, self._on_detections)
         self._threshold = DetectorThreshold(host.context.node, partial(self.set_status_row, THRESHOLD))
-        self._images: deque[Any] = deque(maxlen=_MOST_IMAGES)
-        self._detected_at = float("-inf")
+        self._images: deque[Any] = deque(maxlen=_MAX_IMAGES)
+        self._last_detection_time = float("-inf")
 
     def schema(self) -> Schema:
         """Return the properties of an image display and of the boxes."""
@@ -73,49 +74,53 @@ class DetectionImageDisplay(ImageDisplay):
             self._threshold.close()
             self.delete_status_row(THRESHOLD)
             if self.enabled:
-                self._listen()
+                self._subscribe_detections()
         elif path[0] == THRESHOLD and self.enabled:
             self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
         """Store an image until its detections arrive, or show it if no detections arrived recently."""
-        if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
+        if asyncio.get_running_loop().time() - self._last_detection_time < _PATIENCE:
             self._images.append(message)
             return
         self._images.clear()
-        self.forget(_BOXES)
+        self.forget(_BOXES_KEY)
         super().process_image(message, pose)
 
     def time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
-        self._side.resume()
+        self._detections_topic.resume()
         super().time_changed()
 
     def reset(self) -> None:
         """Discard the image and the boxes."""
         self._images.clear()
-        self._detected_at = float("-inf")
+        self._last_detection_time = float("-inf")
         super().reset()
 
     def _subscribe(self) -> None:
         super()._subscribe()
-        self._listen()
+        self._subscribe_detections()
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
-        self._side.close()
+        self._detections_topic.close()
         self._threshold.close()
 
-    def _listen(self) -> None:
+    def _subscribe_detections(self) -> None:
         topic = self.properties.text(DETECTIONS).strip()
-        problem = self._side.listen(topic, qos_of(self.properties, DETECTIONS)) if topic else phrase("Empty topic name")
+        problem = (
+            self._detections_topic.listen(topic, qos_of(self.properties, DETECTIONS))
+            if topic
+            else phrase("Empty topic name")
+        )
         if problem:
             self.set_status_row(DETECTIONS, "error", problem)
         else:
             self.delete_status_row(DETECTIONS)
 
-    def _detected(self, message: Any) -> None:
-        self._detected_at = asyncio.get_running_loop().time()
+    def _on_detections(self, message: Any) -> None:
+        self._last_detection_time = asyncio.get_running_loop().time()
         _, stamp_ns = self.frame_of(message)
         image = next((image for image in self._images if self.frame_of(image)[1] == stamp_ns), None)
         content = _boxes(message, of_image=image is not None)
@@ -125,7 +130,7 @@ class DetectionImageDisplay(ImageDisplay):
             )
             return
         self.delete_status_row(DETECTIONS)
-        self.send(content, key=_BOXES, stamp_ns=stamp_ns)
+        self.send(content, key=_BOXES_KEY, stamp_ns=stamp_ns)
         if image is not None:
             while self._images.popleft() is not image:
                 pass
@@ -137,15 +142,15 @@ def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
 
     Args:
         message: the detections.
-        of_image: whether the image of the detections is shown next.
+        of_image: whether the boxes belong to the next image, which is still stored.
     """
     detections = list(message.detections)
     results = [best_result(detection) for detection in detections]
-    middles = [detection.bbox.center for detection in detections]
+    centers = [detection.bbox.center for detection in detections]
     boxes = np.array(
         [
-            (middle.position.x, middle.position.y, found_object.bbox.size_x, found_object.bbox.size_y, middle.theta)
-            for middle, found_object in zip(middles, detections, strict=True)
+            (center.position.x, center.position.y, detection.bbox.size_x, detection.bbox.size_y, center.theta)
+            for center, detection in zip(centers, detections, strict=True)
         ],
         dtype=np.float32,
     ).reshape(-1, 5)

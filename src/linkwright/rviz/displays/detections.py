@@ -19,7 +19,7 @@ from linkwright.rviz.displays.class_colors import Color, class_color, read_class
 
 ONLY_EDGE, CONFIG_PATH, LIFETIME = "Only Edge", "ConfigPath", "Lifetime"
 
-_LOOK: Schema = (
+_BOX_PROPERTIES: Schema = (
     PropertySpec(ONLY_EDGE, "bool", False, "Draw only the edges of the boxes."),
     PropertySpec(
         "Line Width",
@@ -32,11 +32,11 @@ _LOOK: Schema = (
     ),
     PropertySpec("Alpha", "float", 1.0, "Opacity of the boxes.", minimum=0.1, maximum=1.0),
 )
-_COLOUR = PropertySpec("Color", "color", "#ffff00", "Colour of the boxes.")
+_COLOUR_PROPERTY = PropertySpec("Color", "color", "#ffff00", "Colour of the boxes.")
 CLASS_COLOURS = PropertySpec(
     CONFIG_PATH, "string", "", "A YAML file with colours of classes, such as 'ball: {r: 255, g: 0, b: 0}'."
 )
-_CLASSES: Schema = (
+_CLASS_PROPERTIES: Schema = (
     PropertySpec("Show Score", "bool", False, "Write class and score above each box."),
     CLASS_COLOURS,
     PropertySpec(
@@ -51,22 +51,22 @@ class _BoxDisplay(RecentDisplay):
     def _content(
         self, boxes: Sequence[Any], colors: Sequence[Color], scores: Sequence[float], names: Sequence[str]
     ) -> DataContent | None:
-        poses = np.array([_numbers(box.center) for box in boxes], dtype=np.float32).reshape(-1, 7)
+        poses = np.array([_pose_values(box.center) for box in boxes], dtype=np.float32).reshape(-1, 7)
         sizes = np.array([(box.size.x, box.size.y, box.size.z) for box in boxes], dtype=np.float32).reshape(-1, 3)
         if not self.is_finite(poses, sizes):
             return None
-        marked = np.array(colors, dtype=np.uint8).reshape(-1, 3)
-        return SolidBoxes(poses, sizes, marked, np.array(scores, dtype=np.float32), list(names))
+        color_array = np.array(colors, dtype=np.uint8).reshape(-1, 3)
+        return SolidBoxes(poses, sizes, color_array, np.array(scores, dtype=np.float32), list(names))
 
 
-def _numbers(pose: Any) -> tuple[float, ...]:
+def _pose_values(pose: Any) -> tuple[float, ...]:
     """Return a pose message as x y z qx qy qz qw.
 
     A zero quaternion, the default in messages, becomes the identity rotation.
     """
-    position, turn = pose.position, pose.orientation
-    w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
-    return (position.x, position.y, position.z, turn.x, turn.y, turn.z, w)
+    position, orientation = pose.position, pose.orientation
+    w = orientation.w if any((orientation.x, orientation.y, orientation.z, orientation.w)) else 1.0
+    return (position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, w)
 
 
 class BoundingBox3DArrayDisplay(_BoxDisplay):
@@ -74,10 +74,10 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3DArray"
     MESSAGE = "vision_msgs/msg/BoundingBox3DArray"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOUR_PROPERTY)
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the boxes of a message, in white; pages draw them in the colour of the property."""
+        """Return the boxes of a message in white, which pages replace with the colour of the property."""
         boxes = self.boxes_of(message)
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
@@ -91,7 +91,7 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
     MESSAGE = "vision_msgs/msg/BoundingBox3D"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOUR_PROPERTY)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the Fixed Frame, and 0 for the latest time."""
@@ -107,10 +107,10 @@ def best_result(detection: Any) -> tuple[str, float]:
 
     If there are no hypotheses, return an empty class and a score of -1.
     """
-    best = max(
+    best_hypothesis = max(
         (result.hypothesis for result in detection.results), key=lambda hypothesis: hypothesis.score, default=None
     )
-    return ("", -1.0) if best is None else (best.class_id, best.score)
+    return ("", -1.0) if best_hypothesis is None else (best_hypothesis.class_id, best_hypothesis.score)
 
 
 class Detection3DArrayDisplay(_BoxDisplay):
@@ -118,12 +118,12 @@ class Detection3DArrayDisplay(_BoxDisplay):
 
     CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
     MESSAGE = "vision_msgs/msg/Detection3DArray"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, *_CLASS_PROPERTIES)
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._table: dict[str, Color] = {}
-        self._end: asyncio.TimerHandle | None = None
+        self._end_timer: asyncio.TimerHandle | None = None
 
     def start(self) -> None:
         """Read the class colours, and subscribe."""
@@ -144,12 +144,12 @@ class Detection3DArrayDisplay(_BoxDisplay):
             self.show_again()
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the boxes until the next message, or for the seconds of the lifetime property."""
+        """Show the boxes until the next message or, if ``Lifetime`` is set, for this number of seconds."""
         super().process_message(message, pose)
         self._cancel_end()
         seconds = int(self.properties.number(LIFETIME))
         if seconds:
-            self._end = asyncio.get_running_loop().call_later(seconds, self.reset)
+            self._end_timer = asyncio.get_running_loop().call_later(seconds, self.reset)
 
     def reset(self) -> None:
         """Discard the boxes."""
@@ -179,9 +179,9 @@ class Detection3DArrayDisplay(_BoxDisplay):
                 self.set_status_row(CONFIG_PATH, "error", foreign(error))
 
     def _cancel_end(self) -> None:
-        if self._end is not None:
-            self._end.cancel()
-            self._end = None
+        if self._end_timer is not None:
+            self._end_timer.cancel()
+            self._end_timer = None
 
 
 class Detection3DDisplay(Detection3DArrayDisplay):
@@ -189,7 +189,7 @@ class Detection3DDisplay(Detection3DArrayDisplay):
 
     CLASS = "vision_msgs_rviz_plugins/Detection3D"
     MESSAGE = "vision_msgs/msg/Detection3D"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, *_CLASS_PROPERTIES)
 
     def detections_of(self, message: Any) -> Sequence[Any]:
         """Return the single detection of the message."""

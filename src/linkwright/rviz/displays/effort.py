@@ -25,7 +25,7 @@ _DESCRIPTION = "Robot Description"
 _PREFIX = "TF Prefix"
 _JOINTS = "Joints"
 _URDF = "URDF"
-_TURNING = ("revolute", "continuous")
+_ROTATING_TYPES = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
@@ -61,19 +61,19 @@ class EffortDisplay(RecentDisplay):
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._joints: dict[str, Joint] | None = None
-        self._descriptions: Any = None
+        self._description_subscription: Any = None
         super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
-        """Return the fixed properties, and a check box for each revolute or continuous joint with a limit."""
+        """Return the fixed properties, and a check box for each revolute or continuous joint with limits."""
         names = sorted(self._joints or ())
-        boxes = tuple(
+        joint_specs = tuple(
             PropertySpec(name, "bool", True, "Draw the ring of this joint.", nested=True, details="effort")
             for name in names
         )
         return (
             *self.SCHEMA,
-            PropertySpec(_JOINTS, "group", description="The revolute and continuous joints.", children=boxes),
+            PropertySpec(_JOINTS, "group", description="The revolute and continuous joints.", children=joint_specs),
         )
 
     def start(self) -> None:
@@ -83,7 +83,7 @@ class EffortDisplay(RecentDisplay):
 
     def stop(self) -> None:
         """Unsubscribe."""
-        self._leave()
+        self._unsubscribe_description()
         super().stop()
 
     def changed(self, path: Path) -> None:
@@ -155,7 +155,7 @@ class EffortDisplay(RecentDisplay):
             )
             return None
         self.set_status_row(joint.name, "ok", phrase("OK"))
-        x, y, z, *rotation = (float(part) for part in pose)
+        x, y, z, *rotation = (float(coordinate) for coordinate in pose)
         qx, qy, qz, qw = rotation
         return (x, y, z, *quaternion_multiply((qx, qy, qz, qw), rotation_from_z(joint.axis)))
 
@@ -165,33 +165,37 @@ class EffortDisplay(RecentDisplay):
     # --- description -------------------------------------------------------------------------------------------
 
     def _follow(self) -> None:
-        self._leave()
+        self._unsubscribe_description()
         topic = self.properties.text(_DESCRIPTION).strip()
         if not self.enabled or not topic:
             return
         try:
-            self._descriptions = self.context.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
+            self._description_subscription = self.context.node.create_subscription(
+                String, topic, self._on_description, DESCRIPTION_QOS
+            )
         except LinkwrightError as error:
             self.set_status_row(
                 _URDF, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
             )
 
-    def _leave(self) -> None:
-        if self._descriptions is not None:
+    def _unsubscribe_description(self) -> None:
+        if self._description_subscription is not None:
             with suppress(ValueError):  # the node may already have been destroyed
-                self.context.node.destroy_subscription(self._descriptions)
-            self._descriptions = None
+                self.context.node.destroy_subscription(self._description_subscription)
+            self._description_subscription = None
 
-    def _described(self, message: String) -> None:
+    def _on_description(self, message: String) -> None:
         robot = self.context.library.read(message.data).robot
         if robot is None:
             self.set_status_row(_URDF, "error", phrase("Unable to parse robot model description!"))
             return
         self.set_status_row(_URDF, "ok", phrase("Robot model parsed Ok"))
-        known = self._joints
+        previous_joints = self._joints
         self._joints = {
-            joint.name: joint for joint in robot.joints.values() if joint.type in _TURNING and joint.limit is not None
+            joint.name: joint
+            for joint in robot.joints.values()
+            if joint.type in _ROTATING_TYPES and joint.limit is not None
         }
-        if known is None or known.keys() != self._joints.keys():
+        if previous_joints is None or previous_joints.keys() != self._joints.keys():
             self.publish_properties()
         self.show_again()

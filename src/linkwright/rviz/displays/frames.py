@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 FRAME_TIMEOUT = "Frame Timeout"
-"""The property of TF that is the time after which it hides a frame, in seconds."""
+"""The property of TF for the time after which a frame without new transforms is removed, in seconds."""
 
 _REFERENCE = "Reference Frame"
 
@@ -106,8 +106,8 @@ class FrameFilter:
     def __init__(self, text: str = "") -> None:
         self.text = text
         self.problem: Phrase | None = None
-        self._expression: Expression | None = None  # few users write one, so it is imported below
-        self._known: set[str] = set()
+        self._expression: Expression | None = None  # imported below, because few users write an expression
+        self._checked_names: set[str] = set()
         self._found: set[str] = set()
         if text:
             from linkwright.graph.names.expressions import Expression, ExpressionError
@@ -131,17 +131,17 @@ class FrameFilter:
             from linkwright.graph.names.expressions import TooCostlyError
 
             try:
-                found = self._expression.found_in(name for name in names if name not in self._known)
-                self._found = found | self._found.intersection(names)
-                self._known = set(names)
+                new_matches = self._expression.found_in(name for name in names if name not in self._checked_names)
+                self._found = new_matches | self._found.intersection(names)
+                self._checked_names = set(names)
             except TooCostlyError:
                 self._expression, self._found = None, set()
-                self.problem = phrase("This expression is not used: it takes too long to match the names of the frames")
+                self.problem = phrase("This expression is not used: matching it with the frame names takes too long")
         return self._found
 
 
 _WHITELIST, _BLACKLIST = "Filter (whitelist)", "Filter (blacklist)"
-_STATIC = (
+_FIXED_PROPERTIES = (
     PropertySpec("Show Names", "bool", False, "Write each frame's name beside it."),
     PropertySpec("Show Axes", "bool", True, "Draw each frame's axes: x red, y green, z blue."),
     PropertySpec("Show Arrows", "bool", True, "Draw an arrow from each frame to its parent."),
@@ -158,26 +158,26 @@ _STATIC = (
     PropertySpec(_BLACKLIST, "string", "", "A regular expression: frames in whose name it is found are not shown."),
 )
 _FILTERS = ((_WHITELIST,), (_BLACKLIST,))
-_ALL = ("Frames", "All Enabled")
-_DEEPEST = 60
-"""Maximum nesting of the rows of the Tree, so that no chain of frames is too long for the page's JSON."""
+_ALL_ENABLED = ("Frames", "All Enabled")
+_MAX_TREE_DEPTH = 60
+"""The maximum nesting of rows in the Tree, because JSON of a page cannot be nested to any depth."""
 
 
 class TfDisplay(ViewerDisplay):
     """A display of all frames as axes, names and arrows to their parents.
 
-    The page itself adds RViz's read-only rows of a frame (parent, position, orientation), see `Property`.
+    The page adds the read-only rows of RViz to each frame (parent, position, orientation), see `Property`.
     """
 
     CLASS = "rviz_default_plugins/TF"
-    SCHEMA = _STATIC
+    SCHEMA = _FIXED_PROPERTIES
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
-        self._shown: tuple[str, ...] = ()
+        self._shown_frames: tuple[str, ...] = ()
         self._parents: tuple[tuple[str, str | None], ...] = ()
         self._schema: Schema | None = None
-        self._only = FrameFilter()
-        self._without = FrameFilter()
+        self._whitelist = FrameFilter()
+        self._blacklist = FrameFilter()
         super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
@@ -196,17 +196,17 @@ class TfDisplay(ViewerDisplay):
             self.frames_changed()
         elif path == (FRAME_TIMEOUT,):
             self.host.fading_changed()
-        elif path == _ALL:
-            value = self.properties.flag(*_ALL)
-            for name in self._boxes():
+        elif path == _ALL_ENABLED:
+            value = self.properties.flag(*_ALL_ENABLED)
+            for name in self._check_box_names():
                 self.properties.set(("Frames", name), value)
             self.publish_properties()
-        elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL):
-            self.properties.set(_ALL, False)
-            self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
+        elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL_ENABLED):
+            self.properties.set(_ALL_ENABLED, False)
+            self.pages.publish(PropertyChanged(self.property_id(_ALL_ENABLED), False))
 
     def enabled_changed(self) -> None:
-        """Update the status of the frames, and notify the host, which lets frames fade."""
+        """Update the status of the frames, and notify the host that frames may fade or not."""
         self.host.fading_changed()
         super().enabled_changed()
 
@@ -214,15 +214,15 @@ class TfDisplay(ViewerDisplay):
         """Update the rows of the frames if they have changed, and the status of each frame."""
         frames = self.host.frames
         shown = tuple(sorted(self._filtered(set(frames.names))))
-        above = {
+        parent_by_name = {
             name: frames.names[parent] if parent >= 0 else None
             for name, parent in zip(frames.names, frames.parents, strict=True)
         }
-        parents = tuple((name, above[name]) for name in shown)
-        if (shown, parents) != (self._shown, self._parents):
-            self._shown, self._parents, self._schema = shown, parents, None
+        parents = tuple((name, parent_by_name[name]) for name in shown)
+        if (shown, parents) != (self._shown_frames, self._parents):
+            self._shown_frames, self._parents, self._schema = shown, parents, None
             self.publish_properties()
-        filters = ((_WHITELIST, self._only), (_BLACKLIST, self._without))
+        filters = ((_WHITELIST, self._whitelist), (_BLACKLIST, self._blacklist))
         problems = [
             StatusRow(name, "error", frame_filter.problem) for name, frame_filter in filters if frame_filter.problem
         ]
@@ -237,38 +237,41 @@ class TfDisplay(ViewerDisplay):
 
         A filter that is empty or not valid has no effect.
         """
-        only, without = (self.properties.text(*path) for path in _FILTERS)
-        if only != self._only.text:
-            self._only = FrameFilter(only)
-        if without != self._without.text:
-            self._without = FrameFilter(without)
-        found = self._only.found_in(names)
-        if self._only.is_used:
-            names = found
-        return names - self._without.found_in(names)
+        whitelist, blacklist = (self.properties.text(*path) for path in _FILTERS)
+        if whitelist != self._whitelist.text:
+            self._whitelist = FrameFilter(whitelist)
+        if blacklist != self._blacklist.text:
+            self._blacklist = FrameFilter(blacklist)
+        matches = self._whitelist.found_in(names)
+        if self._whitelist.is_used:
+            names = matches
+        return names - self._blacklist.found_in(names)
 
-    def _boxes(self) -> list[str]:
-        return [name for name in self._shown if name != _ALL[1]]
+    def _check_box_names(self) -> list[str]:
+        return [name for name in self._shown_frames if name != _ALL_ENABLED[1]]
 
     def _frames_spec(self) -> PropertySpec:
-        boxes = tuple(
-            PropertySpec(name, "bool", True, "Draw this frame.", nested=True, details="frame") for name in self._boxes()
+        frame_specs = tuple(
+            PropertySpec(name, "bool", True, "Draw this frame.", nested=True, details="frame")
+            for name in self._check_box_names()
         )
-        every = PropertySpec(_ALL[1], "bool", True, "Enable or disable all frames.")
-        return PropertySpec("Frames", "group", description="The frames that tf knows.", children=(every, *boxes))
+        all_spec = PropertySpec(_ALL_ENABLED[1], "bool", True, "Enable or disable all frames.")
+        return PropertySpec(
+            "Frames", "group", description="The frames that tf knows.", children=(all_spec, *frame_specs)
+        )
 
     def _tree_spec(self) -> PropertySpec:
-        below: dict[str | None, list[str]] = {}
-        shown = set(self._shown)
+        children: dict[str | None, list[str]] = {}
+        shown = set(self._shown_frames)
         for name, parent in self._parents:
-            below.setdefault(parent if parent in shown else None, []).append(name)
-        roots = tuple(_tree(name, below, 1) for name in below.get(None, ()))
+            children.setdefault(parent if parent in shown else None, []).append(name)
+        roots = tuple(_tree(name, children, 1) for name in children.get(None, ()))
         return PropertySpec("Tree", "group", description="The tree of frames.", children=roots)
 
 
-def _tree(name: str, below: dict[str | None, list[str]], depth: int) -> PropertySpec:
-    names = below.get(name, [])
-    if names and depth == _DEEPEST:
-        rest = PropertySpec("...", "group", description="The chain continues; it is too long to be shown here.")
-        return PropertySpec(name, "group", children=(rest,))
-    return PropertySpec(name, "group", children=tuple(_tree(child, below, depth + 1) for child in names))
+def _tree(name: str, children: dict[str | None, list[str]], depth: int) -> PropertySpec:
+    names = children.get(name, [])
+    if names and depth == _MAX_TREE_DEPTH:
+        continuation = PropertySpec("...", "group", description="The chain continues; it is too long to be shown here.")
+        return PropertySpec(name, "group", children=(continuation,))
+    return PropertySpec(name, "group", children=tuple(_tree(child, children, depth + 1) for child in names))

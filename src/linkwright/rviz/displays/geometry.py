@@ -34,21 +34,21 @@ class GridCellsDisplay(TopicDisplay):
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show the cells of a message, or the reason why they cannot be drawn."""
-        cells = [coordinate for cell in message.cells for coordinate in (cell.x, cell.y, cell.z)]
-        positions = np.array(cells, dtype=np.float64).reshape(-1, 3)
-        sides = (message.cell_width, message.cell_height)
-        if not (np.isfinite(positions).all() and all(map(math.isfinite, sides))):
+        coordinates = [coordinate for cell in message.cells for coordinate in (cell.x, cell.y, cell.z)]
+        positions = np.array(coordinates, dtype=np.float64).reshape(-1, 3)
+        cell_size = (message.cell_width, message.cell_height)
+        if not (np.isfinite(positions).all() and all(map(math.isfinite, cell_size))):
             self._refuse("error", phrase("Message contained invalid floating point values (nans or infs)"))
-        elif 0.0 in sides:
+        elif 0.0 in cell_size:
             self._refuse("error", phrase("One of the Cell's dimension is zero, cells will be invisible."))
-        elif not cells:
+        elif not coordinates:
             self._refuse("warn", phrase("Message is empty: there are no cells to be shown."))
         else:
-            content = CellGrid(positions.astype(np.float32), float(sides[0]), float(sides[1]))
+            content = CellGrid(positions.astype(np.float32), float(cell_size[0]), float(cell_size[1]))
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
-        """Remove the cells, and show the reason in the topic's status row, as RViz does."""
+        """Remove the cells, and show the reason in the status row of the topic, as in RViz."""
         self.forget()
         self.set_status_row(TOPIC, level, text)
 
@@ -111,13 +111,13 @@ class RangeDisplay(RecentDisplay):
 
 
 def _cone_length(message: Any) -> float:
-    """Return the length of the cone in metres by RViz's rule, which follows REP 117.
+    """Return the length of the cone in metres by the rule of RViz, which follows REP 117.
 
-    The rule differs for fixed-distance sensors, whose minimum and maximum range are equal.
+    Sensors for a fixed distance have equal minimum and maximum ranges, and a different rule applies to them.
     """
-    measured, least, most = float(message.range), float(message.min_range), float(message.max_range)
-    if least <= measured <= most and math.isfinite(measured):
-        return measured
-    if least == most and measured == -math.inf:
-        return least
+    distance, minimum, maximum = float(message.range), float(message.min_range), float(message.max_range)
+    if minimum <= distance <= maximum and math.isfinite(distance):
+        return distance
+    if minimum == maximum and distance == -math.inf:
+        return minimum
     return 0.0

@@ -15,15 +15,15 @@ from linkwright.page.protocol.message import DataContent
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
 from linkwright.rviz.displays.base.topic_display import RecentDisplay
 
-_LAYER = "GridMapLayer"
-_HEIGHTS = (_LAYER, "Layer", "Flat")
-_COLORS = (_LAYER, "IntensityLayer", "ColorLayer", "FlatColor", "None")
-"""RViz starts with the first one and writes it until it is changed, but does not offer it; it means the second."""
+_LAYER_MODE = "GridMapLayer"
+_HEIGHT_MODES = (_LAYER_MODE, "Layer", "Flat")
+_COLOR_MODES = (_LAYER_MODE, "IntensityLayer", "ColorLayer", "FlatColor", "None")
+"""The first option is the initial value in RViz, which has the meaning of the second; RViz does not offer it."""
 
-_MOST_CELLS = 400_000
-"""The largest number of cells drawn; rows and columns of larger maps are skipped."""
+_MAX_CELLS = 400_000
+"""The largest number of cells that are drawn; some rows and columns of larger maps are skipped."""
 
-_SIZE = "Size"
+_SIZE_ROW = "Size"
 
 
 class BadGridError(ValueError):
@@ -45,34 +45,48 @@ class GridMapDisplay(RecentDisplay):
 
         Newer versions of the plugin write *ColorMap* instead of *Rainbow*.
         """
-        word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
+        rainbow_word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
         return (
             topic_spec(description=self.MESSAGE, filter_size=10),
             alpha("Opacity of the surface."),
             PropertySpec("History Length", "int", 1, "The number of maps that are shown.", minimum=1, maximum=100),
             PropertySpec("Show Grid Lines", "bool", True, "Draw lines between the centres of cells."),
             PropertySpec(
-                "Height Transformer", "enum", _LAYER, "The source of the heights: a layer, or none.", options=_HEIGHTS
+                "Height Transformer",
+                "enum",
+                _LAYER_MODE,
+                "The source of the heights: a layer, or none.",
+                options=_HEIGHT_MODES,
             ),
             PropertySpec("Height Layer", "string", "elevation", "The layer that contains the heights."),
             PropertySpec(
                 "Color Transformer",
                 "enum",
-                _LAYER,
+                _LAYER_MODE,
                 "The source of the colours: the values of a layer, the colours of a layer, one colour; or no surface.",
-                options=_COLORS,
+                options=_COLOR_MODES,
             ),
             PropertySpec("Color Layer", "string", "elevation", "The layer that contains the colours."),
             PropertySpec(
                 "Color", "color", "#c8c8c8", "The colour of the surface.", when=(("Color Transformer",), "FlatColor")
             ),
-            PropertySpec(f"Use {word}", "bool", True, "Use the colours of the rainbow for values."),
-            PropertySpec(f"Invert {word}", "bool", False, "Reverse the rainbow.", when=((f"Use {word}",), True)),
+            PropertySpec(f"Use {rainbow_word}", "bool", True, "Use the colours of the rainbow for values."),
             PropertySpec(
-                "Min Color", "color", "#000000", "The colour of the minimum value.", when=((f"Use {word}",), False)
+                f"Invert {rainbow_word}", "bool", False, "Reverse the rainbow.", when=((f"Use {rainbow_word}",), True)
             ),
             PropertySpec(
-                "Max Color", "color", "#ffffff", "The colour of the maximum value.", when=((f"Use {word}",), False)
+                "Min Color",
+                "color",
+                "#000000",
+                "The colour of the minimum value.",
+                when=((f"Use {rainbow_word}",), False),
+            ),
+            PropertySpec(
+                "Max Color",
+                "color",
+                "#ffffff",
+                "The colour of the maximum value.",
+                when=((f"Use {rainbow_word}",), False),
             ),
             PropertySpec(
                 "Autocompute Intensity Bounds", "bool", True, "Use the minimum and maximum value of the layer."
@@ -96,12 +110,12 @@ class GridMapDisplay(RecentDisplay):
     def content(self, message: Any) -> DataContent | None:
         """Return the surface of a grid map, or None if the map cannot be drawn."""
         try:
-            made = self._surface(message)
+            surface = self._surface(message)
         except BadGridError as error:
             self.refuse(foreign(error))
             return None
         self.accept()
-        return made
+        return surface
 
     def changed(self, path: Path) -> None:
         """Redraw the last map, unless the page applies the changed property itself."""
@@ -122,14 +136,14 @@ class GridMapDisplay(RecentDisplay):
         colors[..., :3] = self._colors(grid)
         colors[..., 3] = np.where(valid, 255, 0)
         step = 1
-        while -(-grid.shape[0] // step) * -(-grid.shape[1] // step) > _MOST_CELLS:
+        while -(-grid.shape[0] // step) * -(-grid.shape[1] // step) > _MAX_CELLS:
             step += 1
         if step > 1:
             self.set_status_row(
-                _SIZE, "warn", phrase("The map is large: 1 in {step} rows and columns is drawn", step=step)
+                _SIZE_ROW, "warn", phrase("The map is large: 1 in {step} rows and columns is drawn", step=step)
             )
         else:
-            self.delete_status_row(_SIZE)
+            self.delete_status_row(_SIZE_ROW)
         points = grid.points(np.where(valid, heights, 0.0))[::step, ::step]
         return GridSurface(
             points.shape[0],
@@ -151,23 +165,25 @@ class GridMapDisplay(RecentDisplay):
             return np.stack([bits >> shift & 255 for shift in (16, 8, 0)], axis=-1).astype(np.uint8)
         finite = values[np.isfinite(values)]
         if properties.flag("Autocompute Intensity Bounds"):
-            least, most = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+            minimum, maximum = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
         else:
-            least, most = properties.number("Min Intensity"), properties.number("Max Intensity")
-        span = most - least
-        share = np.zeros_like(values) if span == 0.0 else np.clip((np.nan_to_num(values) - least) / span, 0.0, 1.0)
-        word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
-        if not properties.flag(f"Use {word}"):
+            minimum, maximum = properties.number("Min Intensity"), properties.number("Max Intensity")
+        span = maximum - minimum
+        fractions = (
+            np.zeros_like(values) if span == 0.0 else np.clip((np.nan_to_num(values) - minimum) / span, 0.0, 1.0)
+        )
+        rainbow_word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
+        if not properties.flag(f"Use {rainbow_word}"):
             low, high = _rgb(properties.text("Min Color")), _rgb(properties.text("Max Color"))
-            mixed = low + share[..., None] * (high.astype(np.float32) - low)
-            return np.rint(mixed).astype(np.uint8)
-        if properties.flag(f"Invert {word}"):
-            share = 1.0 - share
-        return _RAINBOW[(share * (len(_RAINBOW) - 1)).astype(np.intp)]
+            colors = low + fractions[..., None] * (high.astype(np.float32) - low)
+            return np.rint(colors).astype(np.uint8)
+        if properties.flag(f"Invert {rainbow_word}"):
+            fractions = 1.0 - fractions
+        return _RAINBOW[(fractions * (len(_RAINBOW) - 1)).astype(np.intp)]
 
 
 _RAINBOW = np.array(
-    [[255 * part for part in colorsys.hsv_to_rgb(0.8 * (1.0 - step / 255.0), 1.0, 1.0)] for step in range(256)]
+    [[255 * channel for channel in colorsys.hsv_to_rgb(0.8 * (1.0 - step / 255.0), 1.0, 1.0)] for step in range(256)]
 ).astype(np.uint8)
 """The colours from violet to red."""
 
@@ -179,7 +195,7 @@ def _rgb(text: str) -> NDArray[np.uint8]:
 class _Grid:
     """The cells of a grid_map_msgs/msg/GridMap.
 
-    Row 0 has the largest x, and column 0 the largest y.
+    Row 0 has the largest x, and column 0 has the largest y.
 
     Raises:
         BadGridError: the resolution, the lengths or the pose are not valid, or the numbers of layers and data differ.
@@ -187,13 +203,13 @@ class _Grid:
 
     def __init__(self, message: Any) -> None:
         info = message.info
-        at = info.pose.position
+        position = info.pose.position
         self._message = message
-        self._middle = np.array([at.x, at.y, at.z])
-        turn = info.pose.orientation
-        self._turn = np.array([turn.x, turn.y, turn.z, turn.w])
+        self._center = np.array([position.x, position.y, position.z])
+        orientation = info.pose.orientation
+        self._quaternion = np.array([orientation.x, orientation.y, orientation.z, orientation.w])
         self._resolution = float(info.resolution)
-        numbers = (info.resolution, info.length_x, info.length_y, *self._middle, *self._turn)
+        numbers = (info.resolution, info.length_x, info.length_y, *self._center, *self._quaternion)
         if not np.isfinite(numbers).all() or info.resolution <= 0.0:
             raise BadGridError(phrase("The resolution, lengths or pose of the map are not valid"))
         self.shape = (round(info.length_x / info.resolution), round(info.length_y / info.resolution))
@@ -204,7 +220,7 @@ class _Grid:
         if len(message.layers) != len(message.data):
             raise BadGridError(
                 phrase(
-                    "The map has {layers} layers, but data for {data}",
+                    "The map has {layers} layers, but data for {data} layers",
                     layers=len(message.layers),
                     data=len(message.data),
                 )
@@ -218,8 +234,10 @@ class _Grid:
         """
         names = list(self._message.layers)
         if name not in names:
-            known = quoted_names(names) if names else phrase("none")
-            raise BadGridError(phrase("The map has no layer '{name}'; its layers: {known}", name=name, known=known))
+            layer_names = quoted_names(names) if names else phrase("none")
+            raise BadGridError(
+                phrase(("The map has no layer '{name}'; its layers are {known}"), name=name, known=layer_names)
+            )
         array = self._message.data[names.index(name)]
         numbers = np.asarray(array.data, dtype=np.float32)
         rows, columns = self.shape
@@ -233,10 +251,10 @@ class _Grid:
                     columns=columns,
                 )
             )
-        by_rows = bool(array.layout.dim) and array.layout.dim[0].label == "row_index"
-        cells = numbers.reshape(rows, columns) if by_rows else numbers.reshape(columns, rows).T
-        begin = (-int(self._message.outer_start_index), -int(self._message.inner_start_index))
-        return np.ascontiguousarray(np.roll(cells, begin, axis=(0, 1)))
+        is_row_major = bool(array.layout.dim) and array.layout.dim[0].label == "row_index"
+        cells = numbers.reshape(rows, columns) if is_row_major else numbers.reshape(columns, rows).T
+        shift = (-int(self._message.outer_start_index), -int(self._message.inner_start_index))
+        return np.ascontiguousarray(np.roll(cells, shift, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
         """Return the cell centres at the given heights, in the message's frame.
@@ -244,11 +262,11 @@ class _Grid:
         The heights are in metres and relative to the map's pose. The result has the shape (rows, columns, 3).
         """
         rows, columns = self.shape
-        along = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
-        across = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution
+        x_coordinates = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
+        y_coordinates = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution
         points = np.empty((rows, columns, 3))
-        points[..., 0], points[..., 1], points[..., 2] = along[:, None], across[None, :], heights
-        if self._turn.any():
-            points = rotate(self._turn / np.linalg.norm(self._turn), points)
-        points += self._middle
+        points[..., 0], points[..., 1], points[..., 2] = x_coordinates[:, None], y_coordinates[None, :], heights
+        if self._quaternion.any():
+            points = rotate(self._quaternion / np.linalg.norm(self._quaternion), points)
+        points += self._center
         return points

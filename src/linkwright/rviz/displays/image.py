@@ -33,12 +33,12 @@ from linkwright.rviz.displays.base.topic_display import TOPIC, SideTopic, TopicD
 from linkwright.rviz.image_compression import ImageCompressor
 
 _ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
-MOST_PIXELS = 2_100_000
-"""Pages receive no more pixels of an image than Full HD has: panels are smaller, and pixels are not compressed."""
+MAX_PIXELS = 2_100_000
+"""The largest number of pixels of an image that is sent to pages, about Full HD, because pixels are not compressed."""
 
 
 class ImageTopicDisplay(TopicDisplay):
-    """The base class of displays of a topic's images.
+    """The base class of displays that show the images of a topic.
 
     As in RViz, the suffix of the topic name selects the transport. Images on ``/compressed`` topics are in file formats
     that browsers can decode. They are sent to the page unchanged, unless their values have more than 8 bits.
@@ -60,7 +60,7 @@ class ImageTopicDisplay(TopicDisplay):
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """Return the message type, topic and QoS to subscribe with, which depend on the transport."""
-        source = self._named_source()
+        source = self._selected_source()
         return source.message_type, source.topic, super().subscription()[2]
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -101,7 +101,7 @@ class ImageTopicDisplay(TopicDisplay):
             self.set_status_row("Image", "error", foreign(error))
             return
         if content.encoding == "file" and is_cut_off(content.data):
-            self.set_status_row("Image", "error", phrase("The image's file is truncated"))
+            self.set_status_row("Image", "error", phrase("The image file is truncated"))
         else:
             self.delete_status_row("Image")
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
@@ -109,10 +109,10 @@ class ImageTopicDisplay(TopicDisplay):
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
     def reduction(self, width: int, height: int) -> int:
-        """Return the side length, in pixels, of the blocks that are averaged to one pixel before sending."""
+        """Return the side length in pixels of the blocks that are averaged to one pixel before an image is sent."""
         return 1
 
-    def _named_source(self) -> ImageSource:
+    def _selected_source(self) -> ImageSource:
         """Return the topic and transport that the topic property selects.
 
         The result includes the message type if the topic has a publisher.
@@ -121,19 +121,21 @@ class ImageTopicDisplay(TopicDisplay):
         if not source.topic:
             return source
         try:
-            return source.carrying({carried for _, carried in self.context.published.publishers(source.topic)})
+            return source.with_types(
+                {message_type for _, message_type in self.context.published.publishers(source.topic)}
+            )
         except InvalidTopicNameError:  # the subscription reports the invalid name
             return source
 
     def _report_count(self) -> None:
-        if self._count == 0 and self._named_source() != self._source:
+        if self._count == 0 and self._selected_source() != self._source:
             self._restart()
         else:
             super()._report_count()
 
     def _subscribe(self) -> None:
-        source = self._source = self._named_source()
-        if source.is_read:
+        source = self._source = self._selected_source()
+        if source.is_supported:
             super()._subscribe()
         else:
             choice = phrase("choose {base} or {base}/{compressed}", base=source.base, compressed=COMPRESSED)
@@ -158,18 +160,18 @@ class ImageTopicDisplay(TopicDisplay):
             data = np.frombuffer(message.data, np.uint8)
             if not _is_readable(data[:16].tobytes()):
                 raise BadImageError(
-                    phrase("Browsers do not support the image's format: '{format}'", format=message.format)
+                    phrase("Browsers do not support the image format '{format}'", format=message.format)
                 )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
         image = decode_image(message, self.ranges)
-        shown = image.reduced(self.reduction(image.width, image.height)).thinned(MOST_PIXELS)
+        reduced_image = image.reduce_by(self.reduction(image.width, image.height)).subsample(MAX_PIXELS)
         return ImageFrame(
             width=image.width,
             height=image.height,
-            columns=shown.width,
-            rows=shown.height,
-            encoding=_ENCODINGS[shown.channels],
-            data=shown.pixels,
+            columns=reduced_image.width,
+            rows=reduced_image.height,
+            encoding=_ENCODINGS[reduced_image.channels],
+            data=reduced_image.pixels,
             camera=camera,
         )
 
@@ -201,7 +203,7 @@ _TOPIC_SPEC = topic_spec(
 
 
 class ImageDisplay(ImageTopicDisplay):
-    """A display of images in a panel of their own.
+    """A display of images in a separate panel.
 
     As in RViz, the properties of the value range appear once an image has values of more than 8 bits.
     """
@@ -210,32 +212,32 @@ class ImageDisplay(ImageTopicDisplay):
     SCHEMA = (_TOPIC_SPEC, *_RANGE_SPECS)
     TRANSFORMED = False
 
-    _ranged = False
+    _has_range = False
     _panel: ImageSize | None = None
-    """The largest panel of pages; None before a page has reported its panel."""
+    """The size of the largest panel of any page; None before a page has reported its panel."""
 
     @property
     def _is_hidden(self) -> bool:
-        """Whether pages have reported their panels and none of these is visible."""
+        """Whether pages have reported their panels, and none of the panels is visible."""
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Handle the size of the largest panel, and send no more pixels than it shows.
+        """Handle the size of the largest panel, which limits the pixels that are sent.
 
-        While no panel is visible, the display unsubscribes after its first image. A camera that publishes only while it
-        has subscribers then publishes no images for a hidden panel.
+        While no panel is visible, the display unsubscribes after its first image, so that a camera that publishes only
+        to subscribers does not publish for a hidden panel.
         """
-        before, self._panel = self._panel, message
+        previous_size, self._panel = self._panel, message
         if self._is_hidden:
             if self.last is not None:
                 self._unsubscribe()
             return
         if self.enabled and self._subscription is None:
             self._subscribe()
-            if self.last is not None:  # the former image is still shown
+            if self.last is not None:  # the previous image is still shown
                 self._count = 1
                 self._report_count()
-        if before is not None and (message.width > before.width or message.height > before.height):
+        if previous_size is not None and (message.width > previous_size.width or message.height > previous_size.height):
             self.show_again()
 
     def reduction(self, width: int, height: int) -> int:
@@ -246,8 +248,8 @@ class ImageDisplay(ImageTopicDisplay):
         return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
-        """Return the properties; those of the value range are hidden unless the last image has one."""
-        if self._ranged:
+        """Return the properties; the value range is hidden unless the last image has more than 8 bits."""
+        if self._has_range:
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
 
@@ -256,9 +258,9 @@ class ImageDisplay(ImageTopicDisplay):
         if self._is_hidden:
             self._unsubscribe()
             return
-        ranged = has_range(getattr(message, "encoding", ""))
-        if ranged != self._ranged:
-            self._ranged = ranged
+        has_range_now = has_range(getattr(message, "encoding", ""))
+        if has_range_now != self._has_range:
+            self._has_range = has_range_now
             self.publish_properties()
         self.ranges.window = int(self.properties.number("Median window"))
         self.ranges.fixed = None
@@ -273,10 +275,10 @@ class ImageDisplay(ImageTopicDisplay):
             self.show_again()
 
 
-_INFO = "Camera Info"
-_MOST_WAITING = 10
+_INFO_ROW = "Camera Info"
+_MAX_QUEUED = 10
 
-_SPECS: Schema = (
+_CAMERA_SPECS: Schema = (
     topic_spec(description="sensor_msgs/msg/Image; the topic camera_info beside it gives the camera."),
     PropertySpec(
         "Image Rendering",
@@ -306,18 +308,18 @@ _SPECS: Schema = (
 
 
 class CameraDisplay(ImageTopicDisplay):
-    """A display of the scene as seen by a camera, in a panel of its own.
+    """A display of the scene as seen by a camera, in a separate panel.
 
     The camera's image is drawn behind the scene, over it, or both.
     """
 
     CLASS = "rviz_default_plugins/Camera"
-    SCHEMA = _SPECS
+    SCHEMA = _CAMERA_SPECS
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
-        self._boxes: Schema = ()
+        self._check_boxes: Schema = ()
         super().__init__(host, identity, config)
-        self._infos = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._info_topic = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._on_camera_info)
         self._info: Any = None
 
     def schema(self) -> Schema:
@@ -327,45 +329,47 @@ class CameraDisplay(ImageTopicDisplay):
             "bool",
             True,
             "The displays that the camera shows.",
-            children=self._boxes,
+            children=self._check_boxes,
             nested=True,
         )
-        return (*_SPECS, check_box)
+        return (*_CAMERA_SPECS, check_box)
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
         """Update the check boxes of the other displays."""
-        boxes = self._boxes_of(displays, None)
-        if boxes != self._boxes:
-            self._boxes = boxes
+        check_boxes = self._make_check_boxes(displays, None)
+        if check_boxes != self._check_boxes:
+            self._check_boxes = check_boxes
             self.publish_properties()
 
-    def _boxes_of(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
-        """Return a check box for each other display in a group, with those of subgroups as children.
+    def _make_check_boxes(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
+        """Return a check box for each other display in a group, with the check boxes of subgroups as children.
 
         Of several displays with the same name, only the first has a check box. `group` is None for the top level.
         """
-        found: dict[str, PropertySpec] = {}
+        specs: dict[str, PropertySpec] = {}
         for display in displays:
             config = display.config
-            if config.group is not group or display is self or config.name in found:
+            if config.group is not group or display is self or config.name in specs:
                 continue
-            inside = self._boxes_of(displays, config) if config.is_group else ()
+            children = self._make_check_boxes(displays, config) if config.is_group else ()
             text = "Show this display through the camera."
-            found[config.name] = PropertySpec(config.name, "bool", True, text, children=inside, nested=config.is_group)
-        return tuple(found.values())
+            specs[config.name] = PropertySpec(
+                config.name, "bool", True, text, children=children, nested=config.is_group
+            )
+        return tuple(specs.values())
 
     def most_waiting(self) -> int:
-        """Return RViz's fixed maximum of queued messages; the display has no property for it."""
-        return _MOST_WAITING
+        """Return the maximum number of queued messages, which is fixed as in RViz."""
+        return _MAX_QUEUED
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image, with the camera's parameters if they are known."""
-        camera = self._model(message)
+        camera = self._camera_model(message)
         self.show_image(message, camera, pose)
 
     def time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
-        self._infos.resume()
+        self._info_topic.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -380,21 +384,21 @@ class CameraDisplay(ImageTopicDisplay):
         if not topic:
             return
         info = camera_info_topic(topic)
-        problem = self._infos.listen(info, qos_of(self.properties))
+        problem = self._info_topic.listen(info, qos_of(self.properties))
         text = problem or phrase("No CameraInfo received on [{topic}]. Topic may not exist.", topic=info)
-        self.set_status_row(_INFO, "error" if problem else "warn", text)
+        self.set_status_row(_INFO_ROW, "error" if problem else "warn", text)
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
-        self._infos.close()
+        self._info_topic.close()
 
-    def _info_received(self, info: Any) -> None:
-        first = self._info is None
+    def _on_camera_info(self, info: Any) -> None:
+        is_first = self._info is None
         self._info = info
-        if first:
+        if is_first:
             self.show_again()
 
-    def _model(self, image: Any) -> CameraModel | None:
+    def _camera_model(self, image: Any) -> CameraModel | None:
         """Return the camera model for an image, or None if there is no valid CameraInfo.
 
         If the CameraInfo is not valid, the reason is shown in the status.
@@ -402,9 +406,9 @@ class CameraDisplay(ImageTopicDisplay):
         info = self._info
         if info is None:
             return None
-        numbers = [np.asarray(part, np.float64) for part in (info.d, info.k, info.r, info.p)]
-        if not all(np.isfinite(part).all() for part in numbers):
-            self.set_status_row(_INFO, "error", phrase("Contains invalid floating point values (nans or infs)"))
+        arrays = [np.asarray(array, np.float64) for array in (info.d, info.k, info.r, info.p)]
+        if not all(np.isfinite(matrix).all() for matrix in arrays):
+            self.set_status_row(_INFO_ROW, "error", phrase("Contains invalid floating point values (nans or infs)"))
             return None
         width = info.width or getattr(image, "width", 0)
         height = info.height or getattr(image, "height", 0)
@@ -412,14 +416,14 @@ class CameraDisplay(ImageTopicDisplay):
             text = phrase(
                 "Could not determine width/height of image due to malformed CameraInfo (either width or height is 0)"
             )
-            self.set_status_row(_INFO, "error", text)
+            self.set_status_row(_INFO_ROW, "error", text)
             return None
-        p = numbers[3]
+        p = arrays[3]
         if p[0] == 0.0 or p[5] == 0.0:
             text = phrase("CameraInfo/P resulted in an invalid position calculation (nans or infs)")
-            self.set_status_row(_INFO, "error", text)
+            self.set_status_row(_INFO_ROW, "error", text)
             return None
-        self.set_status_row(_INFO, "ok", phrase("OK"))
+        self.set_status_row(_INFO_ROW, "ok", phrase("OK"))
         return CameraModel(
             width=float(width),
             height=float(height),

@@ -20,25 +20,25 @@ from linkwright.rviz.markers import BadMarkerError
 from linkwright.rviz.markers.interactive import ClientEvents, InteractiveMarkerClient, read_interactive_marker
 from linkwright.rviz.markers.shapes import pose_of
 
-_NAMESPACE = "Interactive Markers Namespace"
-_TRANSPARENCY = "Enable Transparency"
-_CLIENT = "Interactive Marker Client"
+_NAMESPACE_PROPERTY = "Interactive Markers Namespace"
+_TRANSPARENCY_PROPERTY = "Enable Transparency"
+_CLIENT_ROW = "Interactive Marker Client"
 
-_EVENTS = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 4, "mouse_up": 5}
+_EVENT_TYPES = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 4, "mouse_up": 5}
 
 
 class InteractiveMarkersDisplay(DataDisplay):
-    """A display of the markers of an interactive marker server, to which the user's actions are sent."""
+    """A display of the markers of an interactive marker server; it sends the actions of the user to the server."""
 
     CLASS = "rviz_default_plugins/InteractiveMarkers"
     MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
-    TOPIC = (_NAMESPACE,)
+    TOPIC = (_NAMESPACE_PROPERTY,)
     SCHEMA = (
-        PropertySpec(_NAMESPACE, "string", "", "The namespace of the interactive marker server."),
+        PropertySpec(_NAMESPACE_PROPERTY, "string", "", "The namespace of the interactive marker server."),
         PropertySpec("Show Descriptions", "bool", True, "Show the description above each marker."),
         PropertySpec("Show Axes", "bool", False, "Show the axes of each marker."),
         PropertySpec("Show Visual Aids", "bool", False, "Show the axis along or about which a marker moves."),
-        PropertySpec(_TRANSPARENCY, "bool", True, "Whether the default arrows and rings are transparent."),
+        PropertySpec(_TRANSPARENCY_PROPERTY, "bool", True, "Whether the default arrows and rings are transparent."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -47,8 +47,8 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._release: Any = None
         self._markers: dict[str, Any] = {}
         self._poses: dict[str, list[float]] = {}
-        self._unplaced: set[str] = set()
-        self._held: list[Callable[[], None]] = []
+        self._unplaced_names: set[str] = set()
+        self._queued_updates: list[Callable[[], None]] = []
         self._index = MeshIndex(host.context.finder)
 
     @classmethod
@@ -64,13 +64,13 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._connect()
 
     def stop(self) -> None:
-        """Disconnect, and withdraw from pages the files that the markers referred to."""
+        """Disconnect, and end the pages' access to the files of the markers."""
         self._disconnect()
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Connect to another server, or recreate the markers of the current one."""
-        if path in ((_NAMESPACE,), (_TRANSPARENCY,)):
+        """Connect again if the namespace or the transparency changed, which also recreates the markers."""
+        if path in ((_NAMESPACE_PROPERTY,), (_TRANSPARENCY_PROPERTY,)):
             self.reset()
 
     def enabled_changed(self) -> None:
@@ -91,8 +91,8 @@ class InteractiveMarkersDisplay(DataDisplay):
     def time_changed(self) -> None:
         """Apply the updates from the server that were queued while time was paused."""
         if not self.host.time.paused:
-            held, self._held = self._held, []
-            for handle in held:
+            queued_updates, self._queued_updates = self._queued_updates, []
+            for handle in queued_updates:
                 handle()
 
     def receive(self, message: Any) -> None:
@@ -109,7 +109,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         feedback.client_id = self.context.node.get_fully_qualified_name() + "/" + self.id
         feedback.marker_name = message.marker
         feedback.control_name = message.control
-        feedback.event_type = _EVENTS[message.event]
+        feedback.event_type = _EVENT_TYPES[message.event]
         feedback.menu_entry_id = max(0, min(message.menu_entry, 2**32 - 1))
         _set_pose(feedback.pose, message.pose)
         feedback.mouse_point_valid = len(message.mouse_point) == 3
@@ -118,11 +118,11 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._client.publish(feedback)
 
     def _connect(self) -> None:
-        namespace = self.properties.text(_NAMESPACE).strip()
+        namespace = self.properties.text(_NAMESPACE_PROPERTY).strip()
         if not namespace:
-            self.set_status_row(_CLIENT, "error", phrase("Error connecting: empty namespace"))
+            self.set_status_row(_CLIENT_ROW, "error", phrase("Error connecting: empty namespace"))
             return
-        self._release = self.context.transforms.use(self._transforms_received)
+        self._release = self.context.transforms.use(self._on_transforms)
         events = ClientEvents(
             lambda markers: self._soon(partial(self._apply_all, markers)),
             lambda update: self._soon(partial(self._apply_update, update)),
@@ -133,7 +133,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._client = InteractiveMarkerClient(self.context.node, namespace, events)
         except LinkwrightError as error:
             self.set_status_row(
-                _CLIENT, "error", phrase("Error connecting: {message}", message=error.diagnostics[0].message)
+                _CLIENT_ROW, "error", phrase("Error connecting: {message}", message=error.diagnostics[0].message)
             )
 
     def _disconnect(self) -> None:
@@ -149,22 +149,22 @@ class InteractiveMarkersDisplay(DataDisplay):
     # --- from the server ---------------------------------------------------------------------------------------
 
     def _client_status(self, level: StatusLevel, text: Phrase) -> None:
-        self.set_status_row(_CLIENT, level, text)
+        self.set_status_row(_CLIENT_ROW, level, text)
 
     def _soon(self, handle: Callable[[], None]) -> None:
-        """Handle an update from the server immediately, or after the pause while time is paused."""
+        """Handle an update from the server immediately or, while time is paused, after the pause."""
         if self.host.time.paused:
-            self._held.append(handle)
+            self._queued_updates.append(handle)
         else:
             handle()
 
     def _clear(self) -> None:
-        self._held.clear()
+        self._queued_updates.clear()
         for name in self._markers:
             self.delete_status_row(name)
         self._markers.clear()
         self._poses.clear()
-        self._unplaced.clear()
+        self._unplaced_names.clear()
         self.forget()
 
     def _apply_all(self, markers: list[Any]) -> None:
@@ -175,8 +175,8 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _apply_update(self, update: Any) -> None:
         for marker in update.markers:
             self._apply_marker(marker)
-        for moved in update.poses:
-            self._move(moved)
+        for pose_update in update.poses:
+            self._move(pose_update)
         for name in update.erases:
             self._erase(name)
 
@@ -195,19 +195,21 @@ class InteractiveMarkersDisplay(DataDisplay):
             return
         pose = pose_of(moved.pose)
         self._poses[moved.name] = pose
-        same_frame = moved.header.frame_id in ("", marker.header.frame_id) and _is_latest(moved) == _is_latest(marker)
+        is_same_frame = moved.header.frame_id in ("", marker.header.frame_id) and _is_latest(moved) == _is_latest(
+            marker
+        )
         if moved.header.frame_id:
             marker.header = moved.header
-        if not same_frame or not _is_latest(marker):
+        if not is_same_frame or not _is_latest(marker):
             self._show(moved.name)  # the pose is relative to another frame or time
-        elif moved.name not in self._unplaced:
+        elif moved.name not in self._unplaced_names:
             content = InteractiveMarkerMoved(moved.name, pose)
             self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
 
     def _erase(self, name: str) -> None:
         self._markers.pop(name, None)
         self._poses.pop(name, None)
-        self._unplaced.discard(name)
+        self._unplaced_names.discard(name)
         self._data.pop(f"pose {name}", None)
         self.forget(f"marker {name}")
         self.delete_status_row(name)
@@ -218,12 +220,12 @@ class InteractiveMarkersDisplay(DataDisplay):
         marker = self._markers[name]
         frame = marker.header.frame_id.removeprefix("/")
         try:
-            at = self._frame_pose(marker, frame)
+            frame_pose = self._frame_pose(marker, frame)
             shape = read_interactive_marker(
-                marker, self._index, self._relative, transparent=self.properties.flag(_TRANSPARENCY)
+                marker, self._index, self._relative_pose, transparent=self.properties.flag(_TRANSPARENCY_PROPERTY)
             )
         except TransformException as error:
-            self._unplaced.add(name)
+            self._unplaced_names.add(name)
             self.set_status_row(name, "error", error.diagnostics[0].message)
             self.forget(f"marker {name}")
             return
@@ -231,11 +233,11 @@ class InteractiveMarkersDisplay(DataDisplay):
             self.set_status_row(name, "error", foreign(error))
             self.forget(f"marker {name}")
             return
-        self._unplaced.discard(name)
+        self._unplaced_names.discard(name)
         self.delete_status_row(name)
         shape.pose = self._poses[name]
         self.context.meshes.replace(self.id, self._index.folders)
-        self.send(shape, key=f"marker {name}", frame=frame, pose=at)
+        self.send(shape, key=f"marker {name}", frame=frame, pose=frame_pose)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
         """Return the pose of the marker's frame at its stamp, or None if pages use the latest transform.
@@ -248,12 +250,12 @@ class InteractiveMarkersDisplay(DataDisplay):
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.nanoseconds)
         return None if _is_latest(marker) else pose
 
-    def _relative(self, reference: str, frame: str) -> Transform:
+    def _relative_pose(self, reference: str, frame: str) -> Transform:
         x, y, z, qx, qy, qz, qw = self.context.transforms.pose(reference, frame, 0).tolist()
         return x, y, z, qx, qy, qz, qw
 
-    def _transforms_received(self) -> None:
-        for name in list(self._unplaced):
+    def _on_transforms(self) -> None:
+        for name in list(self._unplaced_names):
             self._show(name)
 
 

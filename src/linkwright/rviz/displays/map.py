@@ -20,7 +20,7 @@ from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import TOPIC, TRANSFORM, SideTopic, TopicDisplay
 
 _UPDATE_PERIOD = 0.1
-"""Seconds between two maps that pages receive because of updates."""
+"""The minimum time in seconds between two maps that are sent because of updates."""
 
 _UPDATE_TOPIC = "Update Topic"
 _USE_TIMESTAMP = "Use Timestamp"
@@ -28,8 +28,8 @@ _BINARY = "Binary representation"
 
 
 def _read_only_vector(name: str, axes: str, description: str) -> PropertySpec:
-    rest = tuple(PropertySpec(axis, "float", 1.0 if axis == "W" else 0.0, read_only=True) for axis in axes)
-    return PropertySpec(name, "group", description=description, children=rest)
+    components = tuple(PropertySpec(axis, "float", 1.0 if axis == "W" else 0.0, read_only=True) for axis in axes)
+    return PropertySpec(name, "group", description=description, children=components)
 
 
 _SCHEMA: Schema = (
@@ -69,7 +69,7 @@ _SCHEMA: Schema = (
 
 
 class MapDisplay(TopicDisplay):
-    """A display of an occupancy grid, which partial updates change.
+    """A display of an occupancy grid, to which partial updates are applied.
 
     By default the map follows its frame. With ``Use Timestamp``, the map stays at the pose that its frame had at the
     map's stamp.
@@ -81,14 +81,14 @@ class MapDisplay(TopicDisplay):
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._updated)
+        self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._on_update)
         self._map: Any = None
         self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
-        self._is_own = False  # while False, other displays may share the cells
+        self._owns_cells = False  # False while other displays may share the cells
         self._pose: Pose | None = None
-        self._sent_at = 0.0
-        self._sending: asyncio.TimerHandle | None = None
-        self._follow_topic(file_too=False)
+        self._last_send_time = 0.0
+        self._send_timer: asyncio.TimerHandle | None = None
+        self._follow_topic(replace_in_file=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the map's frame, by default ``map``, and the time of the frame's pose in nanoseconds.
@@ -99,7 +99,7 @@ class MapDisplay(TopicDisplay):
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a map; updates that were applied to the map are preserved if it is shown again."""
+        """Show a map; if the same map is shown again, the updates applied to it are preserved."""
         self._pose = pose
         if message is not self._map and not self._load(message):
             return
@@ -108,7 +108,7 @@ class MapDisplay(TopicDisplay):
     def changed(self, path: Path) -> None:
         """Subscribe to another topic or to other updates, or apply the timestamp setting."""
         if path == (TOPIC,):
-            self._follow_topic(file_too=True)
+            self._follow_topic(replace_in_file=True)
             self.pages.publish(PropertyChanged(self.property_id((_UPDATE_TOPIC,)), self.properties.text(_UPDATE_TOPIC)))
         super().changed(path)
         if path[0] == _UPDATE_TOPIC:
@@ -117,9 +117,9 @@ class MapDisplay(TopicDisplay):
             self.show_again()
 
     def recalled(self) -> None:
-        """Derive the update topic from the map's topic if the file does not name an update topic."""
+        """Derive the update topic from the map's topic if the file does not contain an update topic."""
         super().recalled()
-        self._follow_topic(file_too=False)
+        self._follow_topic(replace_in_file=False)
 
     def frames_changed(self) -> None:
         """Place the map in a new Fixed Frame, and show in the status whether the map's pose is known."""
@@ -137,9 +137,9 @@ class MapDisplay(TopicDisplay):
 
     def reset(self) -> None:
         """Remove the map from the pages; if the topic has changed, also discard the map itself."""
-        if self._sending is not None:
-            self._sending.cancel()
-            self._sending = None
+        if self._send_timer is not None:
+            self._send_timer.cancel()
+            self._send_timer = None
         if self.last is None:
             self._map = None
         super().reset()
@@ -147,22 +147,22 @@ class MapDisplay(TopicDisplay):
     def stop(self) -> None:
         """Unsubscribe, and cancel a scheduled update of the pages."""
         super().stop()
-        if self._sending is not None:
-            self._sending.cancel()
-            self._sending = None
+        if self._send_timer is not None:
+            self._send_timer.cancel()
+            self._send_timer = None
 
-    def _follow_topic(self, *, file_too: bool) -> None:
+    def _follow_topic(self, *, replace_in_file: bool) -> None:
         """Derive the update topic from the map's topic, as RViz does.
 
-        If the file names an update topic, that topic is replaced only with `file_too`. If the file names none, the
-        derived topic is not written to the file.
+        If the file contains an update topic, it is replaced only if `replace_in_file` is true. If the file contains
+        none, the derived topic is not written to the file.
         """
         topic = self.properties.text(TOPIC).strip()
-        updates = f"{topic}_updates" if topic else ""
+        update_topic = f"{topic}_updates" if topic else ""
         if self.config.section.text(_UPDATE_TOPIC) is None:
-            self.properties.set_read_only((_UPDATE_TOPIC,), updates)
-        elif file_too:
-            self.properties.set((_UPDATE_TOPIC,), updates)
+            self.properties.set_read_only((_UPDATE_TOPIC,), update_topic)
+        elif replace_in_file:
+            self.properties.set((_UPDATE_TOPIC,), update_topic)
 
     def _subscribe(self) -> None:
         super()._subscribe()
@@ -170,8 +170,8 @@ class MapDisplay(TopicDisplay):
         if not topic:
             return
         self.set_status_row("Message", "warn", phrase("No map received"))
-        updates = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
-        problem = self._updates.listen(updates, qos_of(self.properties, _UPDATE_TOPIC))
+        update_topic = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
+        problem = self._updates.listen(update_topic, qos_of(self.properties, _UPDATE_TOPIC))
         self.set_status_row("Update Topic", "error" if problem else "ok", problem or phrase("OK"))
 
     def _unsubscribe(self) -> None:
@@ -196,50 +196,50 @@ class MapDisplay(TopicDisplay):
             self.set_status_row("Map", "error", _size_mismatch(info, cells))
         else:
             self._map = message
-            self._cells, self._is_own = cells.reshape(info.height, info.width), False
+            self._cells, self._owns_cells = cells.reshape(info.height, info.width), False
             self.set_status_row("Message", "ok", phrase("Map received"))
             self.set_status_row("Map", "ok", phrase("Map OK"))
-            self._publish_readings(message)
+            self._publish_read_only_values(message)
             return True
         return False
 
-    def _publish_readings(self, message: Any) -> None:
-        for path, value in _readings(message.info):
+    def _publish_read_only_values(self, message: Any) -> None:
+        for path, value in _read_only_values(message.info):
             if self.properties.set_read_only(path, value):
                 self.pages.publish(PropertyChanged(self.property_id(path), value))
 
-    def _updated(self, update: Any) -> None:
+    def _on_update(self, update: Any) -> None:
         if self._map is None:
             return
         info = self._map.info
-        part = np.frombuffer(update.data, np.uint8)
+        cells = np.frombuffer(update.data, np.uint8)
         right, top = update.x + update.width, update.y + update.height
         if update.x < 0 or update.y < 0 or right > info.width or top > info.height:
             self.set_status_row("Update", "error", phrase("Update area outside of original map area."))
             return
-        if part.size != update.width * update.height:
-            self.set_status_row("Update", "error", _size_mismatch(update, part))
+        if cells.size != update.width * update.height:
+            self.set_status_row("Update", "error", _size_mismatch(update, cells))
             return
-        if not self._is_own:
-            self._cells, self._is_own = self._cells.copy(), True
-        self._cells[update.y : top, update.x : right] = part.reshape(update.height, update.width)
+        if not self._owns_cells:
+            self._cells, self._owns_cells = self._cells.copy(), True
+        self._cells[update.y : top, update.x : right] = cells.reshape(update.height, update.width)
         self.set_status_row("Update", "ok", phrase("Update OK"))
         self._send_soon()
 
     def _send_soon(self) -> None:
         """Schedule sending the map, so that several updates are sent as one map."""
-        if self._sending is None:
-            wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
-            self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
+        if self._send_timer is None:
+            delay = max(0.0, self._last_send_time + _UPDATE_PERIOD - time.monotonic())
+            self._send_timer = asyncio.get_running_loop().call_later(delay, self._send_updated)
 
     def _send_updated(self) -> None:
-        self._sending = None
+        self._send_timer = None
         self._send()
 
     def _send(self) -> None:
         info = self._map.info
         frame, stamp_ns = self.frame_of(self._map)
-        timed = self.properties.flag(_USE_TIMESTAMP)
+        use_timestamp = self.properties.flag(_USE_TIMESTAMP)
         content = OccupancyMap(
             width=info.width,
             height=info.height,
@@ -247,8 +247,8 @@ class MapDisplay(TopicDisplay):
             origin=_pose_of(info.origin),
             cells=self._cells,
         )
-        self._sent_at = time.monotonic()
-        self.send(content, frame=frame.removeprefix("/"), pose=self._pose if timed else None, stamp_ns=stamp_ns)
+        self._last_send_time = time.monotonic()
+        self.send(content, frame=frame.removeprefix("/"), pose=self._pose if use_timestamp else None, stamp_ns=stamp_ns)
 
 
 def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
@@ -267,18 +267,18 @@ def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
 def _pose_of(origin: Any) -> list[float]:
     """Return a pose message as x y z qx qy qz qw; a zero quaternion becomes the identity rotation."""
     p, q = origin.position, origin.orientation
-    turn = [q.x, q.y, q.z, q.w]
-    return [p.x, p.y, p.z, *(turn if any(turn) else [0.0, 0.0, 0.0, 1.0])]
+    quaternion = [q.x, q.y, q.z, q.w]
+    return [p.x, p.y, p.z, *(quaternion if any(quaternion) else [0.0, 0.0, 0.0, 1.0])]
 
 
-def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
+def _read_only_values(info: Any) -> Iterator[tuple[Path, float | int]]:
     """Yield the path and value of each read-only property, from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width
     yield ("Height",), info.height
-    for name, part, axes in (
+    for name, vector, axes in (
         ("Position", info.origin.position, "xyz"),
         ("Orientation", info.origin.orientation, "xyzw"),
     ):
         for axis in axes:
-            yield (name, axis.upper()), float(getattr(part, axis))
+            yield (name, axis.upper()), float(getattr(vector, axis))

@@ -20,17 +20,17 @@ from linkwright.rviz.markers import BadMarkerError, MarkerReading, read_marker
 from linkwright.rviz.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, marker_pose
 
 _NAMESPACES = "Namespaces"
-_SHORTEST_LIFE_NS = 100_000
-"""A lifetime up to this means no lifetime, as in RViz."""
+_MIN_LIFETIME_NS = 100_000
+"""A marker with a lifetime up to this never expires, as in RViz."""
 
 _EXPIRY_PERIOD = 0.1
-"""Seconds between checks for expired markers, while any have a lifetime."""
+"""Seconds between checks for expired markers while any marker has a lifetime."""
 
-_DUPLICATES = "Duplicate Marker Check"
+_DUPLICATES_ROW = "Duplicate Marker Check"
 
 
 class _Marker:
-    """A received marker, and the time at which it expires in nanoseconds of the node's clock, or None."""
+    """A received marker, and the time of the node's clock in ns at which it expires, or None."""
 
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
@@ -56,27 +56,28 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._namespaces: list[str] = []
         super().__init__(host, identity, config)
         self._markers: dict[str, _Marker] = {}
-        self._unplaced: set[str] = set()
-        self._arriving: dict[str, None] = {}  # new markers without a known pose, oldest first
-        self._frame_poses: dict[tuple[str, int], Transform] = {}  # a cache: thousands of markers may share a key
-        self._expiry: asyncio.TimerHandle | None = None
+        self._unplaced_ids: set[str] = set()
+        self._pending_ids: dict[str, None] = {}  # markers that never had a known pose, oldest first
+        self._frame_poses: dict[tuple[str, int], Transform] = {}  # a cache, because thousands of markers may share a
+        # key
+        self._expiry_timer: asyncio.TimerHandle | None = None
         self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
         """Return the topic property, and a check box for each namespace of the markers received so far."""
-        boxes = tuple(
+        check_boxes = tuple(
             PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
         )
         return (
             *self.SCHEMA,
-            PropertySpec(_NAMESPACES, "bool", True, "Enable or disable all namespaces.", children=boxes),
+            PropertySpec(_NAMESPACES, "bool", True, "Enable or disable all namespaces.", children=check_boxes),
         )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Apply the action of a marker: add, delete, or delete all."""
-        self._do(message)
-        while len(self._arriving) > self.most_waiting():
-            self._remove(next(iter(self._arriving)))
+        self._apply_marker(message)
+        while len(self._pending_ids) > self.most_waiting():
+            self._remove(next(iter(self._pending_ids)))
         self._show()
 
     def changed(self, path: Path) -> None:
@@ -91,18 +92,18 @@ class MarkerDisplay(StoredMarkersDisplay):
     def reset(self) -> None:
         """Discard the markers."""
         self._markers.clear()
-        self._unplaced.clear()
-        self._arriving.clear()
+        self._unplaced_ids.clear()
+        self._pending_ids.clear()
         self._store.clear()
         self._meshes = MeshIndex(self.context.finder)
         self._show()
 
     def stop(self) -> None:
-        """Unsubscribe, and withdraw the pages' access to the files that markers referred to."""
+        """Unsubscribe, and end the pages' access to the files of the markers."""
         super().stop()
-        if self._expiry is not None:
-            self._expiry.cancel()
-            self._expiry = None
+        if self._expiry_timer is not None:
+            self._expiry_timer.cancel()
+            self._expiry_timer = None
 
     def frames_changed(self) -> None:
         """Place the markers in the new Fixed Frame."""
@@ -113,21 +114,23 @@ class MarkerDisplay(StoredMarkersDisplay):
 
     def transforms_received(self) -> None:
         """Place the markers whose transforms were not available until now."""
-        if self._unplaced:
-            for identity in list(self._unplaced):
+        if self._unplaced_ids:
+            for identity in list(self._unplaced_ids):
                 self._place_marker(identity, self._markers[identity])
             self._show()
 
     # --- actions -----------------------------------------------------------------------------------------------
 
-    def _do(self, message: Any) -> None:
+    def _apply_marker(self, message: Any) -> None:
         if message.action == ADD:
             self._add(message)
         elif message.action == DELETE:
             self._remove(marker_id(message))
         elif message.action == DELETE_ALL:
             for identity in [
-                each for each, marker in self._markers.items() if message.ns in ("", marker.reading.shape.namespace)
+                candidate
+                for candidate, marker in self._markers.items()
+                if message.ns in ("", marker.reading.shape.namespace)
             ]:
                 self._remove(identity)
         else:
@@ -146,20 +149,20 @@ class MarkerDisplay(StoredMarkersDisplay):
         if message.ns not in self._namespaces:
             self._namespaces = sorted([*self._namespaces, message.ns])
             self.publish_properties()
-        life_ns = message.lifetime.nanoseconds
-        expires_ns = self._clock.now_ns() + life_ns if life_ns > _SHORTEST_LIFE_NS else None
+        lifetime_ns = message.lifetime.nanoseconds
+        expires_ns = self._clock.now_ns() + lifetime_ns if lifetime_ns > _MIN_LIFETIME_NS else None
         self._markers[identity] = marker = _Marker(reading, message, expires_ns)
         if expires_ns is not None:
-            self._watch_expiry()
+            self._schedule_expiry()
         self._place_marker(identity, marker)
-        self._arriving.pop(identity, None)
-        if identity in self._unplaced:
-            self._arriving[identity] = None
+        self._pending_ids.pop(identity, None)
+        if identity in self._unplaced_ids:
+            self._pending_ids[identity] = None
 
     def _remove(self, identity: str) -> None:
         self._markers.pop(identity, None)
-        self._unplaced.discard(identity)
-        self._arriving.pop(identity, None)
+        self._unplaced_ids.discard(identity)
+        self._pending_ids.pop(identity, None)
         self._store.remove(identity)
         self.delete_status_row(identity)
 
@@ -177,11 +180,11 @@ class MarkerDisplay(StoredMarkersDisplay):
                 reason=reason,
             )
             self.set_status_row(identity, "error", text)
-            self._unplaced.add(identity)
+            self._unplaced_ids.add(identity)
             self._store.remove(identity)
             return
-        self._unplaced.discard(identity)
-        self._arriving.pop(identity, None)
+        self._unplaced_ids.discard(identity)
+        self._pending_ids.pop(identity, None)
         if marker.reading.warning:
             self.set_status_row(identity, "warn", marker.reading.warning)
         else:
@@ -193,37 +196,37 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._store.put(shape)
 
     def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> Transform:
-        known = self._frame_poses.get((frame, stamp_ns))
-        if known is None:
-            known = self._frame_poses[frame, stamp_ns] = tuple(
+        pose = self._frame_poses.get((frame, stamp_ns))
+        if pose is None:
+            pose = self._frame_poses[frame, stamp_ns] = tuple(
                 self.context.transforms.pose(fixed_frame, frame, stamp_ns).tolist()
             )
-        return known
+        return pose
 
     def _show(self) -> None:
-        """Send all changes of a message together."""
+        """Send all pending changes of markers together."""
         self._frame_poses.clear()
         self.show_markers()
 
     # --- lifetimes ---------------------------------------------------------------------------------------------
 
-    def _watch_expiry(self) -> None:
-        if self._expiry is None:
-            self._expiry = asyncio.get_running_loop().call_later(_EXPIRY_PERIOD, self._expire)
+    def _schedule_expiry(self) -> None:
+        if self._expiry_timer is None:
+            self._expiry_timer = asyncio.get_running_loop().call_later(_EXPIRY_PERIOD, self._remove_expired)
 
-    def _expire(self) -> None:
-        self._expiry = None
+    def _remove_expired(self) -> None:
+        self._expiry_timer = None
         now_ns = self._clock.now_ns()
-        mortal = {
+        expiry_times = {
             marker_id: marker.expires_ns for marker_id, marker in self._markers.items() if marker.expires_ns is not None
         }
-        over = [marker_id for marker_id, expires_ns in mortal.items() if expires_ns <= now_ns]
-        for identity in over:
+        expired = [marker_id for marker_id, expires_ns in expiry_times.items() if expires_ns <= now_ns]
+        for identity in expired:
             self._remove(identity)
-        if over:
+        if expired:
             self._show()
-        if len(mortal) > len(over):
-            self._watch_expiry()
+        if len(expiry_times) > len(expired):
+            self._schedule_expiry()
 
 
 class MarkerArrayDisplay(MarkerDisplay):
@@ -240,23 +243,23 @@ class MarkerArrayDisplay(MarkerDisplay):
         """Apply the actions of the markers in order."""
         self._check_duplicates(message.markers)
         for marker in message.markers:
-            self._do(marker)
+            self._apply_marker(marker)
         self._show()
 
     def _check_duplicates(self, markers: Any) -> None:
-        seen: set[tuple[str, int]] = set()
+        seen_keys: set[tuple[str, int]] = set()
         for marker in markers:
-            name = (marker.ns, marker.id)
-            if name in seen:
+            key = (marker.ns, marker.id)
+            if key in seen_keys:
                 text = phrase(
                     "Multiple Markers in the same MarkerArray message had the same ns and id: ({namespace}, {id})",
                     namespace=marker.ns,
                     id=marker.id,
                 )
-                self.set_status_row(_DUPLICATES, "error", text)
+                self.set_status_row(_DUPLICATES_ROW, "error", text)
                 return
-            seen.add(name)
-        self.delete_status_row(_DUPLICATES)
+            seen_keys.add(key)
+        self.delete_status_row(_DUPLICATES_ROW)
 
 
 class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
@@ -282,16 +285,16 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Replace the markers of the previous message by those of this message."""
-        made = list(self.markers(message))
+        markers_to_show = list(self.markers(message))
         header = getattr(message, "header", None)
-        for marker in made:
+        for marker in markers_to_show:
             if not marker.header.frame_id and header is not None:
                 marker.header = header
-        self._check_duplicates(made)
-        for identity in self._markers.keys() - {marker_id(marker) for marker in made}:
+        self._check_duplicates(markers_to_show)
+        for identity in self._markers.keys() - {marker_id(marker) for marker in markers_to_show}:
             self._remove(identity)
-        for marker in made:
-            self._do(marker)
+        for marker in markers_to_show:
+            self._apply_marker(marker)
         self._show()
 
     def changed(self, path: Path) -> None:

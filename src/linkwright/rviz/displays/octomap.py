@@ -22,15 +22,15 @@ from linkwright.rviz.displays.moveit.voxels import (
     VOXEL_COLORING,
     VOXEL_RENDERING,
     octomap_markers,
-    rendered,
+    select_rendered,
 )
 
 _TOPIC = "Octomap Topic"
-_MOST = 3.4028234663852886e38
-"""The value of a property that means infinity."""
+_MAX_FLOAT = 3.4028234663852886e38
+"""The property value that means infinity, as in RViz."""
 
-_DEPTH = 16
-_MAP = "Octomap"
+_MAX_DEPTH = 16
+_MAP_ROW = "Octomap"
 
 
 class OctomapDisplay(StoredMarkersDisplay):
@@ -48,18 +48,18 @@ class OctomapDisplay(StoredMarkersDisplay):
         PropertySpec(
             "Max. Octree Depth",
             "int",
-            _DEPTH,
+            _MAX_DEPTH,
             "Levels below the root; one level less doubles the size of cells.",
             minimum=1,
-            maximum=_DEPTH,
+            maximum=_MAX_DEPTH,
         ),
-        PropertySpec("Max. Height Display", "float", _MOST, "The maximum height of cells that are drawn, in metres."),
-        PropertySpec("Min. Height Display", "float", -_MOST, "The minimum height of cells that are drawn, in metres."),
+        PropertySpec("Max. Height Display", "float", _MAX_FLOAT, "The maximum height of drawn cells, in metres."),
+        PropertySpec("Min. Height Display", "float", -_MAX_FLOAT, "The minimum height of drawn cells, in metres."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self._shown: set[str] = set()
+        self._shown_ids: set[str] = set()
         self._frame = ""
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
@@ -84,7 +84,7 @@ class OctomapDisplay(StoredMarkersDisplay):
     def reset(self) -> None:
         """Discard the map."""
         self._frame = ""
-        self._shown.clear()
+        self._shown_ids.clear()
         self._store.clear()
         self.show_markers()
 
@@ -95,45 +95,45 @@ class OctomapDisplay(StoredMarkersDisplay):
             cells = read_octree(data=data, binary=message.binary, kind=message.id, resolution=message.resolution)
         except BadOctreeError as error:
             self.reset()
-            self.set_status_row(_MAP, "error", foreign(error))
+            self.set_status_row(_MAP_ROW, "error", foreign(error))
             return
-        self.delete_status_row(_MAP)
+        self.delete_status_row(_MAP_ROW)
         self._frame = message.header.frame_id.removeprefix("/")
         markers = octomap_markers(
-            self._chosen(cells, message.resolution),
+            self._cells_to_draw(cells, message.resolution),
             "octomap",
             frame=self._frame,
             base=IDENTITY,
             alpha=self.properties.number("Voxel Alpha"),
             by_probability=self.properties.text("Voxel Coloring") == BY_PROBABILITY,
         )
-        for gone in self._shown - {marker.id for marker in markers}:
-            self._store.remove(gone)
-        self._shown = {marker.id for marker in markers}
+        for stale_id in self._shown_ids - {marker.id for marker in markers}:
+            self._store.remove(stale_id)
+        self._shown_ids = {marker.id for marker in markers}
         for marker in markers:
             self._store.put(marker)
         self.show_markers()
         self.frames_changed()
 
-    def _chosen(self, cells: Cells, resolution: float) -> Cells:
-        """Return the cells to draw: those of the selected kind and height, no smaller than the depth allows.
+    def _cells_to_draw(self, cells: Cells, resolution: float) -> Cells:
+        """Return the cells of the selected kind and height, at the resolution that the maximum depth allows.
 
-        Smaller cells are merged, and the merged cell has the largest of their probabilities.
+        Smaller cells are merged; a merged cell has the largest probability of its parts.
         """
-        cells = rendered(cells, self.properties.text("Voxel Rendering"))
+        cells = select_rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
-        lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))
-        cells = cells.chosen((height >= lowest) & (height <= highest))
-        least = resolution * 2 ** (_DEPTH - int(self.properties.number("Max. Octree Depth")))
-        small = cells.sizes < least * 0.75
-        if not small.any():
+        min_height, max_height = (self.properties.number(f"{bound}. Height Display") for bound in ("Min", "Max"))
+        cells = cells.chosen((height >= min_height) & (height <= max_height))
+        min_size = resolution * 2 ** (_MAX_DEPTH - int(self.properties.number("Max. Octree Depth")))
+        is_small = cells.sizes < min_size * 0.75
+        if not is_small.any():
             return cells
-        places, inverse = np.unique(np.floor(cells.centers[small] / least), axis=0, return_inverse=True)
-        probabilities = np.zeros(len(places))
-        np.maximum.at(probabilities, inverse.reshape(-1), cells.probabilities[small])
-        large = cells.chosen(~small)
+        indices, inverse = np.unique(np.floor(cells.centers[is_small] / min_size), axis=0, return_inverse=True)
+        probabilities = np.zeros(len(indices))
+        np.maximum.at(probabilities, inverse.reshape(-1), cells.probabilities[is_small])
+        large_cells = cells.chosen(~is_small)
         return Cells(
-            np.concatenate([large.centers, (places + 0.5) * least]),
-            np.concatenate([large.sizes, np.full(len(places), least)]),
-            np.concatenate([large.probabilities, probabilities]),
+            np.concatenate([large_cells.centers, (indices + 0.5) * min_size]),
+            np.concatenate([large_cells.sizes, np.full(len(indices), min_size)]),
+            np.concatenate([large_cells.probabilities, probabilities]),
         )

@@ -48,11 +48,11 @@ from linkwright.rviz.displays.cloud_properties import (
 )
 
 _COUNT_PERIOD = 0.25
-"""Seconds between two updates of the row that counts points."""
+"""Seconds between two updates of the status row with the number of points."""
 
 
 @dataclass(slots=True)
-class _Shown:
+class _ShownCloud:
     key: str
     points: Points
     pose: Pose
@@ -71,32 +71,32 @@ class CloudDisplay(TopicDisplay):
         self._transformers: tuple[str, ...] = ()
         self._channels: tuple[str, ...] = ()
         super().__init__(host, identity, config)
-        self._shown: deque[_Shown] = deque()
+        self._shown_clouds: deque[_ShownCloud] = deque()
         self._number = 0
-        self._decay: asyncio.TimerHandle | None = None
-        self._counting: asyncio.TimerHandle | None = None
-        self._computed: dict[str, tuple[float, float]] = {}
+        self._decay_timer: asyncio.TimerHandle | None = None
+        self._count_timer: asyncio.TimerHandle | None = None
+        self._computed_bounds: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the width that a point has per metre of distance, or 0 to use the size of the properties."""
+        """Return the width of a point in m per metre of its distance, or 0 to use the size in the properties."""
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Select a colour transformer that the messages support; the file stays unchanged."""
+        """Select a colour transformer that the messages support, without changing the file."""
         if self.properties.set_read_only((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
     def schema(self) -> Schema:
         """Return the properties, with the transformers and channels that the last message supports."""
-        offered: dict[str, tuple[str, ...]] = {}
+        options: dict[str, tuple[str, ...]] = {}
         if self._transformers:
-            offered[COLOUR_TRANSFORMER] = tuple(sorted(self._transformers))
+            options[COLOUR_TRANSFORMER] = tuple(sorted(self._transformers))
         if self._channels:
-            offered[CHANNEL] = self._channels
-        if not offered:
+            options[CHANNEL] = self._channels
+        if not options:
             return self.SCHEMA
         return tuple(
-            replace(spec, options=offered[spec.name]) if spec.name in offered else spec for spec in self.SCHEMA
+            replace(spec, options=options[spec.name]) if spec.name in options else spec for spec in self.SCHEMA
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
@@ -104,47 +104,47 @@ class CloudDisplay(TopicDisplay):
 
         Args:
             points: the points.
-            pose: the pose of their frame in the Fixed Frame.
-            stamp_ns: the stamp of the message, ns.
+            pose: the pose of the points' frame in the Fixed Frame.
+            stamp_ns: the stamp of the message, in ns since the epoch.
         """
         self._offer_transformers(points)
         now = time.monotonic()
-        decay = self.properties.number(DECAY_TIME)
+        decay_time = self.properties.number(DECAY_TIME)
         self._number += 1
-        if decay == 0:
-            for earlier in self._shown:
-                if earlier.key:
-                    self.forget(earlier.key)
-            self._shown.clear()
-        shown = _Shown(str(self._number) if decay > 0 else "", points, pose, stamp_ns, now)
-        self._shown.append(shown)
-        self._draw(shown)
-        self._expire()
+        if decay_time == 0:
+            for previous in self._shown_clouds:
+                if previous.key:
+                    self.forget(previous.key)
+            self._shown_clouds.clear()
+        cloud = _ShownCloud(str(self._number) if decay_time > 0 else "", points, pose, stamp_ns, now)
+        self._shown_clouds.append(cloud)
+        self._draw(cloud)
+        self._remove_expired()
         self._count_points()
 
     def changed(self, path: Path) -> None:
         """Subscribe again if necessary, colour the points again, or apply the Decay Time."""
         super().changed(path)
         if path == (AUTO_INTENSITY,):
-            self._keep_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
+            self._store_computed_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
         elif path == (AUTO_VALUES,):
-            self._keep_bounds(AUTO_VALUES, *((AUTO_VALUES, name) for name in VALUE_BOUNDS))
+            self._store_computed_bounds(AUTO_VALUES, *((AUTO_VALUES, name) for name in VALUE_BOUNDS))
         if path[0] in COLOUR_PROPERTIES:
-            for shown in self._shown:
-                self._draw(shown)
+            for cloud in self._shown_clouds:
+                self._draw(cloud)
         elif path == (DECAY_TIME,):
-            self._expire()
+            self._remove_expired()
             self._count_points()
 
     def reset(self) -> None:
         """Discard all points."""
-        self._shown.clear()
-        self._cancel()
+        self._shown_clouds.clear()
+        self._cancel_timers()
         super().reset()
 
     def stop(self) -> None:
         """Unsubscribe, and cancel timers."""
-        self._cancel()
+        self._cancel_timers()
         super().stop()
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
@@ -154,7 +154,7 @@ class CloudDisplay(TopicDisplay):
             key: the key under which the points were sent.
             index: the index of the point among the points of this key.
         """
-        shown = next((shown for shown in self._shown if shown.key == key), None)
+        shown = next((cloud for cloud in self._shown_clouds if cloud.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
         fields: dict[str, float | str] = {}
@@ -170,19 +170,19 @@ class CloudDisplay(TopicDisplay):
 
     # --- colours -----------------------------------------------------------------------------------------------
 
-    def _draw(self, shown: _Shown) -> None:
+    def _draw(self, cloud: _ShownCloud) -> None:
         settings = colour_settings(self.properties)
-        colours, computed = coloured(shown.points, settings, shown.pose)
-        if computed is not None:
-            self._computed[AUTO_INTENSITY if settings.transformer == "Intensity" else AUTO_VALUES] = computed
+        colours, bounds = coloured(cloud.points, settings, cloud.pose)
+        if bounds is not None:
+            self._computed_bounds[AUTO_INTENSITY if settings.transformer == "Intensity" else AUTO_VALUES] = bounds
         content = CloudPoints(
-            positions=shown.points.positions,
+            positions=cloud.points.positions,
             colours=colours,
             translucent=settings.transformer == "RGB8" and bool((colours[:, 3] < 255).any()),
             pixel=self.pixel_size(),
         )
         shrink = partial(decimated, content)
-        self.send(content, key=shown.key, pose=shown.pose, stamp_ns=shown.stamp_ns, shrink=shrink)
+        self.send(content, key=cloud.key, pose=cloud.pose, stamp_ns=cloud.stamp_ns, shrink=shrink)
 
     def _offer_transformers(self, points: Points) -> None:
         transformers = supported_transformers(points)
@@ -193,64 +193,64 @@ class CloudDisplay(TopicDisplay):
         if self.properties.text(COLOUR_TRANSFORMER) not in transformers:
             self.choose_transformer(transformers[0])
 
-    def _keep_bounds(self, auto: str, *paths: Path) -> None:
-        """Set the bounds in the properties to the last computed ones if computing them was switched off."""
-        computed = self._computed.get(auto)
-        if computed is None or self.properties.flag(auto):
+    def _store_computed_bounds(self, auto_property: str, *paths: Path) -> None:
+        """Copy the last computed bounds to the properties if the bounds are no longer computed."""
+        bounds = self._computed_bounds.get(auto_property)
+        if bounds is None or self.properties.flag(auto_property):
             return
-        for path, value in zip(paths, computed, strict=True):
-            taken = self.properties.set(path, value)
-            self.pages.publish(PropertyChanged(self.property_id(path), taken))
+        for path, value in zip(paths, bounds, strict=True):
+            accepted_value = self.properties.set(path, value)
+            self.pages.publish(PropertyChanged(self.property_id(path), accepted_value))
 
     # --- decay -------------------------------------------------------------------------------------------------
 
-    def _expire(self) -> None:
-        """Remove points older than the Decay Time; if it is 0, remove all but those of the newest message."""
-        if self._decay is not None:
-            self._decay.cancel()
-            self._decay = None
-        decay = self.properties.number(DECAY_TIME)
-        if decay == 0:
-            self._leave(len(self._shown) - 1)
+    def _remove_expired(self) -> None:
+        """Remove points older than the Decay Time; if it is 0, keep only the points of the newest message."""
+        if self._decay_timer is not None:
+            self._decay_timer.cancel()
+            self._decay_timer = None
+        decay_time = self.properties.number(DECAY_TIME)
+        if decay_time == 0:
+            self._remove_oldest(len(self._shown_clouds) - 1)
             return
         now = time.monotonic()
-        self._leave(sum(now - shown.received > decay for shown in self._shown))
-        if self._shown:
-            due = self._shown[0].received + decay - now
-            self._decay = asyncio.get_running_loop().call_later(max(0.01, due + 0.005), self._decayed)
+        self._remove_oldest(sum(now - cloud.received > decay_time for cloud in self._shown_clouds))
+        if self._shown_clouds:
+            remaining_time = self._shown_clouds[0].received + decay_time - now
+            self._decay_timer = asyncio.get_running_loop().call_later(max(0.01, remaining_time + 0.005), self._on_decay)
 
-    def _decayed(self) -> None:
-        self._decay = None
-        self._expire()
+    def _on_decay(self) -> None:
+        self._decay_timer = None
+        self._remove_expired()
         self._count_points()
 
-    def _leave(self, count: int) -> None:
+    def _remove_oldest(self, count: int) -> None:
         for _ in range(count):
-            self.forget(self._shown.popleft().key)
+            self.forget(self._shown_clouds.popleft().key)
 
-    def _cancel(self) -> None:
-        for handle in (self._decay, self._counting):
+    def _cancel_timers(self) -> None:
+        for handle in (self._decay_timer, self._count_timer):
             if handle is not None:
                 handle.cancel()
-        self._decay = self._counting = None
+        self._decay_timer = self._count_timer = None
 
     # --- status ------------------------------------------------------------------------------------------------
 
     def _count_points(self) -> None:
-        if self._counting is None:
+        if self._count_timer is None:
             self._report_points()
-            self._counting = asyncio.get_running_loop().call_later(_COUNT_PERIOD, self._count_ended)
+            self._count_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, self._on_count_period)
 
-    def _count_ended(self) -> None:
-        self._counting = None
+    def _on_count_period(self) -> None:
+        self._count_timer = None
         self._report_points()
 
     def _report_points(self) -> None:
-        points = sum(len(shown.points) for shown in self._shown)
+        points = sum(len(cloud.points) for cloud in self._shown_clouds)
         self.set_status_row(
             "Points",
             "ok",
-            phrase("Showing [{points}] points from [{shown}] messages", points=points, shown=len(self._shown)),
+            phrase("Showing [{points}] points from [{shown}] messages", points=points, shown=len(self._shown_clouds)),
         )
 
 
@@ -258,7 +258,7 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 class PointsDisplay(CloudDisplay):
-    """The base class of displays whose points a subclass extracts from each message."""
+    """The base class of displays that extract points from each message in `points_of`."""
 
     @abstractmethod
     def points_of(self, message: Any) -> Points:
@@ -269,7 +269,7 @@ class PointsDisplay(CloudDisplay):
         """
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return a warning that explains why a message has no points, or None if that is normal."""
+        """Return a warning that explains why a message has no points, or None if no warning is needed."""
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
@@ -277,7 +277,7 @@ class PointsDisplay(CloudDisplay):
         return points, pose
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the points of a message, or the reason why it has none."""
+        """Show the points of a message, or the reason why it has no points."""
         assert pose is not None
         try:
             points = self.points_of(message)
@@ -285,8 +285,8 @@ class PointsDisplay(CloudDisplay):
             self.set_status_row("Message", "error", foreign(error))
             return
         self.delete_status_row("Message")
-        lack = self.lack_of_points(message) if len(points) == 0 else None
-        self.delete_status_row("Values") if lack is None else self.set_status_row("Values", "warn", lack)
+        warning = self.lack_of_points(message) if len(points) == 0 else None
+        self.delete_status_row("Values") if warning is None else self.set_status_row("Values", "warn", warning)
         self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
 
 
@@ -294,8 +294,8 @@ class LaserScanDisplay(PointsDisplay):
     """A display of the points of a planar laser scanner.
 
     Each ray starts at the pose that the scanner had at the time of the ray, as in laser_geometry. If no transform is
-    available for the end of a scan, the whole scan is placed at the scanner's pose at the beginning; RViz would drop
-    it.
+    available for the end of a scan, the whole scan is placed at the pose of the scanner at its beginning, while RViz
+    drops the scan.
     """
 
     CLASS = "rviz_default_plugins/LaserScan"
@@ -323,7 +323,7 @@ class LaserScanDisplay(PointsDisplay):
         finite = ranges[np.isfinite(ranges)]
         if len(finite):
             return phrase(
-                "All ranges, {low:.2f} to {high:.2f} m, are outside of the message's range_min and range_max, "
+                "All ranges, from {low:.2f} to {high:.2f} m, are outside the limits of the message, which are "
                 "{least:.2f} and {most:.2f} m",
                 low=float(finite.min()),
                 high=float(finite.max()),
@@ -331,28 +331,30 @@ class LaserScanDisplay(PointsDisplay):
                 most=message.range_max,
             )
         if len(ranges) and np.isnan(ranges).all():
-            return phrase("All {count} ranges are NaN: the sensor could not measure", count=len(ranges))
+            return phrase("All {count} ranges are NaN: the sensor measured nothing", count=len(ranges))
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
         """Return the points and the pose of their frame, after a correction for the scanner's motion.
 
         If the scanner moved during the scan, the points are in the Fixed Frame and the pose is the identity. Otherwise
-        the points are in the scanner's own frame.
+        the points are in the frame of the scanner.
         """
-        steps = len(message.ranges) - 1
+        interval_count = len(message.ranges) - 1
         frame, stamp_ns = self.frame_of(message)
-        seconds = steps * float(message.time_increment)
-        if stamp_ns == 0 or steps < 1 or not 0.0 < seconds < 3600.0:
+        duration = interval_count * float(message.time_increment)
+        if stamp_ns == 0 or interval_count < 1 or not 0.0 < duration < 3600.0:
             return points, pose
         fixed_frame = self.host.frames.fixed_frame
         try:
-            end = self.context.transforms.pose(fixed_frame, frame.removeprefix("/"), stamp_ns + int(seconds * 1e9))
+            end_pose = self.context.transforms.pose(
+                fixed_frame, frame.removeprefix("/"), stamp_ns + int(duration * 1e9)
+            )
         except TransformException:
             return points, pose
-        if np.allclose(end, pose, rtol=0.0, atol=1e-9):
+        if np.allclose(end_pose, pose, rtol=0.0, atol=1e-9):
             return points, pose
-        return swept(points, points.channels["index"] / steps, pose, end), _IDENTITY
+        return swept(points, points.channels["index"] / interval_count, pose, end_pose), _IDENTITY
 
 
 class PointCloudDisplay(PointsDisplay):
@@ -399,7 +401,7 @@ class ScalarDisplay(PointsDisplay):
     """The field of the message with the number, and the channel of the point."""
 
     def points_of(self, message: Any) -> Points:
-        """Return a single point at the origin, with the measured value as its channel."""
+        """Return a single point at the origin, with the measured value as a channel."""
         value = np.array([getattr(message, self.FIELD)], np.float64)
         return Points(np.zeros((1, 3), np.float32), {self.FIELD: value})
 

@@ -25,25 +25,25 @@ from linkwright.rviz.config.schema import (
 from linkwright.rviz.displays.base.display import DisplayHost
 from linkwright.rviz.displays.base.topic_display import RecentDisplay
 
-_ARROW = (("Shape",), "Arrow")
-_AXES = (("Shape",), "Axes")
+_IS_ARROW = (("Shape",), "Arrow")
+_IS_AXES = (("Shape",), "Axes")
 
 
-def pose_shape(*, nested: bool = False) -> Schema:
+def pose_shape_specs(*, nested: bool = False) -> Schema:
     """Return the declarations of the properties that select how a pose is drawn.
 
     With `nested`, the sizes are below ``Shape``, as in Odometry.
     """
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
-        PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_ARROW),
-        alpha("Opacity of the arrow.", when=_ARROW),
-        length("Shaft Length", 1.0, "Length of the arrow's shaft, in metres.", _ARROW),
-        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in metres.", _ARROW),
-        length("Head Length", 0.3, "Length of the arrow's head, in metres.", _ARROW),
-        length("Head Radius", 0.1, "Width of the arrow's head, in metres.", _ARROW),
-        length("Axes Length", 1.0, "Length of each axis, in metres.", _AXES),
-        length("Axes Radius", 0.1, "Thickness of each axis, in metres.", _AXES),
+        PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_IS_ARROW),
+        alpha("Opacity of the arrow.", when=_IS_ARROW),
+        length("Shaft Length", 1.0, "Length of the arrow's shaft, in metres.", _IS_ARROW),
+        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in metres.", _IS_ARROW),
+        length("Head Length", 0.3, "Length of the arrow's head, in metres.", _IS_ARROW),
+        length("Head Radius", 0.1, "Width of the arrow's head, in metres.", _IS_ARROW),
+        length("Axes Length", 1.0, "Length of each axis, in metres.", _IS_AXES),
+        length("Axes Radius", 0.1, "Thickness of each axis, in metres.", _IS_AXES),
     )
     options = ("Arrow", "Axes")
     if nested:
@@ -104,14 +104,14 @@ def covariance() -> PropertySpec:
 
 NO_COVARIANCE: Floats = np.zeros(0, dtype=np.float32)
 
-_FLAT = (("Shape",), "Arrow (Flat)")
-_SOLID = (("Shape",), "Arrow (3D)")
+_IS_FLAT_ARROW = (("Shape",), "Arrow (Flat)")
+_IS_SOLID_ARROW = (("Shape",), "Arrow (3D)")
 
 
 def pose_row(pose: Any) -> tuple[float, ...]:
     """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw."""
-    at, turn = pose.position, pose.orientation
-    return (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w)
+    position, orientation = pose.position, pose.orientation
+    return (position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w)
 
 
 def pose_rows(poses: Iterable[Any]) -> Floats:
@@ -125,12 +125,14 @@ class PoseDisplay(RecentDisplay):
     CLASS = "rviz_default_plugins/Pose"
     MESSAGE = "geometry_msgs/msg/PoseStamped"
     OCCASIONAL = True
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape())
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape_specs())
 
     def content(self, message: Any) -> DataContent | None:
         """Return the pose of a message, or None if it is not valid."""
-        row = pose_row(message.pose)
-        return PoseMarks(np.array([row], dtype=np.float32), NO_COVARIANCE) if self.is_finite(row) else None
+        pose_values = pose_row(message.pose)
+        return (
+            PoseMarks(np.array([pose_values], dtype=np.float32), NO_COVARIANCE) if self.is_finite(pose_values) else None
+        )
 
 
 class PoseWithCovarianceDisplay(RecentDisplay):
@@ -138,18 +140,18 @@ class PoseWithCovarianceDisplay(RecentDisplay):
 
     CLASS = "rviz_default_plugins/PoseWithCovariance"
     MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape(), covariance())
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape_specs(), covariance())
 
     def content(self, message: Any) -> DataContent | None:
         """Return the pose and covariance of a message, or None if they are not valid."""
-        row = pose_row(message.pose.pose)
-        spread = np.asarray(message.pose.covariance, dtype=np.float64)
-        if not self.is_finite(row, spread):
+        pose_values = pose_row(message.pose.pose)
+        covariance_values = np.asarray(message.pose.covariance, dtype=np.float64)
+        if not self.is_finite(pose_values, covariance_values):
             return None
-        return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
+        return PoseMarks(np.array([pose_values], dtype=np.float32), covariance_values.astype(np.float32))
 
 
-_LOOK_OF_POSES = (
+_POSE_PROPERTIES = (
     PropertySpec(
         "Shape",
         "enum",
@@ -169,14 +171,14 @@ class PoseArrayDisplay(RecentDisplay):
     MESSAGE = "geometry_msgs/msg/PoseArray"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        *_LOOK_OF_POSES,
-        length("Arrow Length", 0.3, "Length of the arrows, in metres.", _FLAT),
-        length("Head Radius", 0.03, "Width of the arrows' heads, in metres.", _SOLID),
-        length("Head Length", 0.07, "Length of the arrows' heads, in metres.", _SOLID),
-        length("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in metres.", _SOLID),
-        length("Shaft Length", 0.23, "Length of the arrows' shafts, in metres.", _SOLID),
-        length("Axes Length", 0.3, "Length of each axis, in metres.", _AXES),
-        length("Axes Radius", 0.01, "Thickness of each axis, in metres.", _AXES),
+        *_POSE_PROPERTIES,
+        length("Arrow Length", 0.3, "Length of the arrows, in metres.", _IS_FLAT_ARROW),
+        length("Head Radius", 0.03, "Width of the arrows' heads, in metres.", _IS_SOLID_ARROW),
+        length("Head Length", 0.07, "Length of the arrows' heads, in metres.", _IS_SOLID_ARROW),
+        length("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in metres.", _IS_SOLID_ARROW),
+        length("Shaft Length", 0.23, "Length of the arrows' shafts, in metres.", _IS_SOLID_ARROW),
+        length("Axes Length", 0.3, "Length of each axis, in metres.", _IS_AXES),
+        length("Axes Radius", 0.01, "Thickness of each axis, in metres.", _IS_AXES),
     )
 
     def content(self, message: Any) -> DataContent | None:
@@ -192,7 +194,7 @@ class ParticleCloudDisplay(RecentDisplay):
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        *_LOOK_OF_POSES,
+        *_POSE_PROPERTIES,
         length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in metres."),
         length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in metres."),
         PropertySpec(
@@ -211,7 +213,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """A display of the path of a robot, with a mark after each given distance or rotation."""
+    """A display of the path of a robot, with a mark whenever the robot has moved or turned by a tolerance."""
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"
@@ -233,45 +235,45 @@ class OdometryDisplay(RecentDisplay):
             minimum=0.0,
         ),
         PropertySpec("Keep", "int", 100, "The number of marks that are kept; 0 for all.", minimum=0),
-        *pose_shape(nested=True),
+        *pose_shape_specs(nested=True),
         covariance(),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self._marked: tuple[float, ...] | None = None
+        self._last_mark: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose with its covariance, or None if it is not valid or too close to the last mark."""
-        row = pose_row(message.pose.pose)
-        spread = np.asarray(message.pose.covariance, dtype=np.float64)
-        if not self.is_finite(row, spread):
+        """Return the pose and its covariance, or None if the pose is not valid or too close to the last mark."""
+        pose_values = pose_row(message.pose.pose)
+        covariance_values = np.asarray(message.pose.covariance, dtype=np.float64)
+        if not self.is_finite(pose_values, covariance_values):
             return None
-        if abs(sum(part * part for part in row[3:]) - 1.0) >= _NORM_TOLERANCE:
+        if abs(sum(component * component for component in pose_values[3:]) - 1.0) >= _NORM_TOLERANCE:
             self.refuse(phrase("Message contained unnormalized quaternion (squares of values don't add to 1)"))
             return None
-        if self._is_near(row):
+        if self._is_near(pose_values):
             return None
-        self._marked = row
-        return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
+        self._last_mark = pose_values
+        return PoseMarks(np.array([pose_values], dtype=np.float32), covariance_values.astype(np.float32))
 
     def reset(self) -> None:
-        """Discard the marks, so that the next valid message adds one regardless of its distance."""
-        self._marked = None
+        """Discard the marks, so that the next valid message adds a mark at any distance."""
+        self._last_mark = None
         super().reset()
 
-    def _is_near(self, row: tuple[float, ...]) -> bool:
-        if self._marked is None:
+    def _is_near(self, pose_values: tuple[float, ...]) -> bool:
+        if self._last_mark is None:
             return False
-        cosine = sum(a * b for a, b in zip(self._marked[3:], row[3:], strict=True))
+        cosine = sum(a * b for a, b in zip(self._last_mark[3:], pose_values[3:], strict=True))
         angle = math.acos(min(1.0, max(-1.0, 2.0 * cosine * cosine - 1.0)))
-        return math.dist(self._marked[:3], row[:3]) < self.properties.number(
+        return math.dist(self._last_mark[:3], pose_values[:3]) < self.properties.number(
             "Position Tolerance"
         ) and angle < self.properties.number("Angle Tolerance")
 
 
-_AXES_SHOWN = (("Pose Style",), "Axes")
-_ARROWS_SHOWN = (("Pose Style",), "Arrows")
+_SHOWS_AXES = (("Pose Style",), "Axes")
+_SHOWS_ARROWS = (("Pose Style",), "Arrows")
 
 
 class PathDisplay(RecentDisplay):
@@ -290,16 +292,16 @@ class PathDisplay(RecentDisplay):
         PropertySpec("Buffer Length", "int", 1, "The number of paths that are shown.", minimum=1),
         vector("Offset", "Offset of the paths in the Fixed Frame, in metres."),
         PropertySpec("Pose Style", "enum", "None", "The shape of the poses.", options=("None", "Axes", "Arrows")),
-        length("Length", 0.3, "Length of each axis, in metres.", _AXES_SHOWN),
-        length("Radius", 0.03, "Thickness of each axis, in metres.", _AXES_SHOWN),
-        PropertySpec("Pose Color", "color", "#ff55ff", "Colour of the arrows.", when=_ARROWS_SHOWN),
-        length("Shaft Length", 0.1, "Length of the arrows' shafts, in metres.", _ARROWS_SHOWN),
-        length("Head Length", 0.2, "Length of the arrows' heads, in metres.", _ARROWS_SHOWN),
-        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in metres.", _ARROWS_SHOWN),
-        length("Head Diameter", 0.3, "Width of the arrows' heads, in metres.", _ARROWS_SHOWN),
+        length("Length", 0.3, "Length of each axis, in metres.", _SHOWS_AXES),
+        length("Radius", 0.03, "Thickness of each axis, in metres.", _SHOWS_AXES),
+        PropertySpec("Pose Color", "color", "#ff55ff", "Colour of the arrows.", when=_SHOWS_ARROWS),
+        length("Shaft Length", 0.1, "Length of the arrows' shafts, in metres.", _SHOWS_ARROWS),
+        length("Head Length", 0.2, "Length of the arrows' heads, in metres.", _SHOWS_ARROWS),
+        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in metres.", _SHOWS_ARROWS),
+        length("Head Diameter", 0.3, "Width of the arrows' heads, in metres.", _SHOWS_ARROWS),
     )
 
     def content(self, message: Any) -> DataContent | None:
         """Return the poses of a path, or None if they are not valid."""
-        rows = pose_rows(stamped.pose for stamped in message.poses)
+        rows = pose_rows(stamped_pose.pose for stamped_pose in message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None

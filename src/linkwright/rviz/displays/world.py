@@ -25,7 +25,7 @@ from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPI
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import SideTopic, TopicDisplay
 from linkwright.rviz.displays.world_rays import CHOICES, LidarRays
-from linkwright.rviz.frames.history import OwnFrame
+from linkwright.rviz.frames.history import PlacedFrame
 from linkwright.rviz.lights import lights_of
 from linkwright.rviz.sensors import ShownLidar, sensors_of
 from linkwright.rviz.skies import daylight, fog_of
@@ -37,22 +37,22 @@ from linkwright.sdf.reader import read
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import World
 
-_POSES = "Poses Topic"
-_RAYS_TOPIC, _RAYS, _FRUSTUMS = "Rays Topic", "Lidar Rays", "Camera Frustums"
-_FRAME = "Frame"
-_WORLD = "World"
+_POSES_PROPERTY = "Poses Topic"
+_RAYS_TOPIC_PROPERTY, _RAYS_PROPERTY, _FRUSTUMS_PROPERTY = "Rays Topic", "Lidar Rays", "Camera Frustums"
+_FRAME_ROW = "Frame"
+_WORLD_ROW = "World"
 _SCENE_KEY, _POSES_KEY = "scene", "poses"
-_MOST_FINDINGS = 5
-_UNMOVED = 1e-6
-"""In m, and of quaternions: smaller changes do not move tf's frames in the world."""
+_MAX_FINDINGS = 5
+_MOVE_TOLERANCE = 1e-6
+"""The smallest change of a position in m, or of a quaternion, with which the frames of tf are placed again."""
 
 
 class WorldDisplay(TopicDisplay):
     """A display of all models of a world with their visuals, each link at its pose in the simulation.
 
-    The poses are in the frame ``world``. If neither tf nor the Fixed Frame has that name, the world is placed so that
-    one of its links, usually a robot's, is at tf's pose for the frame of the same name. If the Fixed Frame has that
-    name and tf has no such frame, tf's frames are placed so that the world does not move.
+    The poses are in the frame ``world``. If tf has no such frame, a link that is also a frame of tf connects both. The
+    world is then placed so that this link is at the pose of its frame; but if the Fixed Frame is ``world``, the frames
+    of tf are placed instead.
     """
 
     CLASS = WORLD_DISPLAY
@@ -66,7 +66,7 @@ class WorldDisplay(TopicDisplay):
             depth=1,
             durability="Transient Local",
         ),
-        PropertySpec(_POSES, "string", POSES_TOPIC, "The topic of the links' poses, tf2_msgs/msg/TFMessage."),
+        PropertySpec(_POSES_PROPERTY, "string", POSES_TOPIC, "The topic of the links' poses, tf2_msgs/msg/TFMessage."),
         PropertySpec("Visual Enabled", "bool", True, "Draw the visual geometry."),
         PropertySpec("Collision Enabled", "bool", False, "Draw the collision geometry."),
         alpha("Opacity of all models: 0 is invisible."),
@@ -81,7 +81,7 @@ class WorldDisplay(TopicDisplay):
         ),
         PropertySpec("Shadows", "bool", True, "Let the lights of the studio and of the world cast shadows."),
         PropertySpec(
-            _RAYS,
+            _RAYS_PROPERTY,
             "enum",
             CHOICES[0],
             "Draw the rays of lidars at their measured lengths: of lidars with "
@@ -89,9 +89,9 @@ class WorldDisplay(TopicDisplay):
             "are drawn.",
             options=CHOICES,
         ),
-        PropertySpec(_RAYS_TOPIC, "string", RAYS_TOPIC, "The topic of the rays, sensor_msgs/msg/LaserScan."),
+        PropertySpec(_RAYS_TOPIC_PROPERTY, "string", RAYS_TOPIC, "The topic of the rays, sensor_msgs/msg/LaserScan."),
         PropertySpec(
-            _FRUSTUMS,
+            _FRUSTUMS_PROPERTY,
             "enum",
             CHOICES[0],
             "Draw the view of cameras, from the near to the far plane: of cameras with "
@@ -102,20 +102,20 @@ class WorldDisplay(TopicDisplay):
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self._side = SideTopic(host, "tf2_msgs/msg/TFMessage", self._moved)
+        self._poses_topic = SideTopic(host, "tf2_msgs/msg/TFMessage", self._on_poses)
         self._rays = LidarRays(host, self._show_rays, lambda lidar: self.forget(_rays_key(lidar)))
-        self._reading: asyncio.Task[None] | None = None
+        self._reading_task: asyncio.Task[None] | None = None
         self._revision = 0
         self._content = WorldContent()
-        self._rows_of: dict[str, int] = {}
+        self._link_indices: dict[str, int] = {}
         self._poses: NDArray[np.float64] = np.empty((0, 7))
-        self._posed: Sequence[str] = ()
-        """The links of the last poses: all links that move."""
+        self._moving_links: Sequence[str] = ()
+        """The links in the last message of poses, which are all links that move."""
         self._stamp_ns = 0
         self._anchors: tuple[int, ...] = ()
-        self._leads = False
-        self._placed: tuple[str, Pose | None] = ("", None)
-        self._sent: tuple[Any, ...] = ()
+        self._places_tf_frames = False
+        self._world_pose: tuple[str, Pose | None] = ("", None)
+        self._last_sent: tuple[Any, ...] = ()
         self._page_problems: dict[tuple[str, str], Phrase] = {}
 
     # --- lifecycle ---------------------------------------------------------------------------------------------
@@ -126,9 +126,9 @@ class WorldDisplay(TopicDisplay):
         self._follow()
 
     def stop(self) -> None:
-        """Unsubscribe, and withdraw the world's files from pages."""
+        """Unsubscribe, and end the pages' access to the files of the world."""
         super().stop()
-        self._side.close()
+        self._poses_topic.close()
         self._rays.close()
         self.context.transforms.place(self.id, None)
         self.context.meshes.replace(self.id, {})
@@ -136,9 +136,9 @@ class WorldDisplay(TopicDisplay):
     def changed(self, path: Path) -> None:
         """Subscribe to other topics, or to the rays of other lidars."""
         super().changed(path)
-        if path == (_POSES,):
+        if path == (_POSES_PROPERTY,):
             self._follow()
-        elif path in ((_RAYS,), (_RAYS_TOPIC,)):
+        elif path in ((_RAYS_PROPERTY,), (_RAYS_TOPIC_PROPERTY,)):
             self._follow_rays()
 
     def enabled_changed(self) -> None:
@@ -150,7 +150,7 @@ class WorldDisplay(TopicDisplay):
     def time_changed(self) -> None:
         """Process the messages that were queued while time was paused."""
         super().time_changed()
-        self._side.resume()
+        self._poses_topic.resume()
         self._rays.resume()
 
     def time_reset(self) -> None:
@@ -162,8 +162,8 @@ class WorldDisplay(TopicDisplay):
 
     def reset(self) -> None:
         """Discard the world; nothing is shown until another description arrives."""
-        self._cancel()
-        self._content, self._rows_of, self._sent = WorldContent(), {}, ()
+        self._cancel_reading()
+        self._content, self._link_indices, self._last_sent = WorldContent(), {}, ()
         self._page_problems.clear()
         self._rays.describe(())
         self.context.meshes.replace(self.id, {})
@@ -174,15 +174,19 @@ class WorldDisplay(TopicDisplay):
         self._show_poses()
 
     def transforms_received(self) -> None:
-        """Place the world if it could not be placed before; later, each pose message updates its pose."""
-        own = self.context.transforms.own(WORLD)
-        placed = self._placed[1] is not None if not self._leads else own is not None and own.parent is not None
-        if self._content.links and not placed and (self._leads or self._placed[0] != WORLD):
+        """Place the world if it could not be placed before; afterwards each message of poses updates its pose."""
+        world_frame = self.context.transforms.own(WORLD)
+        is_placed = (
+            self._world_pose[1] is not None
+            if not self._places_tf_frames
+            else world_frame is not None and world_frame.parent is not None
+        )
+        if self._content.links and not is_placed and (self._places_tf_frames or self._world_pose[0] != WORLD):
             self._show_poses()
 
     def receive(self, status: MeshStatus) -> None:
         """Show in the status whether a page could load a mesh of the world."""
-        row = self._rows_of.get(status.link)
+        row = self._link_indices.get(status.link)
         if row is None:
             return
         link = self._content.links[row]
@@ -199,72 +203,81 @@ class WorldDisplay(TopicDisplay):
         self._report_problems()
 
     def _follow(self) -> None:
-        self._side.close()
-        topic = self.properties.text(_POSES).strip()
+        self._poses_topic.close()
+        topic = self.properties.text(_POSES_PROPERTY).strip()
         if not self.enabled or not topic:
             return
-        problem = self._side.listen(topic, TF_QOS)
+        problem = self._poses_topic.listen(topic, TF_QOS)
         if problem is not None:
-            self.set_status_row(_POSES, "error", problem)
+            self.set_status_row(_POSES_PROPERTY, "error", problem)
 
     def _follow_rays(self) -> None:
         problem = self._rays.follow(
-            self.properties.text(_RAYS_TOPIC).strip() if self.enabled else "", self.properties.text(_RAYS)
+            self.properties.text(_RAYS_TOPIC_PROPERTY).strip() if self.enabled else "",
+            self.properties.text(_RAYS_PROPERTY),
         )
         if problem is None:
-            self.delete_status_row(_RAYS_TOPIC)
+            self.delete_status_row(_RAYS_TOPIC_PROPERTY)
         else:
-            self.set_status_row(_RAYS_TOPIC, "error", problem)
+            self.set_status_row(_RAYS_TOPIC_PROPERTY, "error", problem)
 
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Start to read a description; the former world is shown until the new one has been read."""
-        self._cancel()
-        self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
+        """Start to read a description; the previous world is shown until the new one has been read."""
+        self._cancel_reading()
+        self._reading_task = asyncio.get_running_loop().create_task(self._read(message.data))
 
-    def _cancel(self) -> None:
-        if self._reading is not None:
-            self._reading.cancel()
-            self._reading = None
+    def _cancel_reading(self) -> None:
+        if self._reading_task is not None:
+            self._reading_task.cancel()
+            self._reading_task = None
 
     async def _read(self, text: str) -> None:
         index = MeshIndex(self.context.finder)
         try:
-            world, content = await asyncio.to_thread(_content, text, index)
+            world, content = await asyncio.to_thread(_read_content, text, index)
         except LinkwrightError as error:
             self._refuse(error.diagnostics)
             return
         except FrameError as error:
-            self.set_status_row(_WORLD, "error", phrase("'{name}' cannot be placed", name=error.name))
+            self.set_status_row(
+                _WORLD_ROW, "error", phrase(("The pose of '{name}' cannot be determined"), name=error.name)
+            )
             return
         self.context.meshes.replace(self.id, index.folders)
-        before = {link.name: row for row, link in enumerate(self._content.links)}
+        previous_indices = {link.name: row for row, link in enumerate(self._content.links)}
         poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
-        moving = frozenset(self._posed)
-        static = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
-        for row, link in enumerate(content.links):  # preserve moving links' poses until new ones arrive
-            if link.name in moving and link.name in before and not link.name.startswith(static):
-                poses[row] = self._poses[before[link.name]]
+        moving_links = frozenset(self._moving_links)
+        static_prefixes = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
+        for row, link in enumerate(content.links):  # keep the poses of moving links until new poses arrive
+            if (
+                link.name in moving_links
+                and link.name in previous_indices
+                and not link.name.startswith(static_prefixes)
+            ):
+                poses[row] = self._poses[previous_indices[link.name]]
         self._revision += 1
-        self._content, self._poses, self._sent = content, poses, ()
-        self._rows_of = {link.name: row for row, link in enumerate(content.links)}
+        self._content, self._poses, self._last_sent = content, poses, ()
+        self._link_indices = {link.name: row for row, link in enumerate(content.links)}
         self._anchors = _anchors(content)
         self._page_problems.clear()
         lidars, cameras = sensors_of(world)
-        self.send(_scene(self._revision, world, content, lidars, cameras), key=_SCENE_KEY)
+        self.send(_world_scene(self._revision, world, content, lidars, cameras), key=_SCENE_KEY)
         self._rays.describe(lidars)
         self._follow_rays()
         self.set_status_row(
-            _WORLD, "ok", phrase("{models} models, {links} links", models=len(world.models), links=len(content.links))
+            _WORLD_ROW,
+            "ok",
+            phrase("{models} models, {links} links", models=len(world.models), links=len(content.links)),
         )
         self._report_problems()
         self._show_poses()
 
     def _refuse(self, diagnostics: tuple[Diagnostic, ...]) -> None:
-        errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR][:_MOST_FINDINGS]
+        errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR][:_MAX_FINDINGS]
         texts = [error.placed_message for error in errors] or [phrase("The description is not SDF")]
-        self.set_status_row(_WORLD, "error", joined(texts, "; "))
+        self.set_status_row(_WORLD_ROW, "error", joined(texts, "; "))
 
     def _report_problems(self) -> None:
         problems = [(link, text) for link, texts in self._content.problems.items() for text in texts]
@@ -272,124 +285,133 @@ class WorldDisplay(TopicDisplay):
         self._report("Files", "error", [joined((link, text), ": ") for link, text in problems])
 
     def _report(self, name: str, level: StatusLevel, texts: list[Phrase]) -> None:
-        more = len(texts) - _MOST_FINDINGS
+        extra_count = len(texts) - _MAX_FINDINGS
         if texts:
-            text = joined(texts[:_MOST_FINDINGS], "; ")
+            text = joined(texts[:_MAX_FINDINGS], "; ")
             self.set_status_row(
-                name, level, phrase("{texts}; and {more} more", texts=text, more=more) if more > 0 else text
+                name,
+                level,
+                phrase("{texts}; and {more} more", texts=text, more=extra_count) if extra_count > 0 else text,
             )
         else:
             self.delete_status_row(name)
 
     # --- poses -------------------------------------------------------------------------------------------------
 
-    def _moved(self, message: TFMessage) -> None:
+    def _on_poses(self, message: TFMessage) -> None:
         batch = message.batch
-        rows = [self._rows_of.get(child, -1) for child in batch.children]
+        rows = [self._link_indices.get(child, -1) for child in batch.children]
         poses = np.asarray(batch.poses)
         if not np.isfinite(poses).all():
             self.set_status_row(
-                _POSES, "error", phrase("Message contained invalid floating point values (nans or infs)")
+                _POSES_PROPERTY, "error", phrase("Message contained invalid floating point values (nans or infs)")
             )
             return
-        self.delete_status_row(_POSES)
-        self._posed = batch.children
+        self.delete_status_row(_POSES_PROPERTY)
+        self._moving_links = batch.children
         # Locate with the previous poses: the transforms for the new poses may not have arrived yet.
-        self._locate()
-        known = [place for place, row in enumerate(rows) if row >= 0]
-        self._poses[[rows[place] for place in known]] = poses[known]
+        self._place_world()
+        known_indices = [index for index, row in enumerate(rows) if row >= 0]
+        self._poses[[rows[pose_index] for pose_index in known_indices]] = poses[known_indices]
         self._stamp_ns = batch.stamp_ns
         self._send_poses()
 
     def _show_poses(self) -> None:
-        self._locate()
+        self._place_world()
         self._send_poses()
 
     def _send_poses(self) -> None:
         if not self._content.links:
             return
-        frame, pose = self._placed
-        news = (self._revision, self._poses.tobytes(), frame, None if pose is None else pose.tobytes())
-        if news == self._sent:
+        frame, pose = self._world_pose
+        pose_state = (self._revision, self._poses.tobytes(), frame, None if pose is None else pose.tobytes())
+        if pose_state == self._last_sent:
             return
-        self._sent = news
+        self._last_sent = pose_state
         content = WorldPoses(self._revision, self._poses.astype(np.float32))
         self.send(content, key=_POSES_KEY, frame=frame, pose=pose, stamp_ns=self._stamp_ns)
 
     def _show_rays(self, rays: WorldRays) -> None:
         self.send(rays, key=_rays_key(rays.lidar))
 
-    def _locate(self) -> None:
+    def _place_world(self) -> None:
         """Compute the pose of the world in the Fixed Frame from the last poses of its links."""
         if not self._content.links:
             return
         frames = self.context.transforms.names()
-        self._leads = self.host.frames.fixed_frame == WORLD and WORLD not in frames
-        if not self._leads:
+        self._places_tf_frames = self.host.frames.fixed_frame == WORLD and WORLD not in frames
+        if not self._places_tf_frames:
             self.context.transforms.place(self.id, None)
-        found = self._anchor(frames) if self._leads or WORLD not in frames else None
-        if self._leads or WORLD in frames:
-            self._placed = (WORLD, None)
-            self.set_status_row(_FRAME, "ok", phrase("The world is at the frame '{world}'", world=WORLD))
-            if found is not None:
-                self._place_frames(*found)
-            elif self._leads and self.context.transforms.own(WORLD) is None:
-                self.context.transforms.place(self.id, OwnFrame(WORLD))
-        elif found is not None:
-            row, frame, pose = found
-            self._placed = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))
+        anchor = self._find_anchor(frames) if self._places_tf_frames or WORLD not in frames else None
+        if self._places_tf_frames or WORLD in frames:
+            self._world_pose = (WORLD, None)
+            self.set_status_row(_FRAME_ROW, "ok", phrase("The world is placed at the frame '{world}'", world=WORLD))
+            if anchor is not None:
+                self._place_frames(*anchor)
+            elif self._places_tf_frames and self.context.transforms.own(WORLD) is None:
+                self.context.transforms.place(self.id, PlacedFrame(WORLD))
+        elif anchor is not None:
+            row, frame, pose = anchor
+            self._world_pose = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))
             self.set_status_row(
-                _FRAME,
+                _FRAME_ROW,
                 "ok",
                 phrase(
-                    "tf has no '{world}': the world is placed so that '{frame}' coincides in both",
+                    "tf has no frame '{world}': the world is placed so that '{frame}' has the same pose in both",
                     world=WORLD,
                     frame=frame,
                 ),
             )
-        elif self._placed[1] is None:
-            self._placed = ("", None)
+        elif self._world_pose[1] is None:
+            self._world_pose = ("", None)
             self.set_status_row(
-                _FRAME,
+                _FRAME_ROW,
                 "warn",
-                phrase("tf has no '{world}' and no frame of a model: the world is at the Fixed Frame", world=WORLD),
+                phrase(
+                    ("tf has neither '{world}' nor a frame of a model: the world is placed at the Fixed Frame"),
+                    world=WORLD,
+                ),
             )
 
     def _place_frames(self, row: int, frame: str, pose: Transform) -> None:
-        """Place tf's frames in the world so that a frame is at its link's pose.
+        """Place the frames of tf in the world so that a frame is at the pose of its link.
 
         Args:
-            row: the row of the link.
+            row: the index of the link in the content of the world.
             frame: the frame that has the link's name.
-            pose: the frame's pose in tf's root frame.
+            pose: the pose of the frame in the root frame of its tf tree.
         """
-        placed = np.array(compose(tuple(self._poses[row]), invert(pose)))
+        pose_in_world = np.array(compose(tuple(self._poses[row]), invert(pose)))
         transforms, root = self.context.transforms, self._root(frame)
-        before = transforms.own(WORLD)
-        if before is None or before.parent != root or np.abs(before.pose - placed).max() > _UNMOVED:
-            transforms.place(self.id, OwnFrame(WORLD, root, placed))
+        previous_frame = transforms.own(WORLD)
+        if (
+            previous_frame is None
+            or previous_frame.parent != root
+            or np.abs(previous_frame.pose - pose_in_world).max() > _MOVE_TOLERANCE
+        ):
+            transforms.place(self.id, PlacedFrame(WORLD, root, pose_in_world))
         self.set_status_row(
-            _FRAME,
+            _FRAME_ROW,
             "ok",
             phrase(
-                "tf has no '{world}': its frames are placed so that '{frame}' coincides in both",
+                "tf has no frame '{world}': the frames of tf are placed so that '{frame}' has the same pose in both",
                 world=WORLD,
                 frame=frame,
             ),
         )
 
-    def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """Return a link that is also a tf frame with a known pose, or None if there is no such link.
+    def _find_anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
+        """Return a link that is also a frame of tf with a known pose, or None if there is no such link.
 
         Returns:
-            The link's row, the frame, and the frame's pose. The pose is in the Fixed Frame, or in tf's root frame if
-            the world determines where tf's frames are.
+            The index of the link, its frame, and the pose of the frame. The pose is in the root frame of the tf tree
+            if the world determines the poses of tf's frames, and in the Fixed Frame if not.
         """
         for row in self._anchors:
-            frame = _unscoped(self._content.links[row].name)
+            frame = _frame_name(self._content.links[row].name)
             if frame not in frames:
                 continue
-            reference = self._root(frame) if self._leads else self.host.frames.fixed_frame
+            reference = self._root(frame) if self._places_tf_frames else self.host.frames.fixed_frame
             for stamp_ns in (self._stamp_ns, 0):
                 with suppress(TransformException):
                     return row, frame, tuple(self.context.transforms.pose(reference, frame, stamp_ns))
@@ -408,7 +430,7 @@ class WorldDisplay(TopicDisplay):
         return names[row]
 
 
-def _scene(
+def _world_scene(
     revision: int, world: World, content: WorldContent, lidars: list[ShownLidar], cameras: list[CameraScene]
 ) -> WorldScene:
     camera = camera_of(world)
@@ -429,7 +451,7 @@ def _scene(
     )
 
 
-def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
+def _read_content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
     """Return the world that a text describes, and the content that draws the world.
 
     Raises:
@@ -449,11 +471,11 @@ def _rays_key(lidar: str) -> str:
     return f"rays {lidar}"
 
 
-def _unscoped(name: str) -> str:
+def _frame_name(name: str) -> str:
     return name.rpartition(SEPARATOR)[2]
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the rows of the links whose frame name is unique, in file order; only they can be anchors."""
-    counts = Counter(_unscoped(link.name) for link in content.links)
-    return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)
+    """Return the indices of the links with unique frame names, which can be anchors, in file order."""
+    counts = Counter(_frame_name(link.name) for link in content.links)
+    return tuple(row for row, link in enumerate(content.links) if counts[_frame_name(link.name)] == 1)

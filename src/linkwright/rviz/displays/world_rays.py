@@ -15,11 +15,11 @@ from linkwright.rviz.displays.base.topic_display import SideTopic
 from linkwright.rviz.sensors import ShownLidar
 
 CHOICES = ("Visualized", "All", "None")
-"""The choices of sensors to draw: those with ``<visualize>``, all, or none."""
-_OTHERS = "/others"
-"""Ends the topic of the lidars without ``<visualize>``."""
-_MOST_KEPT = 64
-"""Lidars whose last rays are stored until the world is known."""
+"""The sensors to draw: the sensors with ``<visualize>true</visualize>``, all sensors, or none."""
+_OTHERS_SUFFIX = "/others"
+"""The suffix of the topic for lidars without ``<visualize>``."""
+_MAX_STORED_LIDARS = 64
+"""The largest number of lidars for which the last rays are stored."""
 
 
 class LidarRays:
@@ -28,29 +28,29 @@ class LidarRays:
     Args:
         host: the display's host.
         show: called with the rays of a lidar to draw.
-        hide: called with the name of a lidar whose rays are no longer drawn.
+        hide: called with the name of a lidar when its rays are no longer drawn.
     """
 
     def __init__(self, host: DisplayHost, show: Callable[[WorldRays], None], hide: Callable[[str], None]) -> None:
         self._show, self._hide = show, hide
         self._lidars: dict[str, ShownLidar] = {}
-        self._shown: set[str] = set()
-        self._last: dict[str, Any] = {}
+        self._drawn_lidars: set[str] = set()
+        self._last_messages: dict[str, Any] = {}
         self._topics: dict[str, SideTopic] = {}
         self._host = host
 
     def describe(self, lidars: Iterable[ShownLidar]) -> None:
         """Set the lidars of a world, and show their last measurements, if there are any."""
         self._lidars = {lidar.scene.name: lidar for lidar in lidars}
-        self._let_go(set())
-        self._last = {name: message for name, message in self._last.items() if name in self._lidars}
-        for message in list(self._last.values()):
-            self._measured(message)
+        self._hide_except(set())
+        self._last_messages = {name: message for name, message in self._last_messages.items() if name in self._lidars}
+        for message in list(self._last_messages.values()):
+            self._on_measurement(message)
 
     def forget(self) -> None:
         """Discard and hide all rays; nothing is drawn until new measurements arrive."""
-        self._last.clear()
-        self._let_go(set())
+        self._last_messages.clear()
+        self._hide_except(set())
 
     def follow(self, topic: str, choice: str) -> Phrase | None:
         """Subscribe to the ray topics of exactly those lidars whose rays are drawn.
@@ -62,17 +62,17 @@ class LidarRays:
         Returns:
             RViz's error text if a subscription failed, or None.
         """
-        lidars: dict[str, list[str]] = {}
+        lidars_by_topic: dict[str, list[str]] = {}
         for name, lidar in self._lidars.items():
             if topic and (choice == "All" or (choice == "Visualized" and lidar.scene.visualized)):
-                lidars.setdefault(topic if lidar.scene.visualized else topic + _OTHERS, []).append(name)
-        self._let_go({name for names in lidars.values() for name in names})
-        for key in self._topics.keys() - lidars.keys():
-            self._topics.pop(key).close()
+                lidars_by_topic.setdefault(topic if lidar.scene.visualized else topic + _OTHERS_SUFFIX, []).append(name)
+        self._hide_except({name for names in lidars_by_topic.values() for name in names})
+        for ray_topic in self._topics.keys() - lidars_by_topic.keys():
+            self._topics.pop(ray_topic).close()
         problem: Phrase | None = None
-        for key in lidars.keys() - self._topics.keys():
-            self._topics[key] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._measured)
-            problem = self._topics[key].listen(key, SENSOR_DATA_QOS) or problem
+        for ray_topic in lidars_by_topic.keys() - self._topics.keys():
+            self._topics[ray_topic] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._on_measurement)
+            problem = self._topics[ray_topic].listen(ray_topic, SENSOR_DATA_QOS) or problem
         return problem
 
     def resume(self) -> None:
@@ -84,21 +84,23 @@ class LidarRays:
         """Unsubscribe."""
         self.follow("", "")
 
-    def _let_go(self, drawn: set[str]) -> None:
-        for name in self._shown - drawn:
+    def _hide_except(self, drawn_lidars: set[str]) -> None:
+        for name in self._drawn_lidars - drawn_lidars:
             self._hide(name)
-        self._shown &= drawn
+        self._drawn_lidars &= drawn_lidars
 
-    def _measured(self, message: Any) -> None:
+    def _on_measurement(self, message: Any) -> None:
         name = message.header.frame_id
         lidar = self._lidars.get(name)
         ranges = np.asarray(message.ranges, dtype=np.float32)
         if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
             return
-        if name in self._last or len(self._last) < _MOST_KEPT:  # in recordings, the world may follow its rays
-            self._last[name] = message
+        if (
+            name in self._last_messages or len(self._last_messages) < _MAX_STORED_LIDARS
+        ):  # in recordings, the world may follow its rays
+            self._last_messages[name] = message
         if lidar is None:
             return
         rows, columns = lidar.every
-        self._shown.add(name)
+        self._drawn_lidars.add(name)
         self._show(WorldRays(name, ranges.reshape(lidar.measured)[::rows, ::columns].ravel()))

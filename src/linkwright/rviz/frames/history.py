@@ -21,7 +21,7 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
-class OwnFrame:
+class PlacedFrame:
     """A frame that a display places and that tf does not know.
 
     Attributes:
@@ -36,24 +36,23 @@ class OwnFrame:
 
 
 class FrameHistory:
-    """A tf2 buffer that subscribes only while it is used; robots alone are shown without it.
+    """A tf2 buffer that subscribes only while it has listeners; the view of a robot does not need it.
 
-    Displays may place frames that tf does not know, which can then be the Fixed Frame. Only this viewer sees these
-    frames.
+    Displays may place frames that tf does not know. Such a frame can be the Fixed Frame. Other programs do not see it.
 
     Args:
         node: the node that subscribes.
 
     Attributes:
-        on_own: callbacks for a frame that a display has placed, moved or withdrawn.
+        on_placed_frame: callbacks that are called when a display has placed, moved or withdrawn a frame.
     """
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._listeners: list[Callable[[], None]] = []
         self._subscriptions: list[Any] = []
-        self._own: dict[str, OwnFrame] = {}
-        self.on_own: list[Callable[[], None]] = []
+        self._placed_frames: dict[str, PlacedFrame] = {}
+        self.on_placed_frame: list[Callable[[], None]] = []
 
     @cached_property
     def _buffer(self) -> BufferCore:
@@ -62,7 +61,7 @@ class FrameHistory:
         return BufferCore(logger=self._node.get_logger())
 
     def use(self, listener: Callable[[], None]) -> Callable[[], None]:
-        """Subscribe, and call the listener whenever transforms arrive.
+        """Subscribe, and call a listener whenever transforms arrive.
 
         Return a function that removes the listener, and unsubscribes if there is no other listener.
         """
@@ -77,7 +76,7 @@ class FrameHistory:
             if listener in self._listeners:
                 self._listeners.remove(listener)
             if not self._listeners:
-                self._end()
+                self._unsubscribe()
 
         return release
 
@@ -86,34 +85,34 @@ class FrameHistory:
 
         Args:
             fixed_frame: the Fixed Frame.
-            frame: the frame, which may be the Fixed Frame even if tf does not know it.
-            stamp_ns: the time, nanoseconds; 0 for the latest.
+            frame: the frame; tf need not know it if it is the Fixed Frame.
+            stamp_ns: the time in ns since the epoch; 0 for the latest transform.
 
         Raises:
-            TransformException: the pose is not known; the message is tf2's.
+            TransformException: the pose is not known; the message is the text of tf2.
         """
         if frame == fixed_frame:
             return _IDENTITY
         own = self.own(fixed_frame)
         if own is not None and own.parent is not None:
             return compose(own.pose, self.pose(own.parent, frame, stamp_ns))
-        found, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
-        return np.array(found)
+        pose_values, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
+        return np.array(pose_values)
 
     def names(self) -> frozenset[str]:
         """Return the names of all frames in the transforms received so far."""
         return frozenset(self._buffer.frame_names())
 
-    def own(self, name: str) -> OwnFrame | None:
-        """Return the frame that a display has placed under a name, or None if there is none or tf knows it."""
-        found = next((own for own in self._own.values() if own.name == name), None)
-        return None if found is None or name in self._buffer.frame_names() else found
+    def own(self, name: str) -> PlacedFrame | None:
+        """Return the frame with a name that a display has placed; None if there is none or tf has the frame."""
+        placed_frame = next((own for own in self._placed_frames.values() if own.name == name), None)
+        return None if placed_frame is None or name in self._buffer.frame_names() else placed_frame
 
     def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """Return a frame and a pose that other programs understand, for a pose in any frame.
+        """Return the pose in a frame that other programs know, given a pose in any frame.
 
-        If a display has placed the frame, the pose is converted to a frame of tf. Otherwise both are returned
-        unchanged.
+        The result is the name of the frame and the pose in it. If a display has placed the given frame, the pose is
+        converted to a frame of tf. Otherwise frame and pose are returned unchanged.
 
         Args:
             frame: the frame that the pose is in.
@@ -124,19 +123,19 @@ class FrameHistory:
             return frame, np.asarray(pose, dtype=np.float64)
         return own.parent, compose(invert(own.pose), pose)
 
-    def place(self, display: str, own: OwnFrame | None) -> None:
+    def place(self, display: str, placed_frame: PlacedFrame | None) -> None:
         """Place the frame of a display, or withdraw it.
 
         Args:
             display: the display's ID.
-            own: the frame and its pose; None to withdraw the display's frame.
+            placed_frame: the frame and its pose; None to withdraw the display's frame.
         """
-        if own is None:
-            if self._own.pop(display, None) is None:
+        if placed_frame is None:
+            if self._placed_frames.pop(display, None) is None:
                 return
         else:
-            self._own[display] = own
-        for listener in self.on_own:
+            self._placed_frames[display] = placed_frame
+        for listener in self.on_placed_frame:
             listener()
 
     def forget(self) -> None:
@@ -148,7 +147,7 @@ class FrameHistory:
         for listener in list(self._listeners):
             run_logged(self._node.get_logger(), "placing messages", listener)
 
-    def _end(self) -> None:
+    def _unsubscribe(self) -> None:
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
         self._subscriptions.clear()

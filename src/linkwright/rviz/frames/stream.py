@@ -35,32 +35,32 @@ from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.schema import FIXED_FRAME
 from linkwright.rviz.frames.history import FrameHistory
 
-_SHORTEST_PAUSE = 0.004
-"""Seconds between two reads of the buffer that find nothing new, so that a flood of equal transforms costs little."""
+_MIN_READ_INTERVAL = 0.004
+"""The minimum time in s between two reads of the buffer, so that frequent equal transforms cost little."""
 
-_AHEAD = 0.8
-_HURRY = 0.95
-"""Parts of the time between two updates: by the first an update may be early, after the second the next one is due.
+_MAX_EARLINESS = 0.8
+_PERIOD_FACTOR = 0.95
+"""Fractions of the time between two updates: how early an update may be, and when the next update is due.
 
-Transforms that arrive at exactly the rate, but at other moments than updates are due, hardly have to wait: each of them
-waits a little less than the one before.
+Transforms may arrive exactly at the update rate, but between the due times of updates. With these fractions each of
+them waits slightly less than the previous one.
 """
 
 _AGE_PERIOD = 0.25
-"""Seconds between updates when nothing arrives: frames without new transforms must fade."""
+"""Seconds between updates when no transforms arrive, because frames without new transforms must fade."""
 
 _FADE_STEP = 0.02
-"""Change of an age, as part of the Frame Timeout, that is sent again; ages below a third of it look alike."""
+"""The change of an age, as a fraction of the Frame Timeout, above which ages are sent again."""
 
 _IDENTITY = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
 
-_APPROACH = 0.3
-"""Part by which the delay of Approximate approaches that of the last message, at each update (rviz_common)."""
+_DELAY_SMOOTHING = 0.3
+"""The fraction by which the delay of Approximate approaches the last delay at each update, as in rviz_common."""
 
 
 @dataclass(frozen=True, slots=True)
 class FrameView:
-    """The frames, their parents, and which of them have a known pose in the Fixed Frame.
+    """The frames, their parents, and the set of frames with a known pose in the Fixed Frame.
 
     Attributes:
         fixed_frame: the Fixed Frame, which may be unknown to tf.
@@ -96,15 +96,15 @@ def transform_status(frames: FrameView, frame: str) -> StatusRow:
 
 
 class TimeControl:
-    """RViz's Time panel: Pause, and Synchronization with its Source.
+    """The state of RViz's Time panel: Pause, Synchronization and its Source.
 
     While time is paused, displays process no messages and frames do not move. Exact shows the frames at the time of the
     source's last message; Approximate uses the current time minus the source's delay.
 
     Args:
         clock: the viewer's clock.
-        changed: called when one of the attributes has changed.
-        signalled: called when the source has received a message, after which frames must be updated.
+        on_change: called when one of the attributes has changed.
+        on_signal: called when the source has received a message, so that frames must be updated.
 
     Attributes:
         paused: whether time is paused.
@@ -114,15 +114,15 @@ class TimeControl:
     """
 
     def __init__(
-        self, clock: Clock, changed: Callable[[], None] = lambda: None, signalled: Callable[[], None] = lambda: None
+        self, clock: Clock, on_change: Callable[[], None] = lambda: None, on_signal: Callable[[], None] = lambda: None
     ) -> None:
         self.paused = False
         self.mode: SyncMode = "Off"
         self.source = ""
         self.sources: list[str] = []
         self._clock = clock
-        self._changed = changed
-        self._signalled = signalled
+        self._on_change = on_change
+        self._on_signal = on_signal
         self._exact_ns = 0
         self._delay_ns = self._current_delay_ns = 0
         self._paused_ns = 0
@@ -134,32 +134,32 @@ class TimeControl:
         if (mode, source) != (self.mode, self.source):
             self._exact_ns = self._delay_ns = self._current_delay_ns = 0
         self.paused, self.mode, self.source = paused, mode, source
-        self._changed()
+        self._on_change()
 
     def took(self, display: str, stamp_ns: int) -> None:
         """Record the stamp, in nanoseconds, of a message that a display has received."""
         if display not in self.sources:
             self.sources.append(display)
-            self._changed()
+            self._on_change()
         if display != self.source or self.mode == "Off" or self.paused:
             return
         self._exact_ns = stamp_ns
         self._delay_ns = max(0, self._clock.now_ns() - stamp_ns) if stamp_ns else 0
-        self._signalled()
+        self._on_signal()
 
     def lookup_ns(self) -> int | None:
-        """Return the time at which frames are shown, nanoseconds; None for the latest time."""
+        """Return the time at which frames are shown, in ns since the epoch; None for the latest transforms."""
         if self.paused and self.mode != "Off":
             return self._paused_ns
         if self.mode == "Exact":
             return self._exact_ns or None
         if self.mode == "Approximate" and self.source in self.sources:
-            self._current_delay_ns += int(_APPROACH * (self._delay_ns - self._current_delay_ns))
+            self._current_delay_ns += int(_DELAY_SMOOTHING * (self._delay_ns - self._current_delay_ns))
             return self._clock.now_ns() - self._current_delay_ns
         return None
 
     def now_ns(self) -> int:
-        """Return the ROS time that the Time panel shows, nanoseconds."""
+        """Return the ROS time that the Time panel shows, in ns since the epoch."""
         if self.paused:
             return self._paused_ns
         if self.mode == "Exact" and self._exact_ns:
@@ -171,17 +171,17 @@ class TimeControl:
         self.sources.clear()
         self._exact_ns = self._delay_ns = self._current_delay_ns = 0
         self._paused_ns = self._clock.now_ns()
-        self._changed()
+        self._on_change()
 
 
 class FrameAudience(Protocol):
     """The pages that receive frames."""
 
     def __len__(self) -> int:
-        """Return the number of pages; if it is 0, frames are not updated regularly."""
+        """Return the number of pages, without which frames are not updated regularly."""
 
     def publish(self, message: FrameTable, /) -> None:
-        """Send a new frame table, before transforms that need it."""
+        """Send a new frame table, before the transforms that refer to it."""
 
     def send_transforms(self, frame: bytes, /) -> None:
         """Send a binary frame with transforms."""
@@ -192,21 +192,21 @@ class FrameStream:
 
     A frame that tf does not know can be the Fixed Frame if a display places it (`FrameHistory.place`).
 
-    A robot with a single link has no transforms, so tf does not know its frame. If that frame is the Fixed Frame, it is
-    still sent, as the identity: RViz places a frame in itself without querying tf.
+    A robot with a single link has no transforms, so that tf does not know its frame. If this frame is the Fixed Frame,
+    it is sent with the identity as its pose, as RViz draws it too.
 
     Args:
         node: the node that subscribes.
         pages: the pages that receive the transforms.
         time: whether time is paused, and the time at which frames are shown.
-        history: the history of transforms, for a time other than the latest.
-        on_frames: called with a new `FrameView` when the frames have changed, or which of them have a known pose.
-        own_frames: returns the frames of robots' links, which tf may not know.
+        history: the history of transforms, for poses at earlier times.
+        on_frames: called with a new `FrameView` when the frames, or the set of frames with a known pose, have changed.
+        own_frames: returns the frames of the links of robots, which tf may not know.
 
     Attributes:
         fixed_frame: the Fixed Frame.
         rate: the maximum update rate, Hz.
-        fade_time: the shortest Frame Timeout of the displays, seconds; None when no display shows the ages of frames.
+        fade_time: the shortest Frame Timeout of the displays, seconds; None if no display shows the ages of frames.
     """
 
     def __init__(
@@ -231,20 +231,20 @@ class FrameStream:
         self._clock = node.get_clock()
         self._buffer = TransformBuffer(node.get_logger().warning)
         self._loop = asyncio.get_running_loop()
-        self._next_look = node.create_guard_condition(self._look_if_wanted)
+        self._read_condition = node.create_guard_condition(self._read_if_scheduled)
         self._wanted = False
-        self._later: asyncio.TimerHandle | None = None
-        self._ageing: asyncio.Handle | None = None
-        self._due = self._looked_at = float("-inf")
+        self._read_timer: asyncio.TimerHandle | None = None
+        self._age_timer: asyncio.Handle | None = None
+        self._due = self._last_read_time = float("-inf")
         self._stamp_ns = 0
         self._structure: tuple[Any, ...] = ()
         self._table = FrameTable(0, [], [])
         self._poses: NDArray[np.float32] = np.empty((0, 7), dtype=np.float32)
         self._ages: NDArray[np.float64] = np.empty(0)
-        self._placed = b""
+        self._last_placed = b""
         self._frame = b""
         self._release: Callable[[], None] | None = None
-        self._held: dict[Hashable, tuple[TFMessage, bool]] = {}
+        self._paused_messages: dict[Hashable, tuple[TFMessage, bool]] = {}
         self._paused_ns: int | None = None
 
     def start(self) -> None:
@@ -253,18 +253,18 @@ class FrameStream:
             self._node.create_subscription(
                 TFMessage, topic, partial(self._add_transforms, static=static), qos
             ).deliver_in_batches()
-        self._history.on_own.append(self._wake)
-        self._age()
+        self._history.on_placed_frame.append(self._schedule_read)
+        self._check_ages()
 
     def close(self) -> None:
         """Stop sending, and cancel scheduled updates."""
-        if self._wake in self._history.on_own:
-            self._history.on_own.remove(self._wake)
-        for handle in (self._later, self._ageing):
+        if self._schedule_read in self._history.on_placed_frame:
+            self._history.on_placed_frame.remove(self._schedule_read)
+        for handle in (self._read_timer, self._age_timer):
             if handle is not None:
                 handle.cancel()
-        self._later = self._ageing = None
-        self._next_look.destroy()
+        self._read_timer = self._age_timer = None
+        self._read_condition.destroy()
         if self._release is not None:
             self._release()
             self._release = None
@@ -275,36 +275,36 @@ class FrameStream:
             self._paused_ns = self._paused_ns or self._clock.now_ns()
         else:
             self._paused_ns = None
-            held = list(self._held.values())
-            self._held.clear()
-            for message, static in held:
+            paused_messages = list(self._paused_messages.values())
+            self._paused_messages.clear()
+            for message, static in paused_messages:
                 self._add_transforms(message, static=static)
         self.refresh()
 
     def forget(self) -> None:
         """Discard all transforms except static ones, because time was reset."""
-        self._held.clear()
+        self._paused_messages.clear()
         self._buffer.clear()
         self.refresh()
 
     def schedule_update(self) -> None:
         """Schedule an update as soon as the rate allows."""
-        self._wake()
+        self._schedule_read()
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Remove the frames that only the former robot had, and schedule an update."""
-        known = gone.intersection(self._buffer.frames())
-        if known:
-            self._buffer.remove(known)
-        self._wake()
+        """Remove the frames that only the previous robot had, and schedule an update."""
+        known_frames = gone.intersection(self._buffer.frames())
+        if known_frames:
+            self._buffer.remove(known_frames)
+        self._schedule_read()
 
     def refresh(self) -> None:
         """Update now, even if there are no pages.
 
         This is necessary when the Fixed Frame or the robot has changed, or when a page opens.
         """
-        if self._later is not None:
-            self._later.cancel()
+        if self._read_timer is not None:
+            self._read_timer.cancel()
         self._look()
 
     @property
@@ -316,67 +316,67 @@ class FrameStream:
         batch = message.batch
         if self._time.paused:
             key = (batch.parents, batch.children, static)
-            self._held.pop(key, None)
-            self._held[key] = (message, static)
+            self._paused_messages.pop(key, None)
+            self._paused_messages[key] = (message, static)
             return
         self._buffer.update(TFMessage(batch=batch), static=static, now_ns=self._clock.now_ns())
         self._stamp_ns = max(self._stamp_ns, batch.stamp_ns)
-        self._wake()
+        self._schedule_read()
 
-    def _wake(self) -> None:
+    def _schedule_read(self) -> None:
         if self._wanted or not len(self._pages):
             return
         self._wanted = True
-        ahead = _AHEAD / self.rate
-        due = max(self._due - ahead, self._looked_at + _SHORTEST_PAUSE)
-        if due <= self._loop.time():
-            self._next_look.trigger()
+        max_earliness = _MAX_EARLINESS / self.rate
+        due_time = max(self._due - max_earliness, self._last_read_time + _MIN_READ_INTERVAL)
+        if due_time <= self._loop.time():
+            self._read_condition.trigger()
         else:
-            self._later = self._loop.call_at(due, self._look)
+            self._read_timer = self._loop.call_at(due_time, self._look)
 
-    def _age(self) -> None:
-        self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
-        quiet = self._loop.time() - self._looked_at > _AGE_PERIOD / 2
-        if quiet and self.fade_time is not None and self._ages.any():
-            self._wake()
+    def _check_ages(self) -> None:
+        self._age_timer = self._loop.call_later(_AGE_PERIOD, self._check_ages)
+        is_quiet = self._loop.time() - self._last_read_time > _AGE_PERIOD / 2
+        if is_quiet and self.fade_time is not None and self._ages.any():
+            self._schedule_read()
 
-    def _look_if_wanted(self) -> None:
+    def _read_if_scheduled(self) -> None:
         if self._wanted:
             self._look()
 
     def _look(self) -> None:
-        self._wanted, self._later = False, None
-        self._looked_at = self._loop.time()
+        self._wanted, self._read_timer = False, None
+        self._last_read_time = self._loop.time()
         fixed_frame = self.fixed_frame
         snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
         poses, ages = self._poses_to_show(snapshot, fixed_frame), snapshot.ages
-        alone = fixed_frame not in snapshot.names and self._is_unconnected(fixed_frame)
-        if alone:
+        is_unconnected = fixed_frame not in snapshot.names and self._is_unconnected(fixed_frame)
+        if is_unconnected:
             poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
-        changed = self._compare_structure(snapshot, fixed_frame if alone else None)
+        has_new_structure = self._compare_structure(snapshot, fixed_frame if is_unconnected else None)
         rows = poses.astype(np.float32)
-        if changed or self._has_changed(rows, ages):
+        if has_new_structure or self._has_changed(rows, ages):
             self._send(rows, ages)
-        self._notify_displays(snapshot, rows, fixed_frame, changed=changed)
+        self._notify_displays(snapshot, rows, fixed_frame, has_new_structure=has_new_structure)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Return the poses of all frames in the Fixed Frame, which may be a frame placed by a display."""
-        # The history may be behind this buffer.
-        own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
-        if own is None or own.parent is None:
+        # The buffer is asked first, because the history may not have received the latest transforms yet.
+        placed_frame = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
+        if placed_frame is None or placed_frame.parent is None:
             return self._buffer.snapshot(fixed_frame, now_ns)
-        snapshot = self._buffer.snapshot(own.parent, now_ns)
-        return replace(snapshot, poses=compose(own.pose, snapshot.poses))
+        snapshot = self._buffer.snapshot(placed_frame.parent, now_ns)
+        return replace(snapshot, poses=compose(placed_frame.pose, snapshot.poses))
 
     def _is_unconnected(self, frame: str) -> bool:
-        """Return whether a robot or display has the frame, and no tf frame is connected to it."""
-        own = self._history.own(frame)
-        return frame in self._own_frames() or (own is not None and own.parent is None)
+        """Return whether a frame belongs to a robot, or is placed by a display without a connection to tf."""
+        placed_frame = self._history.own(frame)
+        return frame in self._own_frames() or (placed_frame is not None and placed_frame.parent is None)
 
     def _poses_to_show(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
         """Return the poses of frames at the time to be shown.
 
-        A frame whose pose at that time is unknown has its latest pose.
+        If the pose of a frame at that time is unknown, its latest pose is used.
         """
         stamp_ns = self._time.lookup_ns()
         self._follow(needed=stamp_ns is not None)
@@ -389,21 +389,21 @@ class FrameStream:
         return poses
 
     def _follow(self, *, needed: bool) -> None:
-        """Use the history while a time other than the latest is shown, and release it otherwise."""
+        """Subscribe to the history while an earlier time is shown, and unsubscribe when it is no longer needed."""
         if needed and self._release is None:
             self._release = self._history.use(lambda: None)
         elif not needed and self._release is not None:
             self._release()
             self._release = None
 
-    def _compare_structure(self, snapshot: FrameSnapshot, alone: str | None) -> bool:
-        structure = (snapshot.revision, alone)
+    def _compare_structure(self, snapshot: FrameSnapshot, unconnected_frame: str | None) -> bool:
+        structure = (snapshot.revision, unconnected_frame)
         if structure == self._structure:
             return False
         self._structure = structure
         names, parents = list(snapshot.names), list(snapshot.parents)
-        if alone is not None:
-            names.append(alone)
+        if unconnected_frame is not None:
+            names.append(unconnected_frame)
             parents.append(-1)
         self._table = FrameTable(self._table.revision + 1, names, parents)
         self._pages.publish(self._table)
@@ -417,33 +417,33 @@ class FrameStream:
             return False
         if ((ages < fade_time) != (self._ages < fade_time)).any():
             return True
-        looks = np.clip(ages, fade_time / 3, fade_time) - np.clip(self._ages, fade_time / 3, fade_time)
-        return bool(np.abs(looks).max(initial=0.0) > _FADE_STEP * fade_time)
+        visible_age_changes = np.clip(ages, fade_time / 3, fade_time) - np.clip(self._ages, fade_time / 3, fade_time)
+        return bool(np.abs(visible_age_changes).max(initial=0.0) > _FADE_STEP * fade_time)
 
     def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
         self._poses, self._ages = poses, ages
-        self._due = self._next_due()
+        self._due = self._next_due_time()
         self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
         self._pages.send_transforms(self._frame)
 
-    def _next_due(self) -> float:
+    def _next_due_time(self) -> float:
         """Return the earliest time of the next update, on the event loop's clock.
 
-        A slightly late update does not delay the next one. Otherwise, transforms that arrive at exactly this rate would
-        wait longer and longer, until one of them is skipped.
+        A slightly late update does not delay the next update, so that transforms that arrive exactly at this rate do
+        not wait longer and longer.
         """
-        period = _HURRY / self.rate
-        in_time = self._looked_at - self._due < period / 2
-        return (self._due if in_time else self._looked_at) + period
+        period = _PERIOD_FACTOR / self.rate
+        is_on_time = self._last_read_time - self._due < period / 2
+        return (self._due if is_on_time else self._last_read_time) + period
 
     def _notify_displays(
-        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, changed: bool
+        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, has_new_structure: bool
     ) -> None:
         has_pose = ~np.isnan(poses[:, 0])
         placed = has_pose.tobytes() + fixed_frame.encode()
-        if not changed and placed == self._placed:
+        if not has_new_structure and placed == self._last_placed:
             return
-        self._placed = placed
+        self._last_placed = placed
         names = self._table.names
         self._on_frames(
             FrameView(

@@ -35,8 +35,8 @@ from linkwright.page.protocol.markers import (
 )
 from linkwright.rviz.markers.shapes import BadMarkerError, pose_of, read_marker, unit_quaternion
 
-_PERIOD = 0.25
-"""Seconds between two checks for the server."""
+_CHECK_PERIOD = 0.25
+"""Seconds between two checks whether the server is available."""
 
 _UPDATE_DEPTH = 100
 _UPDATE = 1
@@ -49,7 +49,7 @@ class ClientEvents:
     Attributes:
         everything: called with all markers of the server, at the beginning and after a lost update.
         update: called with a visualization_msgs/msg/InteractiveMarkerUpdate.
-        gone: called when all markers are to be removed, for example because the server has disappeared.
+        gone: called when all markers must be removed, for example because the server has disappeared.
         status: called with the state of the connection, for the display's status.
     """
 
@@ -70,7 +70,7 @@ class InteractiveMarkerClient:
         events: the callbacks.
 
     Raises:
-        LinkwrightError: the namespace does not give a valid topic name.
+        LinkwrightError: no valid topic name can be formed from the namespace.
     """
 
     def __init__(self, node: Node, namespace: str, events: ClientEvents) -> None:
@@ -78,7 +78,7 @@ class InteractiveMarkerClient:
         self._namespace = namespace.rstrip("/")
         self._events = events
         self._sequence: int | None = None
-        self._early: list[Any] = []
+        self._early_updates: list[Any] = []
         self._request: Any = None
         self._look: asyncio.TimerHandle | None = None
         self._subscription: Subscription[Any] = node.create_subscription(
@@ -87,19 +87,19 @@ class InteractiveMarkerClient:
             self._received,
             QoSProfile(_UPDATE_DEPTH),
         )
-        self._feedback: Publisher[Any] = node.create_publisher(
+        self._feedback_publisher: Publisher[Any] = node.create_publisher(
             get_message("visualization_msgs/msg/InteractiveMarkerFeedback"),
             f"{self._namespace}/feedback",
             QoSProfile(_UPDATE_DEPTH),
         )
-        self._service: Client[Any, Any] = node.create_client(
+        self._client: Client[Any, Any] = node.create_client(
             get_service("visualization_msgs/srv/GetInteractiveMarkers"), f"{self._namespace}/get_interactive_markers"
         )
         self._watch()
 
     def publish(self, feedback: Any) -> None:
         """Send feedback on a marker to the server."""
-        self._feedback.publish(feedback)
+        self._feedback_publisher.publish(feedback)
 
     def close(self) -> None:
         """Disconnect from the server."""
@@ -109,40 +109,40 @@ class InteractiveMarkerClient:
         self._request = None
         with suppress(ValueError):  # the node may already have been destroyed
             self._node.destroy_subscription(self._subscription)
-            self._node.destroy_publisher(self._feedback)
-            self._node.destroy_client(self._service)
+            self._node.destroy_publisher(self._feedback_publisher)
+            self._node.destroy_client(self._client)
 
     def _watch(self) -> None:
-        self._look = asyncio.get_running_loop().call_later(_PERIOD, self._watch)
-        there = self._service.service_is_ready()
-        if not there and (self._sequence is not None or self._request is not None):
+        self._look = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._watch)
+        is_ready = self._client.service_is_ready()
+        if not is_ready and (self._sequence is not None or self._request is not None):
             self._reset()
-        if not there:
+        if not is_ready:
             self._events.status(
                 "warn", phrase("Service is not available: {name}", name=f"{self._namespace}/get_interactive_markers")
             )
         elif self._sequence is None and self._request is None:
-            self._ask()
+            self._request_markers()
 
-    def _ask(self) -> None:
+    def _request_markers(self) -> None:
         self._events.status("ok", phrase("Sending request for interactive markers"))
-        request = self._request = self._service.call_async(self._service.srv_type.Request())
-        request.add_done_callback(lambda done: self._answered(request, done.result()))
+        request = self._request = self._client.call_async(self._client.srv_type.Request())
+        request.add_done_callback(lambda future: self._on_response(request, future.result()))
 
-    def _answered(self, request: Any, response: Any) -> None:
+    def _on_response(self, request: Any, response: Any) -> None:
         if request is not self._request or response is None:
-            return  # the server has disappeared since the request
+            return  # the client was reset since the request, because the server disappeared
         self._request = None
         self._sequence = response.sequence_number
         self._events.everything(list(response.markers))
         self._events.status("ok", phrase("Initialized interactive marker client"))
-        early, self._early = self._early, []
-        for update in early:
+        early_updates, self._early_updates = self._early_updates, []
+        for update in early_updates:
             self._received(update)
 
     def _received(self, update: Any) -> None:
         if self._sequence is None:
-            self._early = [*self._early, update][-_UPDATE_DEPTH:]
+            self._early_updates = [*self._early_updates, update][-_UPDATE_DEPTH:]
             return
         if update.seq_num <= self._sequence and update.type == _UPDATE:
             return  # the response with all markers includes this update
@@ -162,7 +162,7 @@ class InteractiveMarkerClient:
 
     def _reset(self) -> None:
         self._sequence = self._request = None
-        self._early.clear()
+        self._early_updates.clear()
         self._events.gone()
 
 
@@ -171,14 +171,14 @@ _ORIENTATIONS: tuple[OrientationMode, ...] = get_args(OrientationMode)
 
 _RING_STEPS = 36
 _RING_WIDTH = 0.3
-"""The width of rings in relation to their inner radius, which is half the marker's scale."""
+"""The width of rings as a fraction of their inner radius, which is half the scale of the marker."""
 
-_DARK = 0.6
-_NONE = np.empty((0, 4), dtype=np.float32)
+_DARK_SHADE = 0.6
+_NO_COLORS = np.empty((0, 4), dtype=np.float32)
 
 
 FramePlacer = Callable[[str, str], Transform]
-"""Returns the pose of the second frame in the first, now; raises a LinkwrightError if there is none."""
+"""Returns the current pose of the second frame in the first frame; raises a LinkwrightError if it is unknown."""
 
 
 def read_interactive_marker(
@@ -189,7 +189,7 @@ def read_interactive_marker(
     Args:
         message: a visualization_msgs/msg/InteractiveMarker.
         index: finds the files that the marker refers to.
-        frames: returns the pose of one frame in another, for markers that specify their own frame.
+        frames: returns the pose of one frame in another, for markers of controls that specify a frame.
         transparent: whether default arrows and rings are transparent.
 
     Raises:
@@ -206,7 +206,9 @@ def read_interactive_marker(
         pose=pose,
         scale=scale,
         controls=[
-            _control(control, message, scale, _unique(control.name, names), index, frames, transparent=transparent)
+            _read_control(
+                control, message, scale, _unique_name(control.name, names), index, frames, transparent=transparent
+            )
             for control in message.controls
         ],
         menu=[
@@ -216,15 +218,15 @@ def read_interactive_marker(
     )
 
 
-def _unique(name: str, taken: set[str]) -> str:
-    chosen, number = name, 0
-    while chosen in taken:
-        chosen, number = f"{name}_u{number}", number + 1
-    taken.add(chosen)
-    return chosen
+def _unique_name(name: str, used_names: set[str]) -> str:
+    unique_name, number = name, 0
+    while unique_name in used_names:
+        unique_name, number = f"{name}_u{number}", number + 1
+    used_names.add(unique_name)
+    return unique_name
 
 
-def _control(
+def _read_control(
     control: Any,
     message: Any,
     scale: float,
@@ -237,13 +239,13 @@ def _control(
     if control.interaction_mode >= len(_MODES) or control.orientation_mode >= len(_ORIENTATIONS):
         raise BadMarkerError(phrase("Control '{name}' has an unknown interaction or orientation mode", name=name))
     mode = _MODES[control.interaction_mode]
-    facing = _ORIENTATIONS[control.orientation_mode]
-    independent = control.independent_marker_orientation
+    orientation_mode = _ORIENTATIONS[control.orientation_mode]
+    is_independent = control.independent_marker_orientation
     orientation = list(unit_quaternion(control.orientation))
     if control.markers:
-        markers = [_marker(marker, message, index, frames) for marker in control.markers]
+        markers = [_read_marker(marker, message, index, frames) for marker in control.markers]
     elif mode == "menu":
-        markers, facing, independent = [_button(control.description, scale)], "view_facing", False
+        markers, orientation_mode, is_independent = [_button_marker(control.description, scale)], "view_facing", False
     else:
         markers = list(_default_markers(mode, orientation, scale, 0.5 if transparent else 1.0))
     for number, marker in enumerate(markers):
@@ -253,23 +255,23 @@ def _control(
         name=name,
         description=control.description,
         mode=mode,
-        orientation_mode=facing,
+        orientation_mode=orientation_mode,
         orientation=orientation,
         always_visible=control.always_visible,
-        independent_orientation=independent,
+        independent_orientation=is_independent,
         markers=markers,
     )
 
 
-def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) -> MarkerShape:
+def _read_marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) -> MarkerShape:
     shape = read_marker(marker, index).shape
     shape.scale = [length or 1.0 for length in shape.scale]
     frame = marker.header.frame_id.removeprefix("/")
     reference = message.header.frame_id.removeprefix("/")
     if frame:
-        # The marker specifies its own frame, but the page attaches it to the control.
-        in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
-        shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), in_reference))
+        # The pose is relative to the frame in the header, but the page attaches the marker to the control.
+        pose_in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
+        shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), pose_in_reference))
     return shape
 
 
@@ -281,27 +283,27 @@ def _as_pose(pose: list[float]) -> Transform:
 def _default_markers(
     mode: InteractionMode, orientation: list[float], scale: float, alpha: float
 ) -> Iterator[MarkerShape]:
-    color = [*_color_of(orientation), alpha]
-    base = _shape("arrow", orientation, [scale] * 3, color)
+    color = [*_axis_color(orientation), alpha]
+    base = _new_shape("arrow", orientation, [scale] * 3, color)
     if mode == "move_axis":
-        for way in (1.0, -1.0):
-            points = np.array([[way * scale * 0.5, 0, 0], [way * scale * 0.9, 0, 0]], dtype=np.float32)
+        for direction in (1.0, -1.0):
+            points = np.array([[direction * scale * 0.5, 0, 0], [direction * scale * 0.9, 0, 0]], dtype=np.float32)
             yield replace(base, scale=[scale * 0.15, scale * 0.25, scale * 0.2], points=points)
     elif mode in ("move_plane", "rotate_axis", "move_rotate"):
-        points, shades = _ring(mode)
-        colors = _NONE if shades is None else _shaded(color[:3], shades)
+        points, shades = _ring_triangles(mode)
+        colors = _NO_COLORS if shades is None else _shaded(color[:3], shades)
         yield replace(base, shape="triangle_list", points=points, colors=colors)
 
 
-def _color_of(orientation: list[float]) -> list[float]:
-    """Return the colour of an axis: red along x, green along y, blue along z, mixed in between."""
+def _axis_color(orientation: list[float]) -> list[float]:
+    """Return the colour of the x axis of an orientation: red along x, green along y, blue along z, or a mixture."""
     axis = np.abs(rotation_matrix(orientation)[:, 0])
     color: list[float] = (axis / axis.max()).tolist()
     return color
 
 
-def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
-    """Return the triangles of a ring about x with inner radius 0.5, and their darkness or None."""
+def _ring_triangles(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
+    """Return the triangles of a ring about x with inner radius 0.5, and their brightness or None."""
     angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
     inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
     outer = (1 + _RING_WIDTH) * inner
@@ -312,13 +314,13 @@ def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float6
     inner_1, outer_1, outer_2 = after(inner, 1), after(outer, 1), after(outer, 2)
     if mode == "rotate_axis":  # slanted teeth, alternately light and dark
         corners = np.stack([inner, outer_1, inner_1, inner_1, outer_1, outer_2], axis=1)
-        shades = np.repeat(_DARK + (1 - _DARK) * (np.arange(_RING_STEPS) % 2), 2)
+        shades = np.repeat(_DARK_SHADE + (1 - _DARK_SHADE) * (np.arange(_RING_STEPS) % 2), 2)
     elif mode == "move_rotate":  # dark points inward, light points outward
         inner_2 = after(inner, 2)
         dark = np.stack([inner, outer_1, inner_1, inner_1, outer_1, inner_2], axis=1)
         light = np.stack([outer, outer_1, inner, outer_1, outer_2, inner_2], axis=1)
         corners = np.stack([dark, light], axis=1)[::2].reshape(-1, 6, 3)
-        shades = np.tile(np.repeat([_DARK, 1.0], 2), _RING_STEPS // 2)
+        shades = np.tile(np.repeat([_DARK_SHADE, 1.0], 2), _RING_STEPS // 2)
     else:
         corners = np.stack([inner, outer, inner_1, outer, outer_1, inner_1], axis=1)
         return corners.reshape(-1, 3).astype(np.float32), None
@@ -330,15 +332,15 @@ def _shaded(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float
     return np.hstack([rgb, np.ones((len(shades), 1))]).astype(np.float32)
 
 
-def _button(text: str, scale: float) -> MarkerShape:
+def _button_marker(text: str, scale: float) -> MarkerShape:
     size = 0.25 * scale
-    shape = _shape("text", [0.0, 0.0, 0.0, 1.0], [size] * 3, [1.0, 1.0, 1.0, 1.0])
+    shape = _new_shape("text", [0.0, 0.0, 0.0, 1.0], [size] * 3, [1.0, 1.0, 1.0, 1.0])
     shape.pose[0], shape.pose[2] = -0.1 * size, 1.2 * scale - 0.1 * size
     shape.text = text
     return shape
 
 
-def _shape(kind: MarkerKind, orientation: list[float], scale: list[float], color: list[float]) -> MarkerShape:
+def _new_shape(kind: MarkerKind, orientation: list[float], scale: list[float], color: list[float]) -> MarkerShape:
     return MarkerShape(
         id="",
         namespace="",
@@ -347,9 +349,9 @@ def _shape(kind: MarkerKind, orientation: list[float], scale: list[float], color
         pose=[0.0, 0.0, 0.0, *orientation],
         scale=scale,
         color=color,
-        points=_NONE,
-        colors=_NONE,
-        uvs=_NONE,
+        points=_NO_COLORS,
+        colors=_NO_COLORS,
+        uvs=_NO_COLORS,
         text="",
         mesh=None,
         texture=None,

@@ -1,6 +1,6 @@
 """Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of such markers.
 
-The rules and the texts of errors are RViz's.
+The rules and the texts of errors are the same as in RViz.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from linkwright.page.protocol.message import pack_data
 
 ADD, DELETE, DELETE_ALL = 0, 2, 3
 
-_KINDS: tuple[MarkerKind, ...] = get_args(MarkerKind)
-"""By visualization_msgs' numbers."""
+_MARKER_KINDS: tuple[MarkerKind, ...] = get_args(MarkerKind)
+"""The kinds in the order of the numbers in visualization_msgs."""
 _NO_POINTS = np.empty((0, 3), dtype=np.float32)
 _NO_COLORS = np.empty((0, 4), dtype=np.float32)
 _NO_UVS = np.empty((0, 2), dtype=np.float32)
@@ -37,7 +37,7 @@ class MarkerReading:
     """The drawable form of a marker, before it is placed.
 
     Attributes:
-        shape: the shape, whose pose is set when the marker is placed.
+        shape: the shape; its pose and frame are set when the marker is placed.
         pose: the pose in the message's frame.
         warning: a text about a probable mistake in the message, or None.
     """
@@ -60,7 +60,7 @@ def make_marker(
     colors: NDArray[np.float32] = _NO_COLORS,
     mesh: MarkerMesh | None = None,
 ) -> MarkerShape:
-    """Return a drawable marker, created from parts instead of a message.
+    """Return a drawable marker with the given values, without a message.
 
     Args:
         namespace: the marker's namespace.
@@ -92,7 +92,7 @@ def make_marker(
 
 
 def marker_id(message: Any) -> str:
-    """Return the marker's ID, which RViz also shows in status rows: ``<namespace>/<number>``."""
+    """Return the ID of a marker, as RViz shows it in status rows: ``<namespace>/<number>``."""
     return f"{message.ns}/{message.id}"
 
 
@@ -100,15 +100,15 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
     """Return the shape of a marker.
 
     Args:
-        message: a visualization_msgs/msg/Marker whose action is ADD.
+        message: a visualization_msgs/msg/Marker with the action ADD.
         index: finds the files that the marker refers to.
 
     Raises:
         BadMarkerError: the marker cannot be drawn.
     """
-    if not 0 <= message.type < len(_KINDS):
+    if not 0 <= message.type < len(_MARKER_KINDS):
         raise BadMarkerError(phrase("Unknown marker type: {type}", type=message.type))
-    kind = _KINDS[message.type]
+    kind = _MARKER_KINDS[message.type]
     pose = _pose(message.pose)
     shape = MarkerShape(
         id=marker_id(message),
@@ -126,8 +126,8 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
         texture=None,
     )
     _check_floats(shape)
-    check = _CHECKS.get(kind)
-    warning = check(shape) if check else None
+    check_shape = _CHECKS.get(kind)
+    warning = check_shape(shape) if check_shape else None
     if kind == "mesh":
         shape.mesh = _mesh(message, shape, index)
     elif kind == "triangle_list":
@@ -175,8 +175,8 @@ def _colors(colors: Any) -> NDArray[np.float32]:
 
 
 def _check_floats(shape: MarkerShape) -> None:
-    finite = all(map(math.isfinite, (*shape.pose, *shape.scale, *shape.color)))
-    if not finite or any(len(array) and not np.isfinite(array).all() for array in (shape.points, shape.colors)):
+    is_finite = all(map(math.isfinite, (*shape.pose, *shape.scale, *shape.color)))
+    if not is_finite or any(len(array) and not np.isfinite(array).all() for array in (shape.points, shape.colors)):
         raise BadMarkerError(phrase("Contains invalid floating point values (nans or infs)"))
 
 
@@ -245,13 +245,13 @@ _CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
 def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
     """Return the mesh in the message, or the file that the message refers to.
 
-    Messages can contain meshes since Iron.
+    Messages can contain meshes since ROS 2 Iron.
     """
     name = message.mesh_resource
-    carried = message.mesh_file
-    if carried.filename and len(carried.data):
-        data = np.frombuffer(bytes(carried.data), dtype=np.uint8)
-        return MarkerMesh(_ending(carried.filename), None, data, message.mesh_use_embedded_materials)
+    embedded_file = message.mesh_file
+    if embedded_file.filename and len(embedded_file.data):
+        data = np.frombuffer(bytes(embedded_file.data), dtype=np.uint8)
+        return MarkerMesh(_extension(embedded_file.filename), None, data, message.mesh_use_embedded_materials)
     located = index.locate(name, None, MESH_TYPES)
     if located.url is None:
         raise BadMarkerError(
@@ -262,7 +262,7 @@ def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
                 reason=located.problem,
             )
         )
-    return MarkerMesh(_ending(name), located.url, None, message.mesh_use_embedded_materials)
+    return MarkerMesh(_extension(name), located.url, None, message.mesh_use_embedded_materials)
 
 
 def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
@@ -288,24 +288,21 @@ def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
             )
         )
     shape.texture = located.url
-    shape.uvs = np.array(
-        [(uv_coordinate.u, uv_coordinate.v) for uv_coordinate in message.uv_coordinates], dtype=np.float32
-    )
+    shape.uvs = np.array([(uv.u, uv.v) for uv in message.uv_coordinates], dtype=np.float32)
 
 
-def _ending(name: str) -> str:
+def _extension(name: str) -> str:
     return name.rpartition(".")[2].lower()
 
 
 _MOST_GONE = 5000
-"""The number of removed markers that are remembered; a page that missed more receives all markers again."""
+"""The number of stored removals; a page that missed more of them receives all markers again."""
 
 
 class MarkerStore:
     """The markers of a display by ID, with a revision number for each change.
 
-    By the revision, a page receives only the changes since the last one that it has. The store is the `outbox.Changes`
-    of its display.
+    A page receives only the changes since the last revision that it has. The store implements `outbox.Changes`.
 
     Args:
         display: the ID of the display.
@@ -314,70 +311,70 @@ class MarkerStore:
     def __init__(self, display: str) -> None:
         self.key = f"data {display}"
         self._display = display
-        self._shown: dict[str, tuple[int, MarkerShape]] = {}
+        self._markers: dict[str, tuple[int, MarkerShape]] = {}
         self._gone: dict[str, int] = {}
-        self._change = 0
-        self._oldest = 0
+        self._revision = 0
+        self._oldest_revision = 0
         self._packed: tuple[int, int, bytes] | None = None
 
     def __len__(self) -> int:
-        return len(self._shown)
+        return len(self._markers)
 
     def __contains__(self, identity: str) -> bool:
-        return identity in self._shown
+        return identity in self._markers
 
     @property
     def shapes(self) -> list[MarkerShape]:
         """The markers that are shown."""
-        return [shape for _, shape in self._shown.values()]
+        return [shape for _, shape in self._markers.values()]
 
     def put(self, shape: MarkerShape) -> None:
         """Add a marker, replacing any marker with the same ID."""
-        self._change += 1
+        self._revision += 1
         self._gone.pop(shape.id, None)
-        self._shown.pop(shape.id, None)  # keeps the dict ordered by change
-        self._shown[shape.id] = (self._change, shape)
+        self._markers.pop(shape.id, None)  # so that the dict is ordered by revision
+        self._markers[shape.id] = (self._revision, shape)
 
     def remove(self, identity: str) -> bool:
         """Remove a marker, and return whether the store contained it."""
-        if self._shown.pop(identity, None) is None:
+        if self._markers.pop(identity, None) is None:
             return False
-        self._change += 1
+        self._revision += 1
         self._gone.pop(identity, None)
-        self._gone[identity] = self._change
+        self._gone[identity] = self._revision
         if len(self._gone) > _MOST_GONE:
-            self._oldest = self._gone.pop(next(iter(self._gone)))
+            self._oldest_revision = self._gone.pop(next(iter(self._gone)))
         return True
 
     def clear(self) -> None:
         """Remove all markers."""
-        self._change += 1
-        self._oldest = self._change
-        self._shown.clear()
+        self._revision += 1
+        self._oldest_revision = self._revision
+        self._markers.clear()
         self._gone.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """Return the packed changes since a revision and the current revision; None if nothing changed.
 
-        `seen` is the last revision that the page has; all markers are packed if it is 0 or too old.
+        `seen` is the last revision that the page has. If it is 0 or too old, all markers are packed.
         """
-        if seen == self._change:
+        if seen == self._revision:
             return None, seen
-        if self._packed is None or self._packed[:2] != (seen, self._change):
-            self._packed = (seen, self._change, self._pack(seen))
-        return self._packed[2], self._change
+        if self._packed is None or self._packed[:2] != (seen, self._revision):
+            self._packed = (seen, self._revision, self._pack(seen))
+        return self._packed[2], self._revision
 
-    def _pack(self, seen: int) -> bytes:
-        everything = seen < self._oldest or seen == 0
+    def _pack(self, page_revision: int) -> bytes:
+        sends_all = page_revision < self._oldest_revision or page_revision == 0
         return pack_data(
             self._display,
             MarkersChanged(
-                everything=everything,
-                gone=[] if everything else _newer(self._gone, seen),
-                markers=[shape for change, shape in self._shown.values() if everything or change > seen],
+                everything=sends_all,
+                gone=[] if sends_all else _newer(self._gone, page_revision),
+                markers=[shape for revision, shape in self._markers.values() if sends_all or revision > page_revision],
             ),
         )
 
 
-def _newer(changes: dict[str, int], seen: int) -> list[str]:
-    return [identity for identity, change in changes.items() if change > seen]
+def _newer(revisions: dict[str, int], page_revision: int) -> list[str]:
+    return [identity for identity, revision in revisions.items() if revision > page_revision]

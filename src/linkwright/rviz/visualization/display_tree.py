@@ -13,13 +13,13 @@ from linkwright.rviz.config.yaml_tree import Memory
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
 from linkwright.rviz.displays.catalogue import make_display
 
-PAUSE = 1.0
-"""Seconds without an edit after which another edit of the same subject is a separate one: a drag is one edit."""
+MERGE_INTERVAL = 1.0
+"""Edits of the same subject are merged if they follow within this time, in s, so that a drag is one edit."""
 
 State = TypeVar("State")
 
-LONGEST = 500
-"""Most edits in the history."""
+MAX_EDITS = 500
+"""The largest number of edits in the history."""
 
 
 class Edit(Generic[State]):
@@ -29,7 +29,7 @@ class Edit(Generic[State]):
         name: the name of the edit, for menus.
         swap: restores a state, and returns the state that it replaced.
         before: the state before the edit.
-        subject: identifies the edited value; quick successive edits of one subject are merged, see `History.is_at`.
+        subject: identifies the edited value; quick successive edits of one value are merged, see `History.would_merge`.
             None for an edit that is never merged.
     """
 
@@ -39,15 +39,15 @@ class Edit(Generic[State]):
         self.name = name
         self.subject = subject
         self._swap = swap
-        self._other = before
+        self._other_state = before
 
     def turn(self) -> None:
-        """Undo the edit if it is in effect, or redo it if it was undone."""
-        self._other = self._swap(self._other)
+        """Undo the edit, or redo it if it was undone."""
+        self._other_state = self._swap(self._other_state)
 
 
 class History:
-    """The edits that can be undone and redone, and how many of them are in the saved file.
+    """The edits that can be undone and redone, and the number of edits that the saved file contains.
 
     Args:
         changed: called whenever `undoable`, `redoable` or `unsaved` may have changed.
@@ -57,95 +57,99 @@ class History:
     def __init__(self, changed: Callable[[], None], clock: Callable[[], float] = time.monotonic) -> None:
         self._changed = changed
         self._clock = clock
-        self._done: list[Edit[Any]] = []
-        self._undone: list[Edit[Any]] = []
-        self._saved_at: int | None = 0
-        self._touched = False
-        self._last = float("-inf")
+        self._done_edits: list[Edit[Any]] = []
+        self._undone_edits: list[Edit[Any]] = []
+        self._saved_count: int | None = 0
+        self._has_permanent_edit = False
+        self._last_edit_time = float("-inf")
 
     @property
     def undoable(self) -> EditName | None:
         """The name of the edit that `undo` would revert, or None."""
-        return self._done[-1].name if self._done else None
+        return self._done_edits[-1].name if self._done_edits else None
 
     @property
     def redoable(self) -> EditName | None:
         """The name of the edit that `redo` would repeat, or None."""
-        return self._undone[-1].name if self._undone else None
+        return self._undone_edits[-1].name if self._undone_edits else None
 
     @property
     def unsaved(self) -> bool:
         """Whether the current state differs from the saved file."""
-        return self._touched or self._saved_at != len(self._done)
+        return self._has_permanent_edit or self._saved_count != len(self._done_edits)
 
-    def is_at(self, subject: str) -> bool:
+    def would_merge(self, subject: str) -> bool:
         """Return whether an edit of a subject would be merged with the last edit.
 
         The steps of a drag are merged, for example.
         """
-        follows = self._clock() - self._last < PAUSE and not self._undone and self._saved_at != len(self._done)
-        return follows and bool(self._done) and self._done[-1].subject == subject
+        is_recent = (
+            self._clock() - self._last_edit_time < MERGE_INTERVAL
+            and not self._undone_edits
+            and self._saved_count != len(self._done_edits)
+        )
+        return is_recent and bool(self._done_edits) and self._done_edits[-1].subject == subject
 
-    def prolong(self) -> None:
-        """Merge a change with the last edit, whose undo then reverts both."""
-        self._last = self._clock()
+    def merge_change(self) -> None:
+        """Merge a change with the last edit, so that both are undone together."""
+        self._last_edit_time = self._clock()
 
     def add(self, edit: Edit[Any]) -> None:
         """Add an edit that has just been made, and discard the edits that could be redone."""
-        self._last = self._clock()
-        if self._saved_at is not None and self._saved_at > len(self._done):
-            self._saved_at = None  # the saved state cannot be reached again by redo
-        self._undone.clear()
-        self._done.append(edit)
-        if len(self._done) > LONGEST:
-            del self._done[0]
-            self._saved_at = self._saved_at - 1 if self._saved_at else None
+        self._last_edit_time = self._clock()
+        if self._saved_count is not None and self._saved_count > len(self._done_edits):
+            self._saved_count = None  # the saved state can no longer be reached with redo
+        self._undone_edits.clear()
+        self._done_edits.append(edit)
+        if len(self._done_edits) > MAX_EDITS:
+            del self._done_edits[0]
+            self._saved_count = self._saved_count - 1 if self._saved_count else None
         self._changed()
 
     def touch(self) -> None:
         """Record an edit that cannot be undone."""
-        if not self._touched:
-            self._touched = True
+        if not self._has_permanent_edit:
+            self._has_permanent_edit = True
             self._changed()
 
     def undo(self) -> None:
         """Undo the last edit, if there is one."""
-        if self._done:
-            edit = self._done.pop()
+        if self._done_edits:
+            edit = self._done_edits.pop()
             edit.turn()
-            self._undone.append(edit)
+            self._undone_edits.append(edit)
             self._end_drag()
 
     def redo(self) -> None:
         """Redo the most recently undone edit, if there is one."""
-        if self._undone:
-            edit = self._undone.pop()
+        if self._undone_edits:
+            edit = self._undone_edits.pop()
             edit.turn()
-            self._done.append(edit)
+            self._done_edits.append(edit)
             self._end_drag()
 
     def saved(self) -> None:
         """Mark all edits as saved."""
-        self._saved_at, self._touched = len(self._done), False
+        self._saved_count, self._has_permanent_edit = len(self._done_edits), False
         self._changed()
 
     def clear(self) -> None:
         """Clear the history because another file was opened."""
-        self._done.clear()
-        self._undone.clear()
+        self._done_edits.clear()
+        self._undone_edits.clear()
         self._end_drag()
         self.saved()
 
     def _end_drag(self) -> None:
-        self._last = float("-inf")
+        self._last_edit_time = float("-inf")
         self._changed()
 
 
 MAXIMUM_DISPLAYS = 1000
-"""Most displays; pages may not add more."""
+"""The largest number of displays that pages may add."""
 
 MAXIMUM_NESTING = 20
-"""Most groups around a display; pages may not nest deeper, so that the file can be read again."""
+"""The largest number of groups around a display, so that the file can be read again."""
 
 
 class DisplayTree:
@@ -158,7 +162,7 @@ class DisplayTree:
         config: the configuration with the entries.
         host: the visualization that the displays are part of.
         history: the history of edits.
-        rearranged: called when displays were added, removed, moved or renamed, before new ones start.
+        rearranged: called when displays were added, removed, moved or renamed, before new displays start.
 
     Attributes:
         displays: every display, each group before its contents.
@@ -204,14 +208,14 @@ class DisplayTree:
     # --- edits -------------------------------------------------------------------------------------------------
 
     def check(self, display: ViewerDisplay, value: bool) -> None:
-        """Set the check box of a display, which also enables or disables a group's contents."""
+        """Set the check box of a display; for a group, this also enables or disables its contents."""
         if value == display.config.checked:
             return
-        before, enabled = display.config.box, self._enabled()
+        before, enabled = display.config.box, self._enabled_states()
         display.config.checked = value
         self._notify_check_box(display, enabled)
         name = EditName("enable" if value else "disable", display.config.name)
-        self._history.add(Edit(name, partial(self._swap_box, display.id), before))
+        self._history.add(Edit(name, partial(self._swap_check_box, display.id), before))
 
     def add(
         self,
@@ -229,7 +233,7 @@ class DisplayTree:
         Raises:
             ValueError: `group` is not a group, the display would be nested too deeply, or there are too many displays.
         """
-        self._check_room([entry])
+        self._check_count([entry])
         _check_nesting(group, [entry])
         display = self._make(entry)
         if prepare is not None:
@@ -244,14 +248,14 @@ class DisplayTree:
             ValueError: there are too many displays.
         """
         entries = _outermost(displays)
-        self._check_room(entries)
+        self._check_count(entries)
 
         def copy() -> None:
             for entry in entries:
                 siblings = self._config.siblings(entry.group)
                 self._config.insert(self._config.duplicate(entry), entry.group, siblings.index(entry) + 1)
 
-        self._rearrange(_named("duplicate", displays), copy)
+        self._rearrange(_edit_name("duplicate", displays), copy)
 
     def remove(self, displays: Sequence[ViewerDisplay]) -> None:
         """Remove displays; a group is removed with its contents."""
@@ -260,7 +264,7 @@ class DisplayTree:
             for entry in _outermost(displays):
                 self._config.remove(entry)
 
-        self._rearrange(_named("remove", displays), take_away)
+        self._rearrange(_edit_name("remove", displays), take_away)
 
     def move(
         self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
@@ -270,26 +274,26 @@ class DisplayTree:
         Args:
             displays: the displays to move.
             group: the group; None for the top level.
-            before: the entry to insert before; None for the end.
+            before: the entry before which the displays are inserted; None for the end.
 
         Raises:
             ValueError: the target is not a group, is inside one of the displays, or the displays would be nested too
                 deeply.
         """
-        moved = _outermost(displays)
-        if group is not None and (not group.is_group or any(group in entry.walk() for entry in moved)):
+        entries = _outermost(displays)
+        if group is not None and (not group.is_group or any(group in entry.walk() for entry in entries)):
             raise ValueError(f"displays cannot be put into '{group.name}'")
-        _check_nesting(group, moved)
+        _check_nesting(group, entries)
 
         def shift() -> None:
             siblings = self._config.siblings(group)
-            after = siblings[siblings.index(before) :] if before in siblings else []
-            target = next((entry for entry in after if entry not in moved), None)
-            for entry in moved:
+            later_siblings = siblings[siblings.index(before) :] if before in siblings else []
+            target = next((entry for entry in later_siblings if entry not in entries), None)
+            for entry in entries:
                 self._config.remove(entry)
                 self._config.insert(entry, group, siblings.index(target) if target else None)
 
-        self._rearrange(_named("move", displays), shift)
+        self._rearrange(_edit_name("move", displays), shift)
 
     def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
         """Move displays into a new group at the position of the first of them.
@@ -297,15 +301,15 @@ class DisplayTree:
         Raises:
             ValueError: there are too many displays, or the group would be nested too deeply.
         """
-        moved = _outermost(displays)
-        around, at = moved[0].group, self._config.siblings(moved[0].group).index(moved[0])
+        entries = _outermost(displays)
+        enclosing_group, index = entries[0].group, self._config.siblings(entries[0].group).index(entries[0])
         group = self._config.make_group(name)
-        self._check_room([group])
-        _check_nesting(around, moved, more=1)
+        self._check_count([group])
+        _check_nesting(enclosing_group, entries, extra_groups=1)
 
         def put_together() -> None:
-            self._config.insert(group, around, at)
-            for entry in moved:
+            self._config.insert(group, enclosing_group, index)
+            for entry in entries:
                 self._config.remove(entry)
                 self._config.insert(entry, group)
 
@@ -319,11 +323,11 @@ class DisplayTree:
         before = section.memory("Name")
 
         def swap(memory: Memory) -> Memory:
-            now = section.memory("Name")
+            replaced = section.memory("Name")
             section.recall(memory)
             self._notify_arrangement()
             self._rearranged()
-            return now
+            return replaced
 
         display.config.name = name
         self._notify_arrangement()
@@ -332,15 +336,15 @@ class DisplayTree:
 
     # --- applying and reverting edits --------------------------------------------------------------------------
 
-    def _swap_box(self, identity: str, box: list[Memory]) -> list[Memory]:
-        """Restore the file's entry of a display's check box, and return the replaced entry."""
+    def _swap_check_box(self, identity: str, memories: list[Memory]) -> list[Memory]:
+        """Restore the entries of a check box in the file, and return the replaced entries."""
         display = self.find(identity)
         if display is None:
-            return box
-        now, enabled = display.config.box, self._enabled()
-        display.config.box = box
+            return memories
+        replaced, enabled = display.config.box, self._enabled_states()
+        display.config.box = memories
         self._notify_check_box(display, enabled)
-        return now
+        return replaced
 
     def _notify_check_box(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
         """Send a display's check box to pages, and notify the displays that were enabled or disabled.
@@ -353,38 +357,42 @@ class DisplayTree:
                 other.enabled_changed()
 
     def arrange(self, arrangement: Arrangement) -> Arrangement:
-        """Restore an arrangement, and return the replaced one."""
-        before, enabled = self._config.arrangement(), self._enabled()
+        """Restore an arrangement, and return the arrangement that it replaced."""
+        before, enabled = self._config.arrangement(), self._enabled_states()
         self._config.arrange(arrangement)
         self._follow(enabled)
         return before
 
-    def _rearrange(self, name: EditName, change: Callable[[], None], made: Sequence[ViewerDisplay] = ()) -> None:
-        before, enabled = self._config.arrangement(), self._enabled()
+    def _rearrange(
+        self, name: EditName, change: Callable[[], None], new_displays: Sequence[ViewerDisplay] = ()
+    ) -> None:
+        before, enabled = self._config.arrangement(), self._enabled_states()
         change()
-        self._follow(enabled, made)
+        self._follow(enabled, new_displays)
         self._history.add(Edit(name, self.arrange, before))
 
-    def _enabled(self) -> dict[DisplayConfig, bool]:
+    def _enabled_states(self) -> dict[DisplayConfig, bool]:
         return {display.config: display.enabled for display in self.displays}
 
-    def _follow(self, enabled: dict[DisplayConfig, bool], made: Sequence[ViewerDisplay] = ()) -> None:
-        """Match the displays to the configuration's entries: start new displays and stop removed ones.
+    def _follow(self, enabled: dict[DisplayConfig, bool], new_displays: Sequence[ViewerDisplay] = ()) -> None:
+        """Update the displays to match the configuration: start new displays and stop removed displays.
 
         Args:
             enabled: whether each display was enabled before the change.
-            made: displays that were already created for new entries.
+            new_displays: displays that were already created for new entries.
         """
-        there = {display.config: display for display in self.displays}
-        new = {display.config: display for display in made}
+        displays_by_entry = {display.config: display for display in self.displays}
+        new_by_entry = {display.config: display for display in new_displays}
         entries = list(self._config.walk())
-        for entry in there.keys() - set(entries):
-            there[entry].stop()
-        self.displays = [there.get(entry) or new.get(entry) or self._make(entry) for entry in entries]
+        for entry in displays_by_entry.keys() - set(entries):
+            displays_by_entry[entry].stop()
+        self.displays = [
+            displays_by_entry.get(entry) or new_by_entry.get(entry) or self._make(entry) for entry in entries
+        ]
         self._notify_arrangement()
         self._rearranged()
         for display in self.displays:
-            if display.config not in there:
+            if display.config not in displays_by_entry:
                 self._begin(display)
             elif display.enabled != enabled[display.config]:
                 display.enabled_changed()
@@ -400,7 +408,7 @@ class DisplayTree:
         for message in display.messages():
             self._host.pages.publish(message)
 
-    def _check_room(self, entries: Sequence[DisplayConfig]) -> None:
+    def _check_count(self, entries: Sequence[DisplayConfig]) -> None:
         if len(self.displays) + sum(1 for entry in entries for _ in entry.walk()) > MAXIMUM_DISPLAYS:
             raise ValueError(f"there can be no more than {MAXIMUM_DISPLAYS} displays")
 
@@ -409,17 +417,17 @@ class DisplayTree:
         return make_display(self._host, entry.identity, entry)
 
 
-def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig], more: int = 0) -> None:
+def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig], extra_groups: int = 0) -> None:
     """Raise ValueError if entries would be nested too deeply in a group.
 
-    `more` is the number of further groups that will enclose the entries.
+    `extra_groups` is the number of further groups that will enclose the entries.
     """
-    if _depth(group) + more + max(map(_height, entries)) > MAXIMUM_NESTING:
+    if _depth(group) + extra_groups + max(map(_height, entries)) > MAXIMUM_NESTING:
         raise ValueError(f"groups cannot be nested deeper than {MAXIMUM_NESTING}")
 
 
 def _depth(group: DisplayConfig | None) -> int:
-    """Return how many groups enclose the contents of a group; 0 for None, the top level."""
+    """Return the number of groups that enclose the contents of a group; 0 for None, the top level."""
     return 0 if group is None else 1 + _depth(group.group)
 
 
@@ -429,10 +437,10 @@ def _height(entry: DisplayConfig) -> int:
 
 
 def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
-    """Return the entries of those displays that are not inside another one of them."""
+    """Return the entries of the displays that are not inside another of these displays."""
     entries = [display.config for display in displays]
     return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
 
 
-def _named(kind: EditKind, displays: Sequence[ViewerDisplay]) -> EditName:
+def _edit_name(kind: EditKind, displays: Sequence[ViewerDisplay]) -> EditName:
     return EditName(kind, ", ".join(display.config.name for display in displays))

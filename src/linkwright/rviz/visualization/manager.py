@@ -1,6 +1,6 @@
 """A visualization: a configuration, its displays and its undo history.
 
-Pages share one visualization, but a page may request its own.
+Pages share one visualization, but a page may request a separate one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import Path
 from linkwright.rviz.context import ViewerContext
-from linkwright.rviz.displays.base.display import ViewerDisplay, worst
+from linkwright.rviz.displays.base.display import ViewerDisplay, worst_level
 from linkwright.rviz.displays.frames import FRAME_TIMEOUT, TfDisplay
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
 from linkwright.rviz.frames.stream import FrameStream, FrameView, TimeControl
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 GLOBAL = "global"
-"""The owner of the Global Options, in place of a display's id."""
+"""The owner of the Global Options, which takes the place of the ID of a display."""
 
 _FIXED_FRAME = "Fixed Frame"
 _FRAME_RATE = "Frame Rate"
@@ -84,14 +84,14 @@ class VisualizationManager:
         self.history = History(lambda: owner.edited(self))
         self._owner = owner
         self._global_status: list[StatusRow] = []
-        self.time = TimeControl(context.node.get_clock(), self._time_changed, self._time_signalled)
+        self.time = TimeControl(context.node.get_clock(), self._time_changed, self._on_time_signal)
         self._stream = FrameStream(
             context.node,
             self.pages,
             self.time,
             context.transforms,
             on_frames=self._frames_changed,
-            own_frames=self._own_frames,
+            own_frames=self._robot_frames,
         )
         self._read_options()
         self.frames = FrameView(fixed_frame=self.fixed_frame)
@@ -102,7 +102,7 @@ class VisualizationManager:
 
     def start(self) -> None:
         """Subscribe to transforms and start the displays."""
-        self._warn()
+        self._report_warnings()
         self._stream.start()
         self.tree.start()
         self._stream.refresh()
@@ -120,7 +120,7 @@ class VisualizationManager:
         self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
         self.opened += 1
         self._read_options()
-        self._warn()
+        self._report_warnings()
         self.tree.fill(config)
         self.fading_changed()
         self.publish(self.tree_message())
@@ -130,7 +130,7 @@ class VisualizationManager:
         self._owner.fixed_frame_changed(self)
         self.history.clear()
 
-    def _warn(self) -> None:
+    def _report_warnings(self) -> None:
         for warning in self.config.warnings:
             self.context.report(warning)
 
@@ -147,7 +147,7 @@ class VisualizationManager:
         self.pages.publish(message)
 
     def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
-        """Return what a new page needs: messages, the frame table, and binary frames, to be sent in order."""
+        """Return the messages, the frame table and the binary frames to send to a new page, in this order."""
         self._stream.refresh()
         table, transforms = self._stream.opening
         messages: list[ServerMessage] = [self.tree_message()]
@@ -161,7 +161,7 @@ class VisualizationManager:
         return Tree(
             global_options=self.config.options.rows(),
             global_status=self._global_status,
-            global_level=worst(self._global_status),
+            global_level=worst_level(self._global_status),
             displays=[display.row() for display in self.displays],
         )
 
@@ -194,12 +194,12 @@ class VisualizationManager:
         return display.properties
 
     def set_property(self, page: Page, identity: str, value: object) -> None:
-        """Set a property for a page; if the value is refused, send the current value back to the page."""
-        owner, _, rest = identity.partition("/")
+        """Set a property for a page; if the value is not accepted, send the current value back to the page."""
+        owner, _, property_name = identity.partition("/")
         display = self.display(owner)
         if display is None and owner != GLOBAL:
-            return  # the display has been removed meanwhile
-        if display is not None and rest == "Enabled":
+            return  # the display was removed in the meantime
+        if display is not None and property_name == "Enabled":
             if not isinstance(value, bool):
                 page.send(PropertyChanged(identity, display.config.checked))
             else:
@@ -209,43 +209,45 @@ class VisualizationManager:
         path = store.find(identity)
         if path is None:
             return  # the row of a link or frame that no longer exists
-        before = store.get(*path)
+        previous_value = store.get(*path)
         try:
-            self._edit(identity, path, lambda: self._set(display, path, value))
+            self._edit_property(identity, path, lambda: self._set_value(display, path, value))
         except ValueError as error:
             self.context.node.get_logger().warning(phrase("'{identity}': {error}", identity=identity, error=error))
-            page.send(PropertyChanged(identity, before))
+            page.send(PropertyChanged(identity, previous_value))
 
-    def _set(self, display: ViewerDisplay | None, path: Path, value: object) -> None:
+    def _set_value(self, display: ViewerDisplay | None, path: Path, value: object) -> None:
         if display is not None:
             display.set_property(path, value)
         else:
             self._set_option(path[0], value)
 
-    def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
-        """Change a property with undo; quick successive changes, as in a drag, are one edit."""
-        if self.history.is_at(identity):
+    def _edit_property(self, identity: str, path: Path, change: Callable[[], None]) -> None:
+        """Change a property so that it can be undone; quick successive changes, as in a drag, are one edit."""
+        if self.history.would_merge(identity):
             change()
-            self.history.prolong()
+            self.history.merge_change()
             return
         owner = identity.partition("/")[0]
-        with self.store(owner).recording() as before:
+        with self.store(owner).recording() as previous_entries:
             change()
-        if before:
-            self.history.add(Edit(EditName("set", path[-1]), partial(self._swap_values, owner), before, identity))
+        if previous_entries:
+            self.history.add(
+                Edit(EditName("set", path[-1]), partial(self._swap_values, owner), previous_entries, identity)
+            )
 
     def set_fixed_frame(self, frame: str) -> None:
-        """Change the Fixed Frame like a page, so that the change can be undone."""
+        """Change the Fixed Frame, as a page does, so that the change can be undone."""
         path = (_FIXED_FRAME,)
-        self._edit(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
+        self._edit_property(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
 
     def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
-        """Restore former entries of properties in the file, and return the replaced ones."""
-        now = self.store(owner).memories(memories)
-        self._recall(owner, memories)
-        return now
+        """Restore previous entries of properties in the file, and return the replaced entries."""
+        replaced = self.store(owner).memories(memories)
+        self._restore_entries(owner, memories)
+        return replaced
 
-    def _recall(self, owner: str, memories: list[Memory]) -> None:
+    def _restore_entries(self, owner: str, memories: list[Memory]) -> None:
         display = self.display(owner)
         if display is not None:
             display.recall(memories)
@@ -254,7 +256,7 @@ class VisualizationManager:
                 self._option_changed(path[0])
 
     def measured(self, diagonal: float, ground: float) -> None:
-        """Fit the sizes of grid and axes that the user has not set to a robot that a page has measured.
+        """Fit the sizes of grid and axes to a measured robot, except sizes that the user has changed.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.
@@ -297,7 +299,7 @@ class VisualizationManager:
         time = self.time
         self.publish(TimeState(time.paused, time.mode, time.source, list(time.sources)))
 
-    def _time_signalled(self) -> None:
+    def _on_time_signal(self) -> None:
         self._stream.schedule_update()
 
     # --- options and frames ------------------------------------------------------------------------------------
@@ -313,9 +315,9 @@ class VisualizationManager:
 
     def _option_changed(self, name: str) -> None:
         options = self.config.options
-        other_rows = options.is_condition((name,))
+        changes_rows = options.is_condition((name,))
         self.publish(
-            self.tree_message() if other_rows else PropertyChanged(options.identity((name,)), options.get(name))
+            self.tree_message() if changes_rows else PropertyChanged(options.identity((name,)), options.get(name))
         )
         if name == _FRAME_RATE:
             self._stream.rate = options.number(_FRAME_RATE)
@@ -329,11 +331,11 @@ class VisualizationManager:
         self.publish(self.tree_message())
 
     def _frames_changed(self, frames: FrameView) -> None:
-        others = frames.names != self.frames.names
+        has_new_names = frames.names != self.frames.names
         self.frames = frames
         for display in self.displays:
             display.frames_changed()
-        if others:
+        if has_new_names:
             stores = [self.config.options, *(display.properties for display in self.displays)]
             for change in (change for store in stores for change in store.frame_changes()):
                 self.publish(change)
@@ -353,60 +355,64 @@ class VisualizationManager:
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a display's new robot; `gone` contains the frames that only the former robot had."""
-        self._stream.robot_changed(gone - self._own_frames())
+        """Handle a display's new robot; `gone` contains the frames that only the previous robot had."""
+        self._stream.robot_changed(gone - self._robot_frames())
         self._owner.robot_changed()
 
-    def _own_frames(self) -> frozenset[str]:
+    def _robot_frames(self) -> frozenset[str]:
         return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
 
     def fading_changed(self) -> None:
         """Apply the shortest Frame Timeout of the TF displays that are enabled."""
-        shown = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
-        self._stream.fade_time = min((display.properties.number(FRAME_TIMEOUT) for display in shown), default=None)
+        tf_displays = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
+        self._stream.fade_time = min(
+            (display.properties.number(FRAME_TIMEOUT) for display in tf_displays), default=None
+        )
 
 
 LINGERING = 60.0
-"""Seconds that a page's own displays outlive it: it may be reloading, or have lost its connection."""
+"""Seconds after which the displays of a closed page are removed, because the page may only be reloading."""
 
 MOST_LINGERING = 8
-"""The largest number of managers without pages; beyond it the one that has waited longest is closed."""
+"""The largest number of managers without pages, beyond which the oldest of them is closed."""
 
 
 class Managers:
-    """The manager that most pages share, and the managers of pages that have their own.
+    """The manager that most pages share, and the separate managers of single pages.
 
-    A page's own manager begins with a copy of the shared configuration.
+    A separate manager begins with a copy of the shared configuration.
 
     Args:
         context: the viewer's node, files and pages.
-        config: the configuration of every page that does not request its own.
+        config: the configuration of the shared manager.
         owner: the owner of the managers, which receives their events.
     """
 
     def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
         self.shared = VisualizationManager(context, config, owner)
         self._owner = owner
-        self._own: dict[str, VisualizationManager] = {}
+        self._own_managers: dict[str, VisualizationManager] = {}
         self._ends: dict[str, asyncio.TimerHandle] = {}
 
     def all(self) -> list[VisualizationManager]:
-        """Return all managers, the shared one first."""
-        return [self.shared, *self._own.values()]
+        """Return all managers, beginning with the shared manager."""
+        return [self.shared, *self._own_managers.values()]
 
     def of(self, page: Page) -> VisualizationManager:
-        """Return the manager of a page: its own, or the shared one."""
-        return self._own.get(page.own, self.shared)
+        """Return the manager of a page, which is either its own or the shared manager."""
+        return self._own_managers.get(page.own, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:
-        """Return the manager of a page that opens; the page's own manager is created if necessary."""
+        """Return the manager of a page that opens, and create it if it does not exist."""
         if page.own:
-            end = self._ends.pop(page.own, None)
-            if end is not None:
-                end.cancel()
-            if page.own not in self._own:
-                self._own[page.own] = VisualizationManager(self.shared.context, self.shared.config.copy(), self._owner)
-                self._own[page.own].start()
+            timer = self._ends.pop(page.own, None)
+            if timer is not None:
+                timer.cancel()
+            if page.own not in self._own_managers:
+                self._own_managers[page.own] = VisualizationManager(
+                    self.shared.context, self.shared.config.copy(), self._owner
+                )
+                self._own_managers[page.own].start()
         return self.of(page)
 
     def leave(self, page: Page) -> None:
@@ -420,14 +426,14 @@ class Managers:
 
     def close(self) -> None:
         """Close all managers."""
-        for key in list(self._own):
+        for key in list(self._own_managers):
             self._drop(key)
         self.shared.close()
 
     def _drop(self, key: str) -> None:
-        end = self._ends.pop(key, None)
-        if end is not None:
-            end.cancel()
-        manager = self._own.pop(key)
+        timer = self._ends.pop(key, None)
+        if timer is not None:
+            timer.cancel()
+        manager = self._own_managers.pop(key)
         manager.close()
         self._owner.manager_closed(manager)

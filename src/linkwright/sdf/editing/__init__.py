@@ -1,4 +1,4 @@
-"""Lossless editing of worlds: an edit returns a text that differs only where necessary."""
+"""Lossless editing of worlds: an edit changes the text only where necessary."""
 
 from linkwright.sdf.editing.adding import NewShape, add_include, add_light, add_shape
 from linkwright.sdf.editing.changing import Change, change, copy, delete, pose_of_entity

@@ -1,4 +1,4 @@
-"""Adds shapes, lights and models to a world."""
+"""Functions that add shapes, lights and models to a world."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """The defaults of a new shape: size in m, colour as red, green and blue, and mass in kg.
+    """The defaults of a new shape: its size in m, its colour as red, green and blue from 0 to 1, and its mass in kg.
 
-    A shape whose mass is None is static.
+    A mass of None makes the shape static.
     """
 
     size: tuple[float, ...]
@@ -34,7 +34,7 @@ class NewShape:
     mass: float | None = 1.0
 
 
-USUAL: dict[ShapeKind, NewShape] = {
+DEFAULT_SHAPES: dict[ShapeKind, NewShape] = {
     "box": NewShape((0.5, 0.5, 0.5), (0.9, 0.4, 0.1)),
     "cylinder": NewShape((0.25, 0.5), (0.2, 0.5, 0.8)),
     "sphere": NewShape((0.25,), (0.3, 0.7, 0.3)),
@@ -68,8 +68,8 @@ _LIGHTS: dict[LightKind, tuple[Element, ...]] = {
         ),
     ),
 }
-_THINGS = ("model", "include", "light", "actor")
-"""Elements behind which a new one is inserted."""
+_ENTITY_TAGS = ("model", "include", "light", "actor")
+"""New elements are inserted after the last element with one of these tags."""
 
 
 def add_shape(
@@ -89,28 +89,28 @@ def add_shape(
     Raises:
         EditError: the pose or the size is invalid.
     """
-    usual = USUAL[kind]
-    wanted = tuple(map(float, size)) or usual.size
-    if not is_size(kind, wanted):
+    defaults = DEFAULT_SHAPES[kind]
+    shape_size = tuple(map(float, size)) or defaults.size
+    if not is_size(kind, shape_size):
         raise EditError(
             phrase("'{numbers}' is not a valid size of a {kind}", numbers=" ".join(map(str, size)), kind=kind)
         )
     name = world.free_name(kind)
-    colour = lengths((*usual.colour, 1.0))
-    parts = [
-        new_element("collision", *geometry(kind, wanted), name="collision"),
+    colour = lengths((*defaults.colour, 1.0))
+    children = [
+        new_element("collision", *geometry(kind, shape_size), name="collision"),
         new_element(
             "visual",
-            *geometry(kind, wanted),
+            *geometry(kind, shape_size),
             new_element("material", new_element("ambient", colour), new_element("diffuse", colour)),
             name="visual",
         ),
     ]
-    if usual.mass is not None:
-        parts.insert(0, inertial(kind, wanted, usual.mass))
-    static = [] if usual.mass is not None else [new_element("static", "true")]
-    link = new_element("link", *parts, name=kind if kind in ("wall", "ramp") else "link")
-    model = new_element("model", writing.pose_element(pose_in_world(pose)), *static, link, name=name)
+    if defaults.mass is not None:
+        children.insert(0, inertial(kind, shape_size, defaults.mass))
+    static_elements = [] if defaults.mass is not None else [new_element("static", "true")]
+    link = new_element("link", *children, name=kind if kind in ("wall", "ramp") else "link")
+    model = new_element("model", writing.pose_element(pose_in_world(pose)), *static_elements, link, name=name)
     return _insert(world, model), name
 
 
@@ -149,21 +149,21 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
     """
     address = address.strip()
     if not address:
-        raise EditError(phrase("'{uri}' names no model", uri=address))
-    found = world.finder.model(address, world.path.parent)
-    if isinstance(found, Missing):
-        raise EditError(found.reason)
-    alone = World(includes=(Include(address),))
-    included = resolve_includes(Sdf("1.6", worlds=(alone,)), world.path, world.finder).sdf.worlds[0]
+        raise EditError(phrase("'{uri}' does not name a model", uri=address))
+    model_path = world.finder.model(address, world.path.parent)
+    if isinstance(model_path, Missing):
+        raise EditError(model_path.reason)
+    include_world = World(includes=(Include(address),))
+    included = resolve_includes(Sdf("1.6", worlds=(include_world,)), world.path, world.finder).sdf.worlds[0]
     entities: tuple[Model | Light, ...] = (*included.models, *included.lights)
     if not entities:
         raise EditError(phrase("there is no model in '{address}'", address=address))
     name = world.free_name(entities[0].name)
-    pose_of_it = writing.pose_element(pose_in_world(pose))
+    pose_element = writing.pose_element(pose_in_world(pose))
     return _insert(
-        world, new_element("include", new_element("uri", address), new_element("name", name), pose_of_it)
+        world, new_element("include", new_element("uri", address), new_element("name", name), pose_element)
     ), name
 
 
-def _insert(world: WorldText, new: Element) -> WorldText:
-    return world.edited([writing.inserted_in(world.element, [new], after=_THINGS)])
+def _insert(world: WorldText, element: Element) -> WorldText:
+    return world.edited([writing.inserted_in(world.element, [element], after=_ENTITY_TAGS)])

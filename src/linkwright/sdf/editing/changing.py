@@ -32,24 +32,24 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.values import POSE as POSE_NUMBERS
 from linkwright.sdf.values import pose_of
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import Replacement, indentation, newline_of
+from linkwright.xmltree.patches import Replacement, indentation, line_ending
 
 _NEW_MASS = 1.0
-_FIRST = ("uri", "name")
-"""Elements behind which the pose of an include is inserted."""
+_INCLUDE_HEAD = ("uri", "name")
+"""The pose of an include is inserted after these elements."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The properties of an entity to change; None for properties that remain.
+    """The properties of an entity to change; a property that is None keeps its value.
 
     Attributes:
         name: the name of the entity.
         pose: the pose in the world: x, y, z in m, roll, pitch, yaw in rad.
-        size: the size of a model that is one simple shape, as in `SimpleShape`.
+        size: the size of a model that consists of one simple shape, as in `SimpleShape`.
         new_name: the new name.
-        static: whether the model never moves.
-        colour: the colour of such a model or of a light: red, green, blue, alpha from 0 to 1.
+        static: whether the model is fixed and never moves.
+        colour: the colour of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
     """
 
     name: str
@@ -65,7 +65,7 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
 
     Args:
         world: the world.
-        changes: the changes, at most one for each name.
+        changes: the changes, at most one per entity.
 
     Raises:
         EditError: an entity cannot be changed in this way.
@@ -88,7 +88,7 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
     Args:
         world: the world.
         names: the entities to copy.
-        offset: x, y, z in m from each entity to its copy.
+        offset: the displacement of each copy from its original: x, y, z in m.
 
     Returns:
         The changed world, and the names of the copies.
@@ -97,38 +97,38 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
         EditError: an entity does not exist or cannot be copied.
     """
     if len(offset) != 3 or not all(map(isfinite, offset)):
-        raise EditError(phrase("an offset has three numbers"))
+        raise EditError(phrase("an offset must have three finite numbers: x y z"))
     edits: list[Replacement] = []
     poses: dict[str, Pose] = {}
-    taken = set(world.taken)
+    used_names = set(world.taken)
     for name in dict.fromkeys(names):
         entity = world.entity(name)
-        free = world.free_name(name, taken)
-        taken.add(free)
+        free_name = world.free_name(name, used_names)
+        used_names.add(free_name)
         x, y, z = (a + b for a, b in zip(entity.place[:3], offset, strict=True))
-        poses[free] = Pose((x, y, z), pose_of_entity(entity).rpy)
-        edits.append(_copied(entity, free))
+        poses[free_name] = Pose((x, y, z), pose_of_entity(entity).rpy)
+        edits.append(_copied(entity, free_name))
     return _with_poses(world.edited(edits), poses), list(poses)
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
-    """Return a world without the given models and lights, and without their entries in a saved state.
+    """Return a world without some models and lights, and without their entries in a saved state.
 
     Raises:
         EditError: an entity does not exist, or a remaining element refers to it.
     """
-    gone = {name: world.entity(name) for name in names}
-    elements = {id(entity.element) for entity in gone.values()}
+    deleted = {name: world.entity(name) for name in names}
+    elements = {id(entity.element) for entity in deleted.values()}
     for child in world.element.elements():
         if id(child) in elements:
             continue
         for element, attribute in _references_in(child):
-            head = referenced_name(element, attribute).partition(SEPARATOR)[0]
-            if head in gone:
-                where = child.attributes.get("name") or child.tag
-                raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=head, user=where))
-    edits = [writing.removed(entity.element) for entity in gone.values()]
-    edits += [writing.removed(entry) for name in gone for entry in state_of(world, name)]
+            model_name = referenced_name(element, attribute).partition(SEPARATOR)[0]
+            if model_name in deleted:
+                user = child.attributes.get("name") or child.tag
+                raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=model_name, user=user))
+    edits = [writing.removed(entity.element) for entity in deleted.values()]
+    edits += [writing.removed(entry) for name in deleted for entry in state_of(world, name)]
     return world.edited(edits)
 
 
@@ -139,16 +139,20 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
         EditError: the numbers are not finite, or there are not six of them.
     """
     if len(numbers) != 6 or not all(map(isfinite, numbers)):
-        raise EditError(phrase("a pose has six numbers: x y z roll pitch yaw"))
+        raise EditError(phrase("a pose must have six finite numbers: x y z roll pitch yaw"))
     x, y, z, roll, pitch, yaw = map(float, numbers)
     return Pose((x, y, z), (roll, pitch, yaw))
 
 
 def pose_of_entity(entity: Entity) -> Pose:
-    """Return the pose of an entity in the world, exactly as written if it is written in that frame."""
-    own = entity.pose
-    if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == entity.place:
-        return own.pose
+    """Return the pose of an entity in the world; a pose that is written in that frame keeps its exact numbers."""
+    written_pose = entity.pose
+    if (
+        written_pose.pose.quaternion is None
+        and not written_pose.relative_to
+        and transform_of(written_pose.pose) == entity.place
+    ):
+        return written_pose.pose
     return writing.pose_from(entity.place)
 
 
@@ -160,10 +164,10 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
     Raises:
         EditError: the frame of the entity's pose does not exist.
     """
-    wanted = transform_of(pose)
+    new_transform = transform_of(pose)
     edits = place(entity, _local(world, entity, pose))
     for entry in state_of(world, entity.name):
-        edits += _move_state_edits(entry, entity.place, wanted, pose)
+        edits += _move_state_edits(entry, entity.place, new_transform, pose)
     return edits
 
 
@@ -172,7 +176,7 @@ def place(entity: Entity, pose: Pose) -> list[Replacement]:
     element = entity.element.first("pose")
     if element is not None:
         return writing.set_pose(element, pose)
-    after = _FIRST if isinstance(entity.written, Include) else ()
+    after = _INCLUDE_HEAD if isinstance(entity.written, Include) else ()
     return [writing.inserted_in(entity.element, [writing.pose_element(pose)], after=after, first=not after)]
 
 
@@ -367,7 +371,7 @@ def _copied(entity: Entity, name: str) -> Replacement:
     for edit in sorted(_named(entity, name), key=lambda edit: edit.start, reverse=True):
         copy = copy[: edit.start - start] + edit.text + copy[edit.end - start :]
     indent = indentation(text, start)
-    between = "" if indent is None else f"{newline_of(text)}{indent}"
+    between = "" if indent is None else f"{line_ending(text)}{indent}"
     return Replacement(end, end, between + copy)
 
 

@@ -16,12 +16,12 @@ from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
 from linkwright.sdf.poses import MODEL, SEPARATOR
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, newline_of
+from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, line_ending
 
-_STEP = "  "
-_DIGITS = 3
+_INDENT_STEP = "  "
+_POSITION_DIGITS = 3
 """Decimal digits of a group's position in metres."""
-_LINE = re.compile(r"(?<=\n)(?=[^\r\n])")
+_LINE_START = re.compile(r"(?<=\n)(?=[^\r\n])")
 _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
 
@@ -32,48 +32,52 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     written into the models.
 
     Args:
-        world: the world.
-        names: the models, at least two.
+        world: the world to edit.
+        names: at least two models.
         name: the preferred name of the group, which is changed if it is not free.
 
     Raises:
         EditError: the models cannot be grouped.
     """
-    entities = [world.entity(fromkey) for fromkey in dict.fromkeys(names)]
+    entities = [world.entity(entity_name) for entity_name in dict.fromkeys(names)]
     _check_group(entities)
     name = world.free_name(name.strip() or "group")
     world.check_name(name)
-    inside = frozenset(entity.name for entity in entities)
-    x, y, z = (round(sum(entity.place[axis] for entity in entities) / len(entities), _DIGITS) for axis in range(3))
+    member_names = frozenset(entity.name for entity in entities)
+    x, y, z = (
+        round(sum(entity.place[axis] for entity in entities) / len(entities), _POSITION_DIGITS) for axis in range(3)
+    )
     origin: Transform = (x, y, z, 0.0, 0.0, 0.0, 1.0)
     edits: list[Replacement] = []
     for entity in entities:
         edits += [writing.removed(entry) for entry in state_of(world, entity.name)]
-        base = entity.pose.relative_to
-        if base.partition(SEPARATOR)[0] in inside and not state_of(world, entity.name):
+        reference_frame = entity.pose.relative_to
+        if reference_frame.partition(SEPARATOR)[0] in member_names and not state_of(world, entity.name):
             continue  # The pose remains relative to another model in the group.
         edits += _relative_pose_edits(world, entity, origin)
-    edits += rename_outside_references(world, inside, name)
+    edits += rename_outside_references(world, member_names, name)
     text = world.text
-    first = min(entities, key=lambda entity: entity.element.offset)
-    start = writing.range_of(first.element)[0]
-    blanks, newline = indentation(text, start) or "", newline_of(text)
-    inner = blanks + _STEP
-    static = f"{newline}{inner}<static>true</static>" if entities[0].static else ""
-    head = f'<model name="{escaped(name)}">{newline}{inner}<pose>{lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>{static}'
-    parts = []
+    first_entity = min(entities, key=lambda entity: entity.element.offset)
+    start = writing.range_of(first_entity.element)[0]
+    outer_indent, newline = indentation(text, start) or "", line_ending(text)
+    inner_indent = outer_indent + _INDENT_STEP
+    static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].static else ""
+    pose_element = f"<pose>{lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>"
+    group_start = f'<model name="{escaped(name)}">{newline}{inner_indent}{pose_element}{static_element}'
+    member_texts = []
     for entity in sorted(entities, key=lambda entity: entity.element.offset):
         begin, end = writing.range_of(entity.element)
-        own = [edit for edit in edits if begin <= edit.start and edit.end <= end]
-        edits = [edit for edit in edits if edit not in own]
-        moved = [
-            Replacement(replacement.start - begin, replacement.end - begin, replacement.text) for replacement in own
+        member_edits = [edit for edit in edits if begin <= edit.start and edit.end <= end]
+        edits = [edit for edit in edits if edit not in member_edits]
+        local_edits = [
+            Replacement(replacement.start - begin, replacement.end - begin, replacement.text)
+            for replacement in member_edits
         ]
-        parts.append(inner + _indent(apply(text[begin:end], moved), _STEP))
-    whole = newline.join([head, *parts, f"{blanks}</model>"])
-    begin, end = writing.range_of(first.element)
-    edits.append(Replacement(begin, end, whole))
-    edits += [writing.removed(entity.element) for entity in entities if entity is not first]
+        member_texts.append(inner_indent + _indent(apply(text[begin:end], local_edits), _INDENT_STEP))
+    group_text = newline.join([group_start, *member_texts, f"{outer_indent}</model>"])
+    begin, end = writing.range_of(first_entity.element)
+    edits.append(Replacement(begin, end, group_text))
+    edits += [writing.removed(entity.element) for entity in entities if entity is not first_entity]
     return world.edited(edits)
 
 
@@ -93,40 +97,44 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     if not isinstance(model, Model):
         raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
     if not entity.parts or model.joints or model.frames or model.plugins or model.links:
-        raise EditError(phrase("'{name}' contains more than models, so it cannot be ungrouped", name=name))
-    parts = [element for element in entity.element.elements() if element.tag in ("model", "include")]
-    if len(parts) != len(entity.parts):
+        raise EditError(phrase("'{name}' cannot be ungrouped: it contains more than models", name=name))
+    member_elements = [element for element in entity.element.elements() if element.tag in ("model", "include")]
+    if len(member_elements) != len(entity.parts):
         raise EditError(phrase("'{name}' cannot be ungrouped: one of its includes does not exist", name=name))
-    names = _names_of(world, entity, parts)
+    new_names = _free_member_names(world, entity, member_elements)
     edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
     frames = world.frames.inside(name)
-    for element, old in zip(parts, _old_names(entity, parts), strict=True):
-        edits += _release_edits(world, entity, element, old, names, compose(entity.place, frames.pose(old)))
+    for element, old in zip(member_elements, _old_names(entity, member_elements), strict=True):
+        edits += _release_edits(world, entity, element, old, new_names, compose(entity.place, frames.pose(old)))
     for element, attribute in writing.references(world.element):
         head, colon, tail = referenced_name(element, attribute).partition(SEPARATOR)
-        part, more, rest = tail.partition(SEPARATOR)
+        member_name, separator, nested_name = tail.partition(SEPARATOR)
         if head != name:
             continue
-        if not colon or part not in names:
+        if not colon or member_name not in new_names:
             raise EditError(phrase("'{name}' cannot be ungrouped: another element refers to it", name=name))
-        written = f"{names[part]}{more}{rest}"
-        edits += writing.set_reference(element, attribute, written)
+        new_reference = f"{new_names[member_name]}{separator}{nested_name}"
+        edits += writing.set_reference(element, attribute, new_reference)
     edits += [writing.removed(element) for tag in ("pose", "static") for element in entity.element.elements(tag)]
     begin, end = writing.range_of(entity.element)
-    first, last = writing.content_of(entity.element)
-    own = [Replacement(e.start - first, e.end - first, e.text) for e in edits if begin <= e.start and e.end <= end]
+    content_start, content_end = writing.content_of(entity.element)
+    content_edits = [
+        Replacement(e.start - content_start, e.end - content_start, e.text)
+        for e in edits
+        if begin <= e.start and e.end <= end
+    ]
     edits = [edit for edit in edits if not (begin <= edit.start and edit.end <= end)]
-    blanks = indentation(world.text, begin)
-    inner = apply(world.text[first:last], own).strip()
-    step = (indentation(world.text, parts[0].offset) or "").removeprefix(blanks or "")
-    edits.append(Replacement(begin, end, _unindent(inner, step)))
-    return world.edited(edits), list(names.values())
+    outer_indent = indentation(world.text, begin)
+    content = apply(world.text[content_start:content_end], content_edits).strip()
+    inner_step = (indentation(world.text, member_elements[0].offset) or "").removeprefix(outer_indent or "")
+    edits.append(Replacement(begin, end, _unindent(content, inner_step)))
+    return world.edited(edits), list(new_names.values())
 
 
-def rename_outside_references(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
+def rename_outside_references(world: WorldText, member_names: frozenset[str], group_name: str) -> list[Replacement]:
     """Return the edits that update references to the members of a group from outside the group."""
-    names = {name: f"{group_name}{SEPARATOR}{name}" for name in inside}
-    ranges = [writing.range_of(world.entity(name).element) for name in inside]
+    names = {name: f"{group_name}{SEPARATOR}{name}" for name in member_names}
+    ranges = [writing.range_of(world.entity(name).element) for name in member_names]
     return [
         renamed_reference
         for renamed_reference in rename_references(world, names)
@@ -140,12 +148,14 @@ def _check_group(entities: Sequence[Entity]) -> None:
     light = next((entity for entity in entities if entity.kind == "light"), None)
     if light is not None:
         raise EditError(phrase("'{name}' is a light, which cannot be part of a model", name=light.name))
-    other = next((entity for entity in entities if entity.static != entities[0].static), None)
-    if other is not None:
-        static, moving = (other, entities[0]) if other.static else (entities[0], other)
+    mismatch = next((entity for entity in entities if entity.static != entities[0].static), None)
+    if mismatch is not None:
+        static_entity, moving_entity = (mismatch, entities[0]) if mismatch.static else (entities[0], mismatch)
         raise EditError(
             phrase(
-                "'{static}' is static and '{moving}' is not: make both the same", static=static.name, moving=moving.name
+                "'{static}' is static and '{moving}' is not: make both static, or neither",
+                static=static_entity.name,
+                moving=moving_entity.name,
             )
         )
 
@@ -155,14 +165,14 @@ def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) ->
 
     The pose of the entity in the world does not change.
     """
-    written = pose_of_entity(entity)
-    x, y, z = (a - b for a, b in zip(written.xyz, origin[:3], strict=True))
-    local = Pose((x, y, z), written.rpy)
-    placed = entity.model.placement_frame if entity.model is not None else ""
-    if placed:
-        inner = compose(transform_of(local), world.frames.inside(entity.name).pose(placed))
-        local = writing.pose_from(inner)
-    edits = place(entity, local)
+    world_pose = pose_of_entity(entity)
+    x, y, z = (a - b for a, b in zip(world_pose.xyz, origin[:3], strict=True))
+    local_pose = Pose((x, y, z), world_pose.rpy)
+    placement_frame = entity.model.placement_frame if entity.model is not None else ""
+    if placement_frame:
+        placement_transform = compose(transform_of(local_pose), world.frames.inside(entity.name).pose(placement_frame))
+        local_pose = writing.pose_from(placement_transform)
+    edits = place(entity, local_pose)
     pose = entity.element.first("pose")
     if pose is not None:
         edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
@@ -170,65 +180,73 @@ def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) ->
 
 
 def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
-    """Return the names of parts within their group, in the order of `parts`."""
+    """Return the names that elements have within their group, in the order of `parts`."""
     assert isinstance(entity.written, Model), "groups are models"
     assert entity.model is not None, "groups are models"
     models = [id(model.element) for model in entity.written.models]
     includes = [id(include.element) for include in entity.written.includes]
-    order = {each: entity.model.models[index].name for index, each in enumerate((*models, *includes))}
+    order = {element_id: entity.model.models[index].name for index, element_id in enumerate((*models, *includes))}
     return [order[id(part)] for part in parts]
 
 
-def _names_of(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dict[str, str]:
+def _free_member_names(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dict[str, str]:
     names: dict[str, str] = {}
-    taken = world.taken - {entity.name}
+    used_names = world.taken - {entity.name}
     for old in _old_names(entity, parts):
-        names[old] = world.free_name(old, taken)
-        taken |= {names[old]}
+        names[old] = world.free_name(old, used_names)
+        used_names |= {names[old]}
     return names
 
 
 def _release_edits(
-    world: WorldText, entity: Entity, element: Element, old: str, names: dict[str, str], there: Transform
+    world: WorldText, entity: Entity, element: Element, old_name: str, names: dict[str, str], world_pose: Transform
 ) -> list[Replacement]:
-    """Return the edits in a member of a group that is moved out of the group.
+    """Return the edits that move a member out of its group.
 
-    `old` is the name of the member, `names` maps the members' old names to new ones, and `there` is the pose of the
-    member in the world.
+    `old_name` is the name of the member, `names` maps the members' old names to new ones, and `world_pose` is the pose
+    of the member in the world.
 
     Raises:
         EditError: the member's pose is relative to another frame of the group.
     """
     assert entity.model is not None, "groups are models"
-    model = next(model for model in entity.model.models if model.name == old)
+    model = next(model for model in entity.model.models if model.name == old_name)
     edits: list[Replacement] = []
-    if names[old] != old:
+    if names[old_name] != old_name:
         edits += (
-            writing.set_child(element, "name", names[old], after=("uri",))
+            writing.set_child(element, "name", names[old_name], after=("uri",))
             if element.tag == "include"
-            else writing.set_attribute(element, "name", names[old])
+            else writing.set_attribute(element, "name", names[old_name])
         )
     if entity.static and not model.static:
-        after = ("uri", "name", "pose")
+        preceding_tags = ("uri", "name", "pose")
         child = element.first("static")
         edits += (
             writing.set_text(child, "true")
             if child is not None
-            else [writing.inserted_in(element, [new_element("static", "true")], after=after, first=True)]
+            else [writing.inserted_in(element, [new_element("static", "true")], after=preceding_tags, first=True)]
         )
     pose = element.first("pose")
-    base = model.pose.relative_to
-    head, colon, tail = base.partition(SEPARATOR)
+    reference_frame = model.pose.relative_to
+    head, colon, tail = reference_frame.partition(SEPARATOR)
     if pose is not None and head in names:
         attribute = "relative_to" if "relative_to" in pose.attributes else "frame"
         return [*edits, *writing.set_attribute(pose, attribute, f"{names[head]}{colon}{tail}")]
-    if base not in ("", MODEL):
-        raise EditError(phrase("'{name}' is relative to '{frame}', so it cannot leave the group", name=old, frame=base))
+    if reference_frame not in ("", MODEL):
+        raise EditError(
+            phrase(
+                ("'{name}' cannot leave the group: its pose is relative to '{frame}'"),
+                name=old_name,
+                frame=reference_frame,
+            )
+        )
     if model.placement_frame:
-        there = compose(there, world.frames.inside(entity.name).inside(old).pose(model.placement_frame))
-    local = writing.pose_from(there)
-    part = Entity(old, "model", element, Include("") if element.tag == "include" else model, model, None, there, None)
-    edits += place(part, local)
+        world_pose = compose(world_pose, world.frames.inside(entity.name).inside(old_name).pose(model.placement_frame))
+    member_pose = writing.pose_from(world_pose)
+    member = Entity(
+        old_name, "model", element, Include("") if element.tag == "include" else model, model, None, world_pose, None
+    )
+    edits += place(member, member_pose)
     if pose is not None:
         edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
     return edits
@@ -236,7 +254,7 @@ def _release_edits(
 
 def _indent(text: str, step: str) -> str:
     """Return a text with all lines except the first indented by `step`; CDATA is not changed."""
-    return _outside_cdata(text, lambda part: _LINE.sub(step, part))
+    return _outside_cdata(text, lambda part: _LINE_START.sub(step, part))
 
 
 def _unindent(text: str, step: str) -> str:
@@ -245,9 +263,9 @@ def _unindent(text: str, step: str) -> str:
     return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
 
 
-def _outside_cdata(text: str, do: Callable[[str], str]) -> str:
-    kept, parts, at = [found.span() for found in _CDATA.finditer(text)], [], 0
-    for start, end in kept:
-        parts += [do(text[at:start]), text[start:end]]
-        at = end
-    return "".join([*parts, do(text[at:])])
+def _outside_cdata(text: str, edit: Callable[[str], str]) -> str:
+    cdata_spans, chunks, position = [found.span() for found in _CDATA.finditer(text)], [], 0
+    for start, end in cdata_spans:
+        chunks += [edit(text[position:start]), text[start:end]]
+        position = end
+    return "".join([*chunks, edit(text[position:])])

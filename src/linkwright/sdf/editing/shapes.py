@@ -28,9 +28,9 @@ from linkwright.xmltree import Element, Text
 ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
 
 COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
-"""The number of sizes of a shape: x y z; radius and length; radius."""
+"""The number of dimensions of each kind of shape: x, y, z; radius and length; or radius."""
 DIGITS = 9
-"""Numbers are written to the nanometre."""
+"""Decimals of a written length in metres, or angle in radians."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +38,9 @@ class SimpleShape:
     """The kind, size and colour of a model of one simple shape.
 
     Attributes:
-        kind: the kind of shape.
+        kind: which shape it is; a wall is a box, and a ramp is a wedge.
         size: in metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
-        colour: red, green, blue, alpha from 0 to 1; None if not given.
+        colour: red, green, blue, alpha from 0 to 1; None if the model does not specify a colour.
     """
 
     kind: ShapeKind
@@ -59,14 +59,14 @@ def simple_shape(model: Model) -> SimpleShape | None:
     parts: list[Visual | Collision] = [*link.visuals, *link.collisions]
     if link.pose != AT_ORIGIN or not parts or any(part.geometry != parts[0].geometry for part in parts):
         return None
-    found = _sized(parts[0].geometry, link.name)
-    if found is None or any(not _is_at(part.pose, found) for part in parts):
+    shape = _shape_dimensions(parts[0].geometry, link.name)
+    if shape is None or any(not _is_at(part.pose, shape) for part in parts):
         return None
-    kind, size = found
-    return SimpleShape(kind, size, _colour(link.visuals[0].material) if link.visuals else None)
+    kind, size = shape
+    return SimpleShape(kind, size, _display_colour(link.visuals[0].material) if link.visuals else None)
 
 
-def _sized(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | None:
+def _shape_dimensions(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | None:
     if isinstance(geometry, Box):
         return "wall" if link == "wall" else "box", geometry.size
     if isinstance(geometry, Cylinder):
@@ -76,23 +76,25 @@ def _sized(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | 
     if isinstance(geometry, tuple) and len(geometry) == 1 and link == "ramp":
         (x, y), height = np.ptp(np.array(geometry[0].points or [(0.0, 0.0)]), axis=0).tolist(), geometry[0].height
         size = round(x, DIGITS), height, round(y, DIGITS)
-        if _close(geometry[0].points, wedge(size).points):
+        if _is_close(geometry[0].points, wedge(size).points):
             return "ramp", size
     return None
 
 
 def _is_at(pose: RawPose, shape: tuple[ShapeKind, tuple[float, ...]]) -> bool:
-    wanted = ramp_pose(shape[1]) if shape[0] == "ramp" else AT_ORIGIN.pose
-    return not pose.relative_to and _close((pose.pose.xyz, pose.pose.rpy), (wanted.xyz, wanted.rpy))
+    expected_pose = ramp_pose(shape[1]) if shape[0] == "ramp" else AT_ORIGIN.pose
+    return not pose.relative_to and _is_close((pose.pose.xyz, pose.pose.rpy), (expected_pose.xyz, expected_pose.rpy))
 
 
-def _close(some: tuple[tuple[float, ...], ...], others: tuple[tuple[float, ...], ...]) -> bool:
-    return len(some) == len(others) and all(
-        abs(a - b) <= 1e-6 for one, other in zip(some, others, strict=True) for a, b in zip(one, other, strict=True)
+def _is_close(points: tuple[tuple[float, ...], ...], other_points: tuple[tuple[float, ...], ...]) -> bool:
+    return len(points) == len(other_points) and all(
+        abs(a - b) <= 1e-6
+        for point, other_point in zip(points, other_points, strict=True)
+        for a, b in zip(point, other_point, strict=True)
     )
 
 
-def _colour(material: Material | None) -> Color | None:
+def _display_colour(material: Material | None) -> Color | None:
     if material is None:
         return None
     look = gazebo_look(material.script.name) if material.script else None
@@ -102,21 +104,24 @@ def _colour(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Return whether numbers, in m, are a valid size of a kind of shape."""
+    """Return whether dimensions in metres are valid for a kind of shape."""
     return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 
 def wedge(size: tuple[float, ...]) -> Polyline:
-    """Return the triangular outline of a ramp as a polyline, which is extruded to the ramp's width.
+    """Return the ramp's triangular profile, extruded to the ramp's width.
 
-    The x and y of the polyline are the x and z of the ramp.
+    The x and y axes of the polyline are the x and z axes of the ramp.
     """
     x, y, z = size
     return Polyline(((-x / 2, -z / 2), (x / 2, -z / 2), (x / 2, z / 2)), y)
 
 
 def ramp_pose(size: tuple[float, ...]) -> Pose:
-    """Return the pose in its link of a ramp's polyline, which is turned on its side."""
+    """Return the pose of a ramp's polyline in its link.
+
+    A rotation of 90 degrees about x turns the extrusion from z to the ramp's width.
+    """
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
@@ -137,10 +142,10 @@ def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
 
 
 def tensor(properties: MassProperties) -> dict[str, str]:
-    """Return the texts of the child elements of ``<inertia>``, by tag."""
+    """Return the text of each child element of ``<inertia>``, by tag."""
     inertia = properties.inertia
-    places = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-    return {tag: number(float(inertia[at])) for tag, at in places.items()}
+    indices = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    return {tag: number(float(inertia[index])) for tag, index in indices.items()}
 
 
 def number(value: float) -> str:
@@ -154,7 +159,7 @@ def length(value: float) -> str:
 
 
 def lengths(values: tuple[float, ...]) -> str:
-    """Format several lengths or angles, separated by spaces."""
+    """Format lengths or angles, separated by spaces."""
     return " ".join(map(length, values))
 
 
@@ -168,13 +173,13 @@ def new_element(tag: str, *children: Element | str, **attributes: str) -> Elemen
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
     """Return the ``<inertial>`` element of a solid shape with a mass in kg."""
     properties = solid(kind, size).with_mass(mass)
-    parts = [new_element("mass", number(mass))]
+    children = [new_element("mass", number(mass))]
     if properties.center.any():
-        parts.append(new_element("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
-    parts.append(
+        children.append(new_element("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
+    children.append(
         new_element("inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0"))
     )
-    return new_element("inertial", *parts)
+    return new_element("inertial", *children)
 
 
 def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:

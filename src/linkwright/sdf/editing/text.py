@@ -1,4 +1,4 @@
-"""The text of a world, with the positions in the text and the poses of its models and lights."""
+"""The text of a world, with its models and lights, their source elements and their poses."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import Replacement, apply
 
-_NUMBERED = re.compile(r"(.+?)_\d+").fullmatch
+_MATCH_NUMBERED_NAME = re.compile(r"(.+?)_\d+").fullmatch
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +39,13 @@ class Entity:
 
     Attributes:
         name: the name in the world.
-        kind: whether the entity is a model or a light.
+        kind: ``model`` or ``light``.
         element: the element that declares the entity.
-        written: the parsed element.
+        written: the entity as declared in the file, before includes and saved states are applied.
         model: the model, with its includes resolved; None for a light, and for an include that cannot be resolved.
         light: the light; None for a model.
         place: the pose of the entity's frame in the world.
-        shape: the shape, for a model in this file that is one simple shape; None otherwise.
+        shape: the only shape of the model, which is simple; None for a light, an include or any other model.
     """
 
     name: str
@@ -78,11 +78,11 @@ class Entity:
 
 
 class WorldText:
-    """The text of a world with its parsed content; the first world of a file with several.
+    """The text of an SDF file, with the parsed content of its first world.
 
     Args:
-        text: the text of the file, in SDF.
-        path: the file of the text; its folder is the base of relative addresses.
+        text: the content of the SDF file.
+        path: the path of the file; relative addresses start from its folder.
         finder: finds the included models.
         reserved: names that new entities cannot have, because the running world uses them.
 
@@ -102,7 +102,8 @@ class WorldText:
         if is_old(document.root):
             raise EditError(
                 phrase(
-                    "SDF before 1.3 cannot be edited; convert '{path}' with 'linkwright convert' first", path=str(path)
+                    "SDF older than 1.3 cannot be edited; convert '{path}' with 'linkwright convert' first",
+                    path=str(path),
                 )
             )
         reading = read(document)
@@ -111,8 +112,8 @@ class WorldText:
         self._written = reading.sdf.worlds[0]
         self.element: Element = reading.sdf.worlds[0].element
         self._included = resolve_includes(replace(reading.sdf, worlds=(self._written,)), path, finder)
-        resolved = self._included.sdf.worlds[0]
-        self.world: World = with_saved_state(resolved)
+        resolved_world = self._included.sdf.worlds[0]
+        self.world: World = with_saved_state(resolved_world)
         self.frames = Frames(self.world)
         self._models = {model.name: model for model in reversed(self.world.models)}
         self._lights = {light.name: light for light in reversed(self.world.lights)}
@@ -122,9 +123,9 @@ class WorldText:
     def taken(self) -> frozenset[str]:
         """The names that a new entity cannot have."""
         world, state = self.world, self.world.states[-1] if self.world.states else None
-        gone = state.deletions.names if state is not None else ()
-        beside: tuple[Actor | Frame | Joint, ...] = (*world.actors, *world.frames, *world.joints)
-        return self.reserved.union({WORLD, *self.entities, *(item.name for item in beside), *gone})
+        deleted_names = state.deletions.names if state is not None else ()
+        other_entities: tuple[Actor | Frame | Joint, ...] = (*world.actors, *world.frames, *world.joints)
+        return self.reserved.union({WORLD, *self.entities, *(item.name for item in other_entities), *deleted_names})
 
     @property
     def state(self) -> Element | None:
@@ -140,18 +141,18 @@ class WorldText:
         try:
             return self.entities[name]
         except KeyError:
-            raise EditError(phrase("there is no '{name}' in the world's file", name=name)) from None
+            raise EditError(phrase("there is no model or light '{name}' in the world's file", name=name)) from None
 
     def edited(self, edits: list[Replacement]) -> WorldText:
         """Return the world after applying edits to its text.
 
         Raises:
-            EditError: the result is not a world, which is a mistake in the caller's edits.
+            EditError: the result is not a world, because the caller's edits are wrong.
         """
         return self.with_text(apply(self.text, edits))
 
     def with_text(self, text: str) -> WorldText:
-        """Return the same world with another text.
+        """Return the world that another text describes, with the same path and settings.
 
         Raises:
             EditError: the text is not a world.
@@ -161,21 +162,23 @@ class WorldText:
         try:
             return WorldText(text, self.path, self.finder, self.reserved)
         except LinkwrightError as error:
-            found = error.diagnostics[0]
-            raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
+            diagnostic = error.diagnostics[0]
+            raise EditError(
+                phrase(("the result would not be valid SDF: {reason}"), reason=diagnostic.message)
+            ) from None
 
-    def free_name(self, wanted: str, taken: AbstractSet[str] | None = None) -> str:
-        """Return a free name: the preferred name, or with another number appended if it is in use.
+    def free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
+        """Return the preferred name if it is free, or else the name with the first free number appended.
 
-        `taken` overrides the names that are in use.
+        `used_names` are the names in use; None for those of this world.
         """
-        taken = self.taken if taken is None else taken
-        if wanted not in taken:
-            return wanted
-        numbered = _NUMBERED(wanted)
-        stem = numbered[1] if numbered else wanted
+        used_names = self.taken if used_names is None else used_names
+        if preferred_name not in used_names:
+            return preferred_name
+        numbered_match = _MATCH_NUMBERED_NAME(preferred_name)
+        stem = numbered_match[1] if numbered_match else preferred_name
         number = 2
-        while f"{stem}_{number}" in taken:
+        while f"{stem}_{number}" in used_names:
             number += 1
         return f"{stem}_{number}"
 
@@ -188,7 +191,7 @@ class WorldText:
         if not name.strip():
             raise EditError(phrase("a name cannot be empty"))
         if SEPARATOR in name or name == WORLD or (name.startswith("__") and name.endswith("__")):
-            raise EditError(phrase("'{name}' cannot be a name: SDF reserves it", name=name))
+            raise EditError(phrase("'{name}' cannot be used as a name: SDF reserves it", name=name))
         if name in self.taken:
             raise EditError(phrase("an entity named '{name}' already exists", name=name))
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import phrase
-from linkwright.geometry.single import Pose, Quaternion, Transform, quaternion_of
+from linkwright.geometry.single import Pose, Quaternion, Transform, pose_quaternion
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.shapes import length, lengths, new_element
 from linkwright.xmltree import Element
@@ -16,42 +16,42 @@ from linkwright.xmltree.patches import (
     block,
     element_range,
     escaped,
+    find_start_tag,
     indentation,
-    inserted,
-    newline_of,
-    start_tag_of,
+    insertion,
+    line_ending,
     whole_lines,
 )
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-_NO_DIFFERENCE = 0.5e-9
-_GIMBAL_LOCK = 1e-9
+_TOLERANCE = 0.5e-9
+_GIMBAL_LOCK_TOLERANCE = 1e-9
 _TRUE = frozenset({"true", "1"})
 
 
 def text_of(element: Element) -> str:
-    """Return the whole text of the file that contains an element."""
+    """Return the text of the file that contains an element."""
     assert element.source is not None, "it was read from a text"
     return element.source.text
 
 
 def range_of(element: Element) -> tuple[int, int]:
-    """Return the start and end of an element in its text: its ``<``, and the position after its ``>``.
+    """Return the offsets of an element in its text: of its ``<``, and after its last ``>``.
 
     Raises:
         EditError: the element comes from an XML entity.
     """
-    found = element_range(element)
-    if found is None:
-        raise EditError(phrase("<{tag}> comes from an entity, and cannot be edited", tag=element.tag))
-    return found
+    element_span = element_range(element)
+    if element_span is None:
+        raise EditError(phrase("<{tag}> cannot be edited because it comes from an XML entity", tag=element.tag))
+    return element_span
 
 
 def content_of(element: Element) -> tuple[int, int]:
-    """Return the start and end of an element's content; for ``<a/>`` an empty range after the tag."""
+    """Return the start and end offsets of an element's content; for ``<a/>`` an empty range after the tag."""
     start, end = range_of(element)
-    tag = start_tag_of(element)
+    tag = find_start_tag(element)
     assert tag is not None, "its range is known"
     return (tag.end, tag.end) if tag.is_whole else (tag.end, text_of(element).rindex("</", start, end))
 
@@ -59,10 +59,10 @@ def content_of(element: Element) -> tuple[int, int]:
 def set_text(element: Element, value: str) -> list[Replacement]:
     """Return the edits that set the text of an element; surrounding whitespace is kept."""
     text, (start, end) = text_of(element), content_of(element)
-    tag = start_tag_of(element)
+    tag = find_start_tag(element)
     assert tag is not None, "its content is known"
     if tag.is_whole:
-        return [Replacement(tag.room, tag.end, f">{escaped(value)}</{element.tag}>")]
+        return [Replacement(tag.insertion_offset, tag.end, f">{escaped(value)}</{element.tag}>")]
     old = text[start:end]
     if "<" not in old and old.strip():
         start, end = start + len(old) - len(old.lstrip()), start + len(old.rstrip())
@@ -72,20 +72,20 @@ def set_text(element: Element, value: str) -> list[Replacement]:
 def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]:
     """Return the edits that set the numbers of an element; unchanged numbers are kept as written."""
     text, (start, end) = text_of(element), content_of(element)
-    plain = _COMMENT.sub(lambda found: " " * len(found[0]), text[start:end])
-    words = list(re.finditer(r"\S+", plain))
-    if len(words) != len(numbers) or "<" in plain or "&" in plain:
+    uncommented_text = _COMMENT.sub(lambda comment: " " * len(comment[0]), text[start:end])
+    number_matches = list(re.finditer(r"\S+", uncommented_text))
+    if len(number_matches) != len(numbers) or "<" in uncommented_text or "&" in uncommented_text:
         return set_text(element, " ".join(map(length, numbers)))
     return [
-        Replacement(start + word.start(), start + word.end(), length(number))
-        for word, number in zip(words, numbers, strict=True)
-        if not _has_value(word[0], number)
+        Replacement(start + number_match.start(), start + number_match.end(), length(number))
+        for number_match, number in zip(number_matches, numbers, strict=True)
+        if not _has_value(number_match[0], number)
     ]
 
 
-def _has_value(word: str, number: float) -> bool:
+def _has_value(text: str, number: float) -> bool:
     try:
-        return bool(abs(float(word) - number) <= _NO_DIFFERENCE)
+        return bool(abs(float(text) - number) <= _TOLERANCE)
     except ValueError:
         return False
 
@@ -98,20 +98,22 @@ def set_child(
     A missing child is inserted after the last child whose tag is in `after`, or at the end.
 
     Args:
-        owner: the element.
+        owner: the parent element.
         tag: the tag of the child.
-        value: a text or numbers.
+        value: the new text or numbers of the child.
         after: the tags of the children after which a missing child is inserted.
     """
     child = owner.first(tag)
     if child is not None:
         return set_text(child, value) if isinstance(value, str) else set_numbers(child, value)
-    new = new_element(tag, value if isinstance(value, str) else lengths(tuple(value)))
-    return [inserted_in(owner, [new], after=after)]
+    child_element = new_element(tag, value if isinstance(value, str) else lengths(tuple(value)))
+    return [inserted_in(owner, [child_element], after=after)]
 
 
-def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = (), first: bool = False) -> Replacement:
-    """Return the edit that inserts elements into another one.
+def inserted_in(
+    owner: Element, new_elements: list[Element], *, after: tuple[str, ...] = (), first: bool = False
+) -> Replacement:
+    """Return the edit that inserts elements into a parent element.
 
     The new elements are inserted after the last child with a tag in `after`. If there is no such child, they are
     inserted at the end, or at the beginning with `first`.
@@ -119,29 +121,29 @@ def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = 
     Raises:
         EditError: the owner comes from an XML entity.
     """
-    before = [child for child in owner.elements() if child.tag in after]
-    edit = inserted(owner, new, after=before[-1] if before else None, first=first)
+    preceding_children = [child for child in owner.elements() if child.tag in after]
+    edit = insertion(owner, new_elements, after=preceding_children[-1] if preceding_children else None, first=first)
     if edit is None:
-        raise EditError(phrase("<{tag}> comes from an entity, and cannot be edited", tag=owner.tag))
+        raise EditError(phrase("<{tag}> cannot be edited because it comes from an XML entity", tag=owner.tag))
     return edit
 
 
 def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
-    """Return the edits that set an attribute; its kind of quotes is kept.
+    """Return the edits that set an attribute; existing quote characters are kept.
 
-    A missing attribute is inserted after the others.
+    A missing attribute is appended to the start tag.
     """
     text = text_of(element)
-    found = attribute_value_range(text, element.offset, name)
-    if found is None:
+    value_range = attribute_value_range(text, element.offset, name)
+    if value_range is None:
         range_of(element)
-        tag = start_tag_of(element)
+        tag = find_start_tag(element)
         assert tag is not None, "its range is known"
-        return [Replacement(tag.room, tag.room, f' {name}="{escaped(value)}"')]
-    written = escaped(value)
-    if text[found[0] - 1] == "'":
-        written = written.replace("&quot;", '"').replace("'", "&apos;")
-    return [Replacement(*found, written)]
+        return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escaped(value)}"')]
+    escaped_value = escaped(value)
+    if text[value_range[0] - 1] == "'":
+        escaped_value = escaped_value.replace("&quot;", '"').replace("'", "&apos;")
+    return [Replacement(*value_range, escaped_value)]
 
 
 def set_reference(element: Element, attribute: str | None, name: str) -> list[Replacement]:
@@ -155,32 +157,34 @@ def set_reference(element: Element, attribute: str | None, name: str) -> list[Re
 def remove_attribute(element: Element, name: str) -> list[Replacement]:
     """Return the edits that remove an attribute and the whitespace before it."""
     text = text_of(element)
-    named, found = (each(text, element.offset, name) for each in (attribute_name_range, attribute_value_range))
-    if named is None or found is None:
+    name_range, value_range = (
+        find_range(text, element.offset, name) for find_range in (attribute_name_range, attribute_value_range)
+    )
+    if name_range is None or value_range is None:
         return []
-    blanks = len(text[: named[0]]) - len(text[: named[0]].rstrip())
-    return [Replacement(named[0] - blanks, found[1] + 1, "")]
+    blank_count = len(text[: name_range[0]]) - len(text[: name_range[0]].rstrip())
+    return [Replacement(name_range[0] - blank_count, value_range[1] + 1, "")]
 
 
 def removed(element: Element) -> Replacement:
-    """Return the edit that removes an element, with its lines if they contain nothing else."""
+    """Return the edit that removes an element; lines that would become empty are also removed."""
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
-def replace_element(element: Element, new: list[Element]) -> Replacement:
-    """Return the edit that replaces an element by other elements, or removes it if there are none."""
-    if not new:
+def replace_element(element: Element, new_elements: list[Element]) -> Replacement:
+    """Return the edit that replaces an element with other elements, or removes it if `new_elements` is empty."""
+    if not new_elements:
         return removed(element)
     text, (start, end) = text_of(element), range_of(element)
     indent = indentation(text, start)
-    between = "" if indent is None else f"{newline_of(text)}{indent}"
-    return Replacement(start, end, between.join(block(element) for element in new))
+    separator = "" if indent is None else f"{line_ending(text)}{indent}"
+    return Replacement(start, end, separator.join(block(element) for element in new_elements))
 
 
 def set_pose(element: Element, pose: Pose) -> list[Replacement]:
     """Return the edits that set a ``<pose>``, in the units and rotation format that it declares."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
-        numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, quaternion_of(pose)))
+        numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, pose_quaternion(pose)))
     elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
         numbers = (*pose.xyz, *map(degrees, pose.rpy))
     else:
@@ -191,24 +195,24 @@ def set_pose(element: Element, pose: Pose) -> list[Replacement]:
 def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
     """Return the quaternion or its negation, whichever is nearer to the quaternion in an element."""
     try:
-        written = [float(word) for word in element.text().split()[3:]]
+        written_quaternion = [float(word) for word in element.text().split()[3:]]
     except ValueError:
         return quaternion
-    if len(written) == 4 and sum(a * b for a, b in zip(written, quaternion, strict=True)) < 0:
+    if len(written_quaternion) == 4 and sum(a * b for a, b in zip(written_quaternion, quaternion, strict=True)) < 0:
         x, y, z, w = quaternion
         return -x, -y, -z, -w
     return quaternion
 
 
 def pose_from(transform: Transform) -> Pose:
-    """Return a transform as a pose with angles, which are exact even at a pitch of 90 degrees."""
+    """Return a transform as a pose with roll, pitch and yaw, exact even at a pitch of 90 degrees."""
     x, y, z, w = transform[3:]
-    along, across = 1 - 2 * (y * y + z * z), 2 * (x * y + z * w)
-    pitch = atan2(-2 * (x * z - y * w), hypot(along, across))
-    if hypot(along, across) < _GIMBAL_LOCK:
+    cos_yaw_term, sin_yaw_term = 1 - 2 * (y * y + z * z), 2 * (x * y + z * w)
+    pitch = atan2(-2 * (x * z - y * w), hypot(cos_yaw_term, sin_yaw_term))
+    if hypot(cos_yaw_term, sin_yaw_term) < _GIMBAL_LOCK_TOLERANCE:
         rpy = 0.0, pitch, atan2(-2 * (x * y - z * w), 1 - 2 * (x * x + z * z))
     else:
-        rpy = atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y)), pitch, atan2(across, along)
+        rpy = atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y)), pitch, atan2(sin_yaw_term, cos_yaw_term)
     return Pose(transform[:3], rpy)
 
 
@@ -218,9 +222,9 @@ def pose_element(pose: Pose) -> Element:
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:
-    """Yield the elements of a world that refer to other elements by name.
+    """Yield each element of a world that refers to another by name, with the attribute that contains the name.
 
-    The attribute with the name follows each element; None if the name is the text of the element.
+    The attribute is None if the name is the text of the element.
     """
     for child in world.elements():
         for element in (child, *child.elements("sensor")):

@@ -1,8 +1,8 @@
 """parameter_bridge and static_bridge of ros_gz_bridge, and image_bridge of ros_gz_image.
 
-Topics of gz are topics of the graph here, with the names and types that they have behind a bridge. A bridge therefore
-forwards messages only where the two sides have different names or types. It only announces the other topics, because
-programs look for them before the simulation has started or the robot is spawned.
+In Linkwright, gz topics are topics of the graph, with the names and types that a bridge would give them. A bridge
+therefore forwards messages only if the two sides have different names or types. It only announces the other topics,
+because programs look for them before the simulation has started or the robot is spawned.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 from linkwright.perception.nodes.compressed import compressed
-from linkwright.simulation.nodes.conversions import TYPES_OF_GZ, conversion
+from linkwright.simulation.nodes.conversions import DEFAULT_ROS_TYPES, conversion
 from linkwright.simulation.plugins.bridged import hidden_gz_topic
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
 _IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _COMPRESSED = "sensor_msgs/msg/CompressedImage"
-_Side = tuple[Node, str, str]
+_Endpoint = tuple[Node, str, str]
 """A node, a topic and its type."""
-_OVERRIDABLE = QoSOverridingOptions(
+_OVERRIDABLE_QOS = QoSOverridingOptions(
     (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
 )
-_QUEUE = 10
+_QUEUE_DEPTH = 10
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class BridgedTopic:
         ros_type: the type in ROS, such as ``sensor_msgs/msg/Imu``.
         gz_type: the type in gz, such as ``gz.msgs.IMU``.
         direction: ``GZ_TO_ROS``, ``ROS_TO_GZ`` or ``BIDIRECTIONAL``.
-        publisher_queue, subscriber_queue: the depths of the queues.
+        publisher_queue, subscriber_queue: the queue depths of the publisher and the subscription, in messages.
         lazy: whether to subscribe only while the other side has a subscriber; None for the node's setting.
     """
 
@@ -60,8 +60,8 @@ class BridgedTopic:
     ros_type: str
     gz_type: str
     direction: str = "BIDIRECTIONAL"
-    publisher_queue: int = _QUEUE
-    subscriber_queue: int = _QUEUE
+    publisher_queue: int = _QUEUE_DEPTH
+    subscriber_queue: int = _QUEUE_DEPTH
     lazy: bool | None = None
 
 
@@ -69,13 +69,13 @@ class _BridgeDirection:
     """One direction of a bridge, which forwards messages from a topic of one node to a topic of another.
 
     Args:
-        listen: creates the subscription.
-        lazy: whether to subscribe only while the output has a subscriber.
+        create_subscription: creates and returns the subscription to the input topic.
+        lazy: whether to subscribe only while the output topic has a subscriber.
     """
 
-    def __init__(self, listen: Callable[[], Subscription[Any]], *, lazy: bool) -> None:
-        self._listen = listen
-        self._subscription = None if lazy else listen()
+    def __init__(self, create_subscription: Callable[[], Subscription[Any]], *, lazy: bool) -> None:
+        self._listen = create_subscription
+        self._subscription = None if lazy else create_subscription()
 
     def matched(self, info: QoSMatchedInfo) -> None:
         """Subscribe when the output has a subscriber, and unsubscribe when it has none."""
@@ -88,10 +88,10 @@ class _BridgeDirection:
 
 class _Bridge(SingleNode):
     _lazy = False
-    _expands = False
+    _expands_gz_names = False
 
     def _connect(self, graph: Graph, topics: Sequence[BridgedTopic]) -> None:
-        # Remappings do not apply to names in gz, so the gz side has its own, hidden node.
+        # Remappings do not apply to gz names, so the gz side has its own, hidden node.
         self._gz_node = graph.create_node(f"_{self._node.get_name()}_gz", namespace=self._node.get_namespace())
         self._publishers: list[Publisher[Any]] = []
         for topic in topics:
@@ -108,12 +108,12 @@ class _Bridge(SingleNode):
         except LinkwrightError:
             self._node.get_logger().warning(f"{topic.ros_topic} is not bridged: there is no type {topic.ros_type}")
             return
-        gz_type = TYPES_OF_GZ.get(topic.gz_type, topic.ros_type)
+        gz_type = DEFAULT_ROS_TYPES.get(topic.gz_type, topic.ros_type)
         gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
         same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
         if topic.ros_type == _CLOCK:  # The simulation publishes /clock itself.
             return
-        to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
+        to_ros, to_gz = (topic.direction in (direction, "BIDIRECTIONAL") for direction in ("GZ_TO_ROS", "ROS_TO_GZ"))
         if same_name and topic.ros_type == gz_type:
             self._announce(topic, to_ros=to_ros, to_gz=to_gz)
             return
@@ -121,9 +121,9 @@ class _Bridge(SingleNode):
             gz_topic = hidden_gz_topic(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
         if to_ros and not (same_name and to_gz):
-            self._hand_on(topic, gz, ros)
+            self._forward(topic, gz, ros)
         if to_gz:
-            self._hand_on(topic, ros, gz)
+            self._forward(topic, ros, gz)
 
     def _announce(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
         """Create the endpoints of a topic before the simulation does, without forwarding messages."""
@@ -138,11 +138,11 @@ class _Bridge(SingleNode):
 
         An absolute name is returned unchanged.
         """
-        return join(self._node.get_namespace(), name) if self._expands and not name.startswith("/") else name
+        return join(self._node.get_namespace(), name) if self._expands_gz_names and not name.startswith("/") else name
 
-    def _hand_on(self, topic: BridgedTopic, source: _Side, target: _Side) -> None:
+    def _forward(self, topic: BridgedTopic, source: _Endpoint, target: _Endpoint) -> None:
         """Forward the messages of a topic in one direction."""
-        (listening, source_topic, source_type), (sending, target_topic, target_type) = source, target
+        (source_node, source_topic, source_type), (target_node, target_topic, target_type) = source, target
         convert = conversion(source_type, target_type)
         if convert is None:
             text = f"{topic.ros_topic} is not bridged: {source_type} does not become {target_type}"
@@ -150,34 +150,36 @@ class _Bridge(SingleNode):
             return
         lazy = self._lazy if topic.lazy is None else topic.lazy
         publishers: list[Publisher[Any]] = []
-        commander = drivers = None
+        commander = driver_watch = None
         if target_type in VELOCITIES:
             commander = Commander(lambda lost: send_stop(self._node, publishers[0], lost))
-            drivers = DriverWatch.of(self._node)
+            driver_watch = DriverWatch.of(self._node)
 
         def forward(message: Any, info: MessageInfo) -> None:
             # A bidirectional bridge also receives the messages that it publishes itself.
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
-                if commander is not None and drivers is not None:
+                if commander is not None and driver_watch is not None:
                     commander.note_publisher(info)
-                    drivers.note_command(message, info)
+                    driver_watch.note_command(message, info)
                 publishers[0].publish(convert(message))
 
         def listen() -> Subscription[Any]:
             profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
-            subscription: Subscription[Any] = listening.create_subscription(source_type, source_topic, forward, profile)
+            subscription: Subscription[Any] = source_node.create_subscription(
+                source_type, source_topic, forward, profile
+            )
             if commander is not None:
                 commander.watch(subscription)
             return subscription
 
-        way = _BridgeDirection(listen, lazy=lazy)
-        events = PublisherEventCallbacks(matched=way.matched) if lazy else None
-        publisher: Publisher[Any] = sending.create_publisher(
+        direction = _BridgeDirection(listen, lazy=lazy)
+        events = PublisherEventCallbacks(matched=direction.matched) if lazy else None
+        publisher: Publisher[Any] = target_node.create_publisher(
             target_type,
             target_topic,
             topic.publisher_queue,
             event_callbacks=events,
-            qos_overriding_options=_OVERRIDABLE if sending is self._node else None,
+            qos_overriding_options=_OVERRIDABLE_QOS if target_node is self._node else None,
         )
         publishers.append(publisher)
         self._publishers.append(publisher)
@@ -195,21 +197,21 @@ class ParameterBridge(_Bridge):
     DEFAULT_NAME = "ros_gz_bridge"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             path = str(self._node.declare_parameter("config_file", "").value)
             self._lazy = bool(self._node.declare_parameter("lazy", False).value)
-            self._expands = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
-            topics = [parse_bridge_argument(word) for word in words if not self._is_service(word)]
+            self._expands_gz_names = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
+            topics = [parse_bridge_argument(word) for word in arguments if not self._is_service(word)]
             topics += read_bridge_file(path) if path else []
             self._connect(graph, topics)
 
-    def _is_service(self, word: str) -> bool:
-        """Return whether an argument is a service, ``SERVICE@ROS_TYPE``.
+    def _is_service(self, argument: str) -> bool:
+        """Return whether an argument describes a service, ``SERVICE@ROS_TYPE``; log a warning if it does.
 
-        Services are not bridged, so a warning is logged for each of them.
+        Services are not bridged.
         """
-        name, _, types = word.partition("@")
+        name, _, types = argument.partition("@")
         is_service = "/srv/" in types.partition("@")[0]
         if is_service:
             self._node.get_logger().warning(f"{name} is not bridged: services of gz are not supported")
@@ -235,9 +237,9 @@ class ImageBridge(_Bridge):
     DEFAULT_NAME = "ros_gz_image"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
-        self._connect(graph, [BridgedTopic(word, word, *_IMAGE, "GZ_TO_ROS") for word in words])
-        for word in words:
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
+        self._connect(graph, [BridgedTopic(topic, topic, *_IMAGE, "GZ_TO_ROS") for topic in arguments])
+        for word in arguments:
             self._compress(word)
 
     def _compress(self, topic: str) -> None:
@@ -263,10 +265,10 @@ class ImageBridge(_Bridge):
             return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), forward, profile)
 
         events = PublisherEventCallbacks(matched=_BridgeDirection(listen, lazy=True).matched)
-        publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE, event_callbacks=events)
+        publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE_DEPTH, event_callbacks=events)
 
 
-def parse_bridge_argument(word: str) -> BridgedTopic:
+def parse_bridge_argument(argument: str) -> BridgedTopic:
     """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE``.
 
     ``[`` in place of the second ``@`` bridges only from gz to ROS, and ``]`` only from ROS to gz.
@@ -274,15 +276,19 @@ def parse_bridge_argument(word: str) -> BridgedTopic:
     Raises:
         LinkwrightError: NODE820, the argument has another form.
     """
-    name, at, types = word.partition("@")
-    mark = next((part for part in types if part in _DIRECTIONS), "")
-    ros_type, _, gz_type = types.partition(mark or "@")
-    if not (name and at and mark and ros_type and gz_type):
+    name, at, types = argument.partition("@")
+    direction_mark = next((character for character in types if character in _DIRECTIONS), "")
+    ros_type, _, gz_type = types.partition(direction_mark or "@")
+    if not (name and at and direction_mark and ros_type and gz_type):
         hint = phrase("write it as {form}", form="/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan")
         raise LinkwrightError(
-            Diagnostic("NODE820", phrase("'{word}' does not describe a topic to bridge", word=word), hint=hint)
+            Diagnostic(
+                "NODE820",
+                phrase(("'{word}' does not describe a topic to bridge; it needs a name and two types"), word=argument),
+                hint=hint,
+            )
         )
-    return BridgedTopic(name, name, _full(ros_type), _current_gz_type(gz_type), _DIRECTIONS[mark])
+    return BridgedTopic(name, name, _full_ros_type(ros_type), _current_gz_type(gz_type), _DIRECTIONS[direction_mark])
 
 
 def read_bridge_file(path: str) -> list[BridgedTopic]:
@@ -302,36 +308,36 @@ def read_bridge_file(path: str) -> list[BridgedTopic]:
         raise LinkwrightError(Diagnostic("NODE821", message)) from error
     if not isinstance(entries, list):
         raise _bridge_file_error(path, phrase("it is not a list"))
-    return [_topic_of(entry, number, path) for number, entry in enumerate(entries, start=1)]
+    return [_parse_entry(entry, position, path) for position, entry in enumerate(entries, start=1)]
 
 
-def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
+def _parse_entry(entry: Any, position: int, path: str) -> BridgedTopic:
     if not isinstance(entry, dict):
-        raise _bridge_file_error(path, phrase("entry {number} is not a mapping", number=number))
-    both = entry.get("topic_name", "")
-    ros_topic = entry.get("ros_topic_name") or both or entry.get("gz_topic_name", "")
-    gz_topic = entry.get("gz_topic_name") or both or ros_topic
+        raise _bridge_file_error(path, phrase("entry {number} is not a mapping", number=position))
+    shared_topic = entry.get("topic_name", "")
+    ros_topic = entry.get("ros_topic_name") or shared_topic or entry.get("gz_topic_name", "")
+    gz_topic = entry.get("gz_topic_name") or shared_topic or ros_topic
     ros_type, gz_type = entry.get("ros_type_name", ""), entry.get("gz_type_name", "")
     for key, value in (("ros_topic_name", ros_topic), ("ros_type_name", ros_type), ("gz_type_name", gz_type)):
         if not isinstance(value, str) or not value:
-            raise _bridge_file_error(path, phrase("entry {number} has no '{key}'", number=number, key=key))
+            raise _bridge_file_error(path, phrase("entry {number} has no '{key}'", number=position, key=key))
     direction = entry.get("direction", "BIDIRECTIONAL")
     if direction not in _DIRECTIONS.values():
-        reason = phrase("entry {number} has the unknown direction '{value}'", number=number, value=str(direction))
+        reason = phrase("entry {number} has the unknown direction '{value}'", number=position, value=str(direction))
         raise _bridge_file_error(path, reason)
-    queues = [entry.get(f"{side}_queue", _QUEUE) for side in ("publisher", "subscriber")]
+    queues = [entry.get(f"{endpoint}_queue", _QUEUE_DEPTH) for endpoint in ("publisher", "subscriber")]
     for side, value in zip(("publisher", "subscriber"), queues, strict=True):
         if not isinstance(value, int) or isinstance(value, bool) or value < 0:
             raise _bridge_file_error(
-                path, phrase("entry {number}: '{key}' is not a number", number=number, key=f"{side}_queue")
+                path, phrase("entry {number}: '{key}' is not a number", number=position, key=f"{side}_queue")
             )
     lazy = entry.get("lazy")
     if lazy is not None and not isinstance(lazy, bool):
         raise _bridge_file_error(
-            path, phrase("entry {number}: '{key}' is neither true nor false", number=number, key="lazy")
+            path, phrase("entry {number}: '{key}' is neither true nor false", number=position, key="lazy")
         )
     return BridgedTopic(
-        ros_topic, gz_topic, _full(ros_type), _current_gz_type(gz_type), direction, queues[0], queues[1], lazy
+        ros_topic, gz_topic, _full_ros_type(ros_type), _current_gz_type(gz_type), direction, queues[0], queues[1], lazy
     )
 
 
@@ -341,7 +347,7 @@ def _bridge_file_error(path: str, reason: Any) -> LinkwrightError:
     return LinkwrightError(Diagnostic("NODE820", message, hint=hint))
 
 
-def _full(ros_type: str) -> str:
+def _full_ros_type(ros_type: str) -> str:
     return ros_type if ros_type.count("/") == 2 else ros_type.replace("/", "/msg/", 1)
 
 

@@ -1,4 +1,4 @@
-"""Converts the command lines of Gazebo's programs to parameters of the substitute nodes.
+"""Convert the command lines of Gazebo's programs to parameters of the substitute nodes.
 
 Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
 arguments have an effect here. The node's parameters are ``world``, ``pause`` and ``seed``, and ``gui`` for a server
@@ -15,79 +15,79 @@ from linkwright.nodes.node_command import NodeCommand
 
 _CLASSIC_VALUES = """-s --server-plugin -g --gui-plugin -e --physics -p --play -o --profile -P --property --iters --seed
 --record_path --record_encoding --record_period --record_filter --initial_sim_time --gui-client-plugin"""
-"""Options of gazebo and gzserver that take the next word."""
+"""Options of gazebo and gzserver that take the next argument as their value."""
 _GZ_VALUES = """-z --iterations --gui-config --physics-engine --render-engine --render-engine-server --render-engine-gui
 --seed --record-path --record-topic --playback --network-role --network-secondaries --initial-sim-time --update-rate"""
-"""Options of gz sim that take the next word."""
-_GZ_LEVEL = ("-v", "--verbose")
-"""Options of gz sim that take the next word if it is a number."""
+"""Options of gz sim that take the next argument as their value."""
+_GZ_VERBOSITY = ("-v", "--verbose")
+"""Options of gz sim that take the next argument as their value if it is a number."""
 _ROS_ARGUMENTS = "--ros-args"
 
 
 def simulator_command(words: Sequence[str]) -> NodeCommand | None:
     """Parse the command line of one of Gazebo's programs; return None for any other program."""
-    program, *rest = words
+    program, *arguments = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
-        return classic_server(rest, window=name == "gazebo")
+        return classic_server(arguments, window=name == "gazebo")
     if name == "gzclient":
         return NodeCommand("gazebo_ros", "gzclient")
-    if (name, rest[:1]) in (("gz", ["sim"]), ("ign", ["gazebo"]), ("ign", ["sim"])):
-        return gz_server(rest[1:])
+    if (name, arguments[:1]) in (("gz", ["sim"]), ("ign", ["gazebo"]), ("ign", ["sim"])):
+        return gz_server(arguments[1:])
     return None
 
 
 def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand:
     """Parse the arguments of ``gzserver``, or of ``gazebo``, which also opens a window."""
-    own, ros = _split_ros_arguments(words)
-    options, others = _read(own, _CLASSIC_VALUES.split())
+    gazebo_arguments, ros_arguments = _split_ros_arguments(words)
+    options, positional = _read(gazebo_arguments, _CLASSIC_VALUES.split())
     parameters = _seed_parameter(options) | ({"gui": True} if window else {})
-    if others and others[0]:
-        parameters["world"] = others[0]
+    if positional and positional[0]:
+        parameters["world"] = positional[0]
     if "-u" in options or "--pause" in options:
         parameters["pause"] = True
-    return NodeCommand("gazebo_ros", "gzserver", parameters, ros)
+    return NodeCommand("gazebo_ros", "gzserver", parameters, ros_arguments)
 
 
 def gz_server(words: Sequence[str]) -> NodeCommand:
     """Parse the arguments of ``gz sim``; without ``-r`` the simulation starts paused."""
-    own, ros = _split_ros_arguments(words)
-    options, others = _read(own, _GZ_VALUES.split())
+    gazebo_arguments, ros_arguments = _split_ros_arguments(words)
+    options, positional = _read(gazebo_arguments, _GZ_VALUES.split())
     if "-g" in options:
         return NodeCommand("ros_gz_sim", "gzclient")
     parameters = _seed_parameter(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
-    if any(others):
-        parameters["world"] = next(filter(None, others))
-    return NodeCommand("ros_gz_sim", "gzserver", parameters, ros)
+    if any(positional):
+        parameters["world"] = next(filter(None, positional))
+    return NodeCommand("ros_gz_sim", "gzserver", parameters, ros_arguments)
 
 
 def _split_ros_arguments(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Split a command line into the program's own arguments and the ROS arguments."""
-    at = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
-    return list(words[:at]), list(words[at:])
+    """Split a command line into Gazebo's arguments and the ROS arguments."""
+    start = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
+    return list(words[:start]), list(words[start:])
 
 
-def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+def _read(words: list[str], value_options: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     """Split arguments into options with their values and positional arguments.
 
     A flag has an empty value. Arguments that consist only of spaces are dropped, but empty ones are kept: a launch file
-    without a world passes ``gzserver`` an empty argument. This argument counts as the world, so the arguments after it
-    do not name one.
+    without a world passes an empty argument to ``gzserver``. This argument takes the place of the world, so the
+    arguments after it do not name a world.
     """
-    options, others = {}, []
-    rest = [word for word in words if word.strip() or not word]
-    while rest:
-        word = rest.pop(0)
+    options, positional = {}, []
+    remaining = [argument for argument in words if argument.strip() or not argument]
+    while remaining:
+        word = remaining.pop(0)
         name, equals, value = word.partition("=")
         if not word.startswith("-"):
-            others.append(word)
-        elif word in _GZ_LEVEL and rest and rest[0].isdigit():
-            options[name] = rest.pop(0)
-        elif equals or name not in with_value or not rest:
+            positional.append(word)
+        elif word in _GZ_VERBOSITY and remaining and remaining[0].isdigit():
+            options[name] = remaining.pop(0)
+        elif equals or name not in value_options or not remaining:
             options[name] = value
         else:
-            options[name] = rest.pop(0)
-    return options, others
+            options[name] = remaining.pop(0)
+    return options, positional
 
 
 def _seed_parameter(options: Mapping[str, str]) -> dict[str, Any]:

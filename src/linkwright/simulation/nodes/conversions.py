@@ -12,55 +12,57 @@ from linkwright.messages import get_message
 
 Conversion = Callable[[Any], Any]
 
-TYPES_OF_GZ = {
+DEFAULT_ROS_TYPES = {
     "gz.msgs.Twist": "geometry_msgs/msg/Twist",
     "gz.msgs.Wrench": "geometry_msgs/msg/WrenchStamped",
     "gz.msgs.Pose": "geometry_msgs/msg/TransformStamped",
     "gz.msgs.Pose_V": "tf2_msgs/msg/TFMessage",
 }
-"""The type that a topic of gz has in the graph, for types that bridges turn into more than one of ROS."""
+"""The ROS type of each gz type that ros_gz_bridge can convert to several ROS types."""
 
 
 def conversion(source: str, target: str) -> Conversion | None:
-    """Return the function that converts messages of one type to another, or None if there is none."""
+    """Return the function that converts messages from one type to another, or None if they are not convertible."""
     if source == target:
         return lambda message: message
-    inside = _WITH_HEADER.get(source)
-    if inside is not None and inside[0] == target:
-        return lambda message: getattr(message, inside[1])
-    outside = _WITH_HEADER.get(target)
-    if outside is not None and outside[0] == source:
-        return lambda message: get_message(target)(**{outside[1]: message})
-    return _POSES.get((source, target))
+    source_payload = _PAYLOADS.get(source)
+    if source_payload is not None and source_payload[0] == target:
+        return lambda message: getattr(message, source_payload[1])
+    target_payload = _PAYLOADS.get(target)
+    if target_payload is not None and target_payload[0] == source:
+        return lambda message: get_message(target)(**{target_payload[1]: message})
+    return _POSE_CONVERSIONS.get((source, target))
 
 
-_WITH_HEADER = {
+_PAYLOADS = {
     "geometry_msgs/msg/TwistStamped": ("geometry_msgs/msg/Twist", "twist"),
     "geometry_msgs/msg/WrenchStamped": ("geometry_msgs/msg/Wrench", "wrench"),
     "geometry_msgs/msg/TransformStamped": ("geometry_msgs/msg/Transform", "transform"),
 }
-"""Types with a header: the type of their payload, and its field."""
+"""For each type with a header: the type of its payload, and the field that contains it."""
 
 
-def _pose(transform: Any) -> Any:
-    moved = transform.transform.translation
-    point = get_message("geometry_msgs/msg/Point")(moved.x, moved.y, moved.z)
+def _transform_to_pose(transform: Any) -> Any:
+    translation = transform.transform.translation
+    point = get_message("geometry_msgs/msg/Point")(translation.x, translation.y, translation.z)
     return get_message("geometry_msgs/msg/Pose")(point, transform.transform.rotation)
 
 
-def _pose_stamped(transform: Any) -> Any:
-    return get_message("geometry_msgs/msg/PoseStamped")(transform.header, _pose(transform))
+def _transform_to_pose_stamped(transform: Any) -> Any:
+    return get_message("geometry_msgs/msg/PoseStamped")(transform.header, _transform_to_pose(transform))
 
 
-def _poses(message: Any) -> Any:
-    poses = get_message("geometry_msgs/msg/PoseArray")(poses=[_pose(transform) for transform in message.transforms])
+def _transforms_to_poses(message: Any) -> Any:
+    poses = get_message("geometry_msgs/msg/PoseArray")(
+        poses=[_transform_to_pose(transform) for transform in message.transforms]
+    )
     if message.transforms:
         poses.header = message.transforms[0].header
     return poses
 
 
-_POSES: dict[tuple[str, str], Conversion] = {
-    ("geometry_msgs/msg/TransformStamped", "geometry_msgs/msg/Pose"): _pose,
-    ("geometry_msgs/msg/TransformStamped", "geometry_msgs/msg/PoseStamped"): _pose_stamped,
-    ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"): _poses,
+_POSE_CONVERSIONS: dict[tuple[str, str], Conversion] = {
+    ("geometry_msgs/msg/TransformStamped", "geometry_msgs/msg/Pose"): _transform_to_pose,
+    ("geometry_msgs/msg/TransformStamped", "geometry_msgs/msg/PoseStamped"): _transform_to_pose_stamped,
+    ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"): _transforms_to_poses,
 }

@@ -10,9 +10,9 @@ from linkwright.graph import Graph, Parameter
 from linkwright.nodes.options import NodeOptions, create_node, starting
 from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description
 
-_TEXTS = ("world", "file", "topic", "string", "param", "name")
-_NUMBERS = ("x", "y", "z", "R", "P", "Y")
-_TRUE = ("", "true", "1", "yes", "t", "y")
+_TEXT_OPTIONS = ("world", "file", "topic", "string", "param", "name")
+_NUMBER_OPTIONS = ("x", "y", "z", "R", "P", "Y")
+_TRUE_VALUES = ("", "true", "1", "yes", "t", "y")
 
 
 class Create(EntitySpawner):
@@ -26,38 +26,41 @@ class Create(EntitySpawner):
     DEFAULT_NAME = "ros_gz_sim"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            given = self._from_parameters(options.parameters) | dict(_options(words))
-            number = {name: _number(name, given.get(name, 0.0)) for name in _NUMBERS}
-            name = str(given.get("name", ""))
-            entity = Entity(name, (number["x"], number["y"], number["z"]), (number["R"], number["P"], number["Y"]))
-            self._renames = str(given.get("allow_renaming", "false")).lower() in _TRUE
+            options_by_name = self._parameter_options(options.parameters) | dict(_options(arguments))
+            pose = {name: _parse_number(name, options_by_name.get(name, 0.0)) for name in _NUMBER_OPTIONS}
+            name = str(options_by_name.get("name", ""))
+            entity = Entity(name, (pose["x"], pose["y"], pose["z"]), (pose["R"], pose["P"], pose["Y"]))
+            self._renames = str(options_by_name.get("allow_renaming", "false")).lower() in _TRUE_VALUES
             self._prepare(self._node, entity)
-            self._begin({source: str(given[source]) for source in _TEXTS if given.get(source)}, options.environment)
+            self._begin(
+                {source: str(options_by_name[source]) for source in _TEXT_OPTIONS if options_by_name.get(source)},
+                options.environment,
+            )
 
-    def _from_parameters(self, parameters: dict[str, Any]) -> dict[str, Any]:
-        """Return the options that were given as parameters."""
-        known = [name for name in (*_TEXTS, *_NUMBERS, "allow_renaming") if name in parameters]
-        for name in known:
+    def _parameter_options(self, parameters: dict[str, Any]) -> dict[str, Any]:
+        """Return the options whose values were passed as parameters."""
+        option_names = [name for name in (*_TEXT_OPTIONS, *_NUMBER_OPTIONS, "allow_renaming") if name in parameters]
+        for name in option_names:
             self._node.declare_parameter(name, parameters[name])
-        return {name: self._node.get_parameter(name).value for name in known}
+        return {name: self._node.get_parameter(name).value for name in option_names}
 
-    def _begin(self, source: dict[str, str], environment: Mapping[str, str]) -> None:
-        if "topic" in source:
-            self._wait_for(source["topic"])
-        elif "string" in source:
-            self._spawn(source["string"])
-        elif "file" in source:
-            self._spawn(read_description(source["file"], environment))
-        elif "param" in source:
-            self._spawn(self._parameter(source["param"]))
+    def _begin(self, sources: dict[str, str], environment: Mapping[str, str]) -> None:
+        if "topic" in sources:
+            self._wait_for(sources["topic"])
+        elif "string" in sources:
+            self._spawn(sources["string"])
+        elif "file" in sources:
+            self._spawn(read_description(sources["file"], environment))
+        elif "param" in sources:
+            self._spawn(self._read_parameter(sources["param"]))
         else:
-            message = phrase("the command line of create names no model to add to the world")
+            message = phrase("the command line of create does not name a model to add to the world")
             hint = phrase("give it one of -topic, -file, -string and -param")
             raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
 
-    def _parameter(self, name: str) -> str:
+    def _read_parameter(self, name: str) -> str:
         parameter: Parameter = self._node.declare_parameter(name, "")
         return str(parameter.value)
 
@@ -70,7 +73,7 @@ class Create(EntitySpawner):
             self._entity = _with_free_name(self._entity, names)
             super(Create, self)._spawn(text)
 
-        self._ask_for_names(name_and_spawn)
+        self._request_names(name_and_spawn)
 
 
 def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
@@ -85,22 +88,24 @@ def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
 
 
 def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Parse options as gflags does: one or two dashes, and a value after ``=`` or in the next word."""
-    rest = list(words)
-    while rest:
-        word = rest.pop(0)
-        option, equals, value = word.partition("=")
+    """Yield the names and values of options like gflags: one or two dashes, a value after ``=`` or as next argument."""
+    remaining = list(words)
+    while remaining:
+        argument = remaining.pop(0)
+        option, equals, value = argument.partition("=")
         name = option.lstrip("-")
-        if not option.startswith("-") or name not in (*_TEXTS, *_NUMBERS, "allow_renaming"):
+        if not option.startswith("-") or name not in (*_TEXT_OPTIONS, *_NUMBER_OPTIONS, "allow_renaming"):
             continue  # gz ignores unknown options
-        if not equals and rest and (name != "allow_renaming" or rest[0].lower() in ("true", "false")):
-            value = rest.pop(0)
+        if not equals and remaining and (name != "allow_renaming" or remaining[0].lower() in ("true", "false")):
+            value = remaining.pop(0)
         yield name, value
 
 
-def _number(name: str, value: Any) -> float:
+def _parse_number(name: str, value: Any) -> float:
     try:
         return float(value)
     except ValueError:
         message = phrase("'{value}' for '{name}' is not a number", value=str(value), name=name)
-        raise LinkwrightError(Diagnostic("NODE812", message, hint=phrase("give metres, or radians"))) from None
+        raise LinkwrightError(
+            Diagnostic("NODE812", message, hint=phrase("write a number in metres or radians"))
+        ) from None

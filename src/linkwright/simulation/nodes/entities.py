@@ -19,7 +19,7 @@ from linkwright.simulation.nodes.spawner import SimulatorClient
 
 _DELETE, _SET_STATE = "gazebo_msgs/srv/DeleteEntity", "gazebo_msgs/srv/SetEntityState"
 _MODEL, _LINK = "6", "2"
-"""Types of ros_gz_interfaces/msg/Entity that may be named here."""
+"""The values of ros_gz_interfaces/msg/Entity.type that ``--type`` accepts: model and link."""
 
 
 class Remove(SimulatorClient):
@@ -41,15 +41,17 @@ class Remove(SimulatorClient):
                 hint = phrase("give it the parameter 'entity_name'")
                 raise LinkwrightError(
                     Diagnostic(
-                        "NODE812", phrase("the command line of {program} names no model", program="remove"), hint=hint
+                        "NODE812",
+                        phrase("the command line of {program} does not name a model", program="remove"),
+                        hint=hint,
                     )
                 )
             self._remove(name)
 
     def _remove(self, name: str) -> None:
-        self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._answered)
+        self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._on_response)
 
-    def _answered(self, response: Any) -> None:
+    def _on_response(self, response: Any) -> None:
         """Log the result in a response, and end with status 0 if the request succeeded, else with 1."""
         if response.success:
             self._log("Result: true")
@@ -68,10 +70,10 @@ class DeleteEntity(Remove):
     DEFAULT_NAME = "entity_deleter"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             self._connect(self._node)
-            self._remove(_read(_parser("delete_entity"), words).name)
+            self._remove(_read(_create_parser("delete_entity"), arguments).name)
 
 
 class SetEntityPose(Remove):
@@ -84,22 +86,22 @@ class SetEntityPose(Remove):
     DEFAULT_NAME = "entity_pose_setter"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, command_line = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             self._connect(self._node)
-            parser = _parser("set_entity_pose")
+            parser = _create_parser("set_entity_pose")
             parser.add_argument("--pos", nargs=3, type=float, default=(0.0, 0.0, 0.0))
-            turn = parser.add_mutually_exclusive_group()
-            turn.add_argument("--quat", nargs=4, type=float)
-            turn.add_argument("--euler", nargs=3, type=float, default=(0.0, 0.0, 0.0))
-            arguments = _read(parser, words)
+            rotation_options = parser.add_mutually_exclusive_group()
+            rotation_options.add_argument("--quat", nargs=4, type=float)
+            rotation_options.add_argument("--euler", nargs=3, type=float, default=(0.0, 0.0, 0.0))
+            arguments = _read(parser, command_line)
             state = get_message("gazebo_msgs/msg/EntityState")(name=arguments.name)
             position, orientation = state.pose.position, state.pose.orientation
             position.x, position.y, position.z = arguments.pos
             rotation = arguments.quat or quaternion_from_rpy(tuple(arguments.euler))
             orientation.x, orientation.y, orientation.z, orientation.w = rotation
             request = get_service(_SET_STATE).Request(state=state)
-            self._ask(_SET_STATE, "set_entity_state", request, self._answered)
+            self._ask(_SET_STATE, "set_entity_state", request, self._on_response)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -107,7 +109,7 @@ class _Parser(argparse.ArgumentParser):
         raise LinkwrightError(Diagnostic("NODE812", foreign(message), hint=foreign(self.format_usage().strip())))
 
 
-def _parser(program: str) -> _Parser:
+def _create_parser(program: str) -> _Parser:
     parser = _Parser(prog=program, add_help=False, allow_abbrev=False)
     parser.add_argument("--name")
     parser.add_argument("--id")
@@ -123,7 +125,7 @@ def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
     """
     arguments = parser.parse_args(words)
     if not arguments.name:
-        message = phrase("the command line of {program} names no model", program=parser.prog)
-        hint = phrase("give its name with --name; models have no entity numbers in Linkwright")
+        message = phrase("the command line of {program} does not name a model", program=parser.prog)
+        hint = phrase("give its name with --name; Linkwright models have no numeric IDs")
         raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
     return arguments

@@ -1,4 +1,4 @@
-"""Reloads the files of a running simulation when any program saves them."""
+"""Reload the files of a running simulation when any program saves them."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 def follow_files(node: Node, server: SimulationServer, services: Services, host: FileFollower) -> None:
     """Reload the world and the spawned robots when their files are saved.
 
-    The viewers show errors in the robots' models. A robot is reloaded only if this process expanded the robot's
+    The viewers show the errors of the robots' models. A robot is reloaded only if this process expanded its
     description from a file.
 
     Args:
         node: the simulator's node.
-        server: the simulation of the node.
-        services: the services of the node.
-        host: watches the files.
+        server: the simulation that runs in the node.
+        services: the services that replace worlds and robots.
+        host: watches the files and shows the findings.
     """
     loop, world = asyncio.get_running_loop(), services.worlds.loaded
-    about = f"simulation of {node.get_fully_qualified_name()}"
+    subject = f"simulation of {node.get_fully_qualified_name()}"
 
     def show() -> None:
         if not node.handle.is_destroyed:
-            host.show(about, server.findings)
+            host.show(subject, server.findings)
 
     def renew(name: str, text: str) -> None:
         """Replace a robot at its current pose, if it still exists."""
@@ -51,16 +51,19 @@ def follow_files(node: Node, server: SimulationServer, services: Services, host:
 
 
 async def _load_world(path: str, launcher: Node, services: Services) -> list[Diagnostic]:
-    """Load a saved world file unless the page has unsaved changes; return the findings that prevent it."""
+    """Load a saved world file unless the page has unsaved changes; return the findings if it was not loaded."""
     if services.worlds.is_unsaved:
         message = phrase("'{path}' has changed; the simulation continues with the edited world instead", path=path)
-        hint = phrase("save the edited world as another file, or undo its changes")
+        hint = phrase("save the edited world to another file, or undo its changes")
         return [Diagnostic("SIM154", message, severity=Severity.WARNING, hint=hint)]
     client = launcher.create_client(get_service(_LOAD_WORLD), "/load_world")
     request = client.srv_type.Request(ignore_missing_or_unsupported_assets=True)
     request.world_resource.uri = path
-    answer = await client.call_async(request)
-    if answer is not None and answer.result.result != answer.result.RESULT_OK:
-        message = phrase("the simulation continues unchanged: {reason}", reason=foreign(answer.result.error_message))
+    response = await client.call_async(request)
+    if response is not None and response.result.result != response.result.RESULT_OK:
+        message = phrase(
+            ("the changed world was not loaded: {reason}; the simulation continues unchanged"),
+            reason=foreign(response.result.error_message),
+        )
         return [Diagnostic("SIM153", message)]
     return []

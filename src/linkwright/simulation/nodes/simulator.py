@@ -1,6 +1,6 @@
 """The program gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
 
-The node follows the gzserver of Gazebo classic with the libraries of gazebo_ros, and also serves as the server of gz.
+The node behaves like the gzserver of Gazebo classic with the libraries of gazebo_ros, and like the server of gz.
 The world is simulated in a separate thread, see `linkwright.simulation.server`.
 """
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from linkwright.sdf.plugins import Plugin
 
 _EMPTY, _DESCRIPTION = "empty", "robot_description"
-_LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
-"""The codes for elements and files that are unknown or missing."""
+_LOGGED_WARNINGS = frozenset({"SDF150", "SDF160", "SDF161"})
+"""The codes of warnings about unknown elements and missing files, which are logged like errors."""
 _PARAMETERS: dict[str, Any] = {
     "world": _EMPTY,
     "world_sdf_file": "",
@@ -43,7 +43,7 @@ _PARAMETERS: dict[str, Any] = {
     "robot_namespace": "",
 }
 
-_PAUSED = (
+_PAUSED_NOTICE = (
     "The simulation is paused, and nothing moves or measures: resume it in the page, or call /unpause_physics. "
     "'gz sim' begins at once with -r"
 )
@@ -55,13 +55,13 @@ class Simulator(SingleNode):
     Its parameters:
 
     ``world``
-        the world file, which may also be given as the only argument apart from ROS arguments; ``empty`` is a plane.
+        the world file, which may also be the only argument apart from ROS arguments; ``empty`` is a ground plane.
     ``world_sdf_file``, ``world_sdf_string``
         the world file, or the text of the world, as for the gzserver of ros_gz_sim.
     ``publish_rate``
         the rate of ``/clock`` in simulated time, in Hz.
     ``real_time_factor``
-        the simulated seconds per real second; 0 for the value of the world, negative for as fast as possible.
+        simulated seconds per real second; 0 for the factor in the world, negative for as fast as possible.
     ``step``
         the time step in s; 0 for the time step of the world.
     ``seed``, ``pause``, ``seconds``
@@ -80,7 +80,7 @@ class Simulator(SingleNode):
         finished: receives status 0 after ``seconds``, or 1 if the simulation failed.
 
     Raises:
-        LinkwrightError: SIM150, there is no such world; SIM101, MuJoCo is missing; an error in the world or the robot.
+        LinkwrightError: SIM150, the world does not exist; SIM101, MuJoCo is missing; an error in the world or robot.
     """
 
     DEFAULT_NAME = "gazebo"
@@ -94,31 +94,31 @@ class Simulator(SingleNode):
         from linkwright.simulation.server.worlds import load_world
         from linkwright.simulation.simulation import Simulation
 
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         loop = asyncio.get_running_loop()
         self.finished: asyncio.Future[int] = loop.create_future()
         with starting(self._node):
             parameters = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
-            text = parameters["world_sdf_string"] or None
-            file = "world_sdf_string" if text else parameters["world_sdf_file"] or parameters["world"]
-            loaded = (
-                load_world(words[0], environment=options.environment)
-                if words
-                else load_world(file, text, options.environment)
+            world_text = parameters["world_sdf_string"] or None
+            world_file = "world_sdf_string" if world_text else parameters["world_sdf_file"] or parameters["world"]
+            loaded_world = (
+                load_world(arguments[0], environment=options.environment)
+                if arguments
+                else load_world(world_file, world_text, options.environment)
             )
-            remarkable = (
+            logged_findings = (
                 diagnostic
-                for diagnostic in loaded.diagnostics
-                if diagnostic.severity is Severity.ERROR or diagnostic.code in _LEFT_OUT
+                for diagnostic in loaded_world.diagnostics
+                if diagnostic.severity is Severity.ERROR or diagnostic.code in _LOGGED_WARNINGS
             )
-            self._log(remarkable)
-            simulation = Simulation(loaded.world, loaded.finder, step=parameters["step"] or None)
-            how = ServerOptions(
-                parameters["seed"], parameters["usual_names"], parameters["gazebo_mistakes"], self._systems()
+            self._log(logged_findings)
+            simulation = Simulation(loaded_world.world, loaded_world.finder, step=parameters["step"] or None)
+            server_options = ServerOptions(
+                parameters["seed"], parameters["usual_names"], parameters["gazebo_mistakes"], self._default_plugins()
             )
-            self.server = SimulationServer(simulation, self._node, how)
-            own = SteppedNode(self._node, self.server.exchange, owned=False)
-            self._reports = Reports(self.server, own, parameters["publish_rate"])
+            self.server = SimulationServer(simulation, self._node, server_options)
+            stepped_node = SteppedNode(self._node, self.server.exchange, owned=False)
+            self._reports = Reports(self.server, stepped_node, parameters["publish_rate"])
             self.runner = Runner(
                 self.server,
                 factor=parameters["real_time_factor"] if parameters["real_time_factor"] >= 0 else inf,
@@ -126,21 +126,21 @@ class Simulator(SingleNode):
                 seconds=parameters["seconds"] or None,
                 watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
                 on_state=self._publish_state,
-                on_end=partial(_call_on, loop, self._finish),
+                on_end=partial(_call_threadsafe, loop, self._finish),
             )
-            self.services = Services(self.server, self.runner, own, loaded, options.library)
+            self.services = Services(self.server, self.runner, stepped_node, loaded_world, options.library)
             self.server.start()
             if parameters[_DESCRIPTION]:
-                pose = _pose(parameters["robot_pose"])
+                pose = _transform_of_pose(parameters["robot_pose"])
                 robot = self.services.spawn(
                     parameters[_DESCRIPTION], parameters["robot_name"], pose, parameters["robot_namespace"]
                 )
-                self._node.add_on_set_parameters_callback(partial(self._renew, robot))
+                self._node.add_on_set_parameters_callback(partial(self._on_parameters, robot))
             self._reports.begin()
             self._publish_state()
             self.server.exchange.deliver()
             if parameters["pause"]:
-                self._node.get_logger().info(_PAUSED)
+                self._node.get_logger().info(_PAUSED_NOTICE)
             self.runner.start()
 
     def follow_files(self, host: FileFollower) -> None:
@@ -155,14 +155,14 @@ class Simulator(SingleNode):
         self.server.close()
         super().close()
 
-    def _systems(self) -> Sequence[Plugin]:
+    def _default_plugins(self) -> Sequence[Plugin]:
         """Return the default plugins of a world that does not declare any."""
         return ()
 
-    def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Replace the robot when its description changes, and keep its state.
+    def _on_parameters(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
+        """Replace the robot if its description changes, and keep the robot's state.
 
-        The result rejects an invalid description and gives the reason.
+        An invalid description is rejected with the reason.
         """
         from linkwright.simulation.plugins.entities import in_one_line
 
@@ -184,13 +184,13 @@ class Simulator(SingleNode):
     def _log(self, findings: Iterable[Diagnostic]) -> None:
         """Log the findings as errors or warnings, without repeating a message."""
         logger = self._node.get_logger()
-        first: dict[str, Diagnostic] = {}
+        first_findings: dict[str, Diagnostic] = {}
         for finding in findings:
-            first.setdefault(str(finding.message), finding)
-        for diagnostic in first.values():
-            place = f"{diagnostic.span}: " if diagnostic.span else ""
+            first_findings.setdefault(str(finding.message), finding)
+        for diagnostic in first_findings.values():
+            location = f"{diagnostic.span}: " if diagnostic.span else ""
             hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
-            text = f"{place}{diagnostic.message}{hint}"
+            text = f"{location}{diagnostic.message}{hint}"
             if diagnostic.severity is Severity.ERROR:
                 logger.error(text)
             else:
@@ -203,16 +203,16 @@ class GzServer(Simulator):
     A world without plugins gets the default plugins of gz.
     """
 
-    def _systems(self) -> Sequence[Plugin]:
-        from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ
+    def _default_plugins(self) -> Sequence[Plugin]:
+        from linkwright.simulation.plugins.registry import DEFAULT_GZ_SYSTEMS
 
-        return SYSTEMS_OF_GZ
+        return DEFAULT_GZ_SYSTEMS
 
 
-def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[int], None], status: int) -> None:
+def _call_threadsafe(loop: asyncio.AbstractEventLoop, function: Callable[[int], None], status: int) -> None:
     loop.call_soon_threadsafe(function, status)
 
 
-def _pose(numbers: Sequence[float]) -> Transform:
+def _transform_of_pose(numbers: Sequence[float]) -> Transform:
     x, y, z, roll, pitch, yaw = numbers
     return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))

@@ -25,9 +25,9 @@ class SpawnEntity(EntitySpawner):
     DEFAULT_NAME = "spawn_entity"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            wanted = self._arguments = parse(words)
+            wanted = self._arguments = parse(arguments)
             self._environment = options.environment
             namespace = self._node.get_namespace() if wanted.robot_namespace is None else wanted.robot_namespace
             entity = Entity(
@@ -42,31 +42,31 @@ class SpawnEntity(EntitySpawner):
                 self._begin()
             else:
                 self._log(f"Waiting for entity {wanted.wait} to exist")
-                self._look_for(wanted.wait)
+                self._wait_for_entity(wanted.wait)
 
     def close(self) -> None:
         """Close the node, and delete the entity if ``-b`` was given."""
         if self._arguments.b and self._described and not self.finished.done():
-            kind = get_service("gazebo_msgs/srv/DeleteEntity")
-            client = self._node.create_client(kind, f"{self._service_namespace}/delete_entity")
-            client.call_async(kind.Request(name=self._entity.name))
+            service_type = get_service("gazebo_msgs/srv/DeleteEntity")
+            client = self._node.create_client(service_type, f"{self._service_namespace}/delete_entity")
+            client.call_async(service_type.Request(name=self._entity.name))
         super().close()
 
     def _begin(self) -> None:
-        wanted = self._arguments
-        if wanted.topic is not None:
-            self._wait_for(wanted.topic)
-        elif wanted.file is not None:
-            self._spawn(read_description(wanted.file, self._environment))
-        elif wanted.database is not None:
-            self._spawn(read_description(f"model://{wanted.database}", self._environment))
+        arguments = self._arguments
+        if arguments.topic is not None:
+            self._wait_for(arguments.topic)
+        elif arguments.file is not None:
+            self._spawn(read_description(arguments.file, self._environment))
+        elif arguments.database is not None:
+            self._spawn(read_description(f"model://{arguments.database}", self._environment))
         else:
             self._spawn(read_stdin())
 
     def _spawn(self, text: str) -> None:
         super()._spawn(text.replace("package://", "model://") if self._arguments.package_to_model else text)
 
-    def _look_for(self, name: str) -> None:
+    def _wait_for_entity(self, name: str) -> None:
         def look(names: list[str]) -> None:
             if name in names:
                 self._begin()
@@ -74,16 +74,18 @@ class SpawnEntity(EntitySpawner):
 
             def again() -> None:
                 timer.cancel()
-                self._look_for(name)
+                self._wait_for_entity(name)
 
             timer = self._node.create_timer(0.5, again)
 
-        self._ask_for_names(look)
+        self._request_names(look)
 
     def _spawned(self) -> None:
         if self._arguments.unpause:
-            kind = "std_srvs/srv/Empty"
-            self._ask(kind, "unpause_physics", get_service(kind).Request(), lambda _: self._stay_or_end())
+            service_type = "std_srvs/srv/Empty"
+            self._ask(
+                service_type, "unpause_physics", get_service(service_type).Request(), lambda _: self._stay_or_end()
+            )
         else:
             self._stay_or_end()
 

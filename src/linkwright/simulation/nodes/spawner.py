@@ -19,7 +19,7 @@ from linkwright.packages import current_finder
 from linkwright.sdf.resources import Missing, ResourceFinder
 
 SPAWN_SERVICE = "gazebo_msgs/srv/SpawnEntity"
-_LIST = "gazebo_msgs/srv/GetModelList"
+_LIST_SERVICE = "gazebo_msgs/srv/GetModelList"
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def spawn_request(entity: Entity, text: str) -> Any:
 
 
 class SimulatorClient(SingleNode):
-    """A node that calls a service of the simulator and ends, with status 1 if the call failed.
+    """A node that calls a service of the simulator and then ends, with status 1 if the call failed.
 
     Derived classes create `_node` and call `_connect`.
     """
@@ -64,32 +64,32 @@ class SimulatorClient(SingleNode):
         """Set the node and the namespace of the simulator's services.
 
         Args:
-            node: the node.
+            node: the node that calls the services.
             service_namespace: the namespace of the simulator's services.
-            timeout: the maximum seconds to wait for the service, on the clock of the machine; None to wait without a
-                limit.
+            timeout: the maximum time to wait for the service, in seconds of the machine's steady clock; None to wait
+                forever.
         """
         self._node = node
         self._timeout = timeout
         self._service_namespace = service_namespace.rstrip("/")
         self.finished = asyncio.get_running_loop().create_future()
 
-    def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Call a service of the simulator, and pass the response to `then`.
+    def _ask(self, kind: str, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
+        """Call a service of the simulator, and pass the response to `on_response`.
 
         If the service is not available within the timeout, log an error and end with status 1.
         """
         path = f"{self._service_namespace}/{name}"
         client = self._node.create_client(get_service(kind), path)
         future = client.call_async(request)  # The request is sent when the service becomes available.
-        future.add_done_callback(lambda done: then(done.result()))
+        future.add_done_callback(lambda completed: on_response(completed.result()))
         if client.service_is_ready():
             return
-        wait = "" if self._timeout is None else f", timeout = {self._timeout:g}"
-        self._log(f"Waiting for service {path}{wait}")
+        timeout_text = "" if self._timeout is None else f", timeout = {self._timeout:g}"
+        self._log(f"Waiting for service {path}{timeout_text}")
         if self._timeout is None:
             return
-        steady = Clock(clock_type=ClockType.STEADY_TIME, timebase=self._node.get_clock().timebase)
+        steady_clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=self._node.get_clock().timebase)
 
         def look() -> None:
             timer.cancel()
@@ -97,7 +97,7 @@ class SimulatorClient(SingleNode):
                 client.remove_pending_request(future)
                 self._fail(f"Service {path} unavailable. Was the simulation started?")
 
-        timer = self._node.create_timer(self._timeout, look, clock=steady)
+        timer = self._node.create_timer(self._timeout, look, clock=steady_clock)
 
     def _log(self, text: str) -> None:
         self._node.get_logger().info(text)
@@ -130,7 +130,7 @@ class EntitySpawner(SimulatorClient):
     # --- getting a description ------------------------------------------------------------------------------------
 
     def _wait_for(self, topic: str) -> None:
-        """Spawn the first description that a topic delivers, which includes a latched description."""
+        """Spawn the first description that arrives on a topic; a latched one arrives at once."""
         self._log(f"Waiting for entity xml on {topic}")
         self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
 
@@ -143,9 +143,14 @@ class EntitySpawner(SimulatorClient):
         self._described = True
         self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
 
-    def _ask_for_names(self, then: Callable[[list[str]], None]) -> None:
+    def _request_names(self, on_names: Callable[[list[str]], None]) -> None:
         """Request the names of the world's models, and pass them to a function."""
-        self._ask(_LIST, "get_model_list", get_service(_LIST).Request(), lambda answer: then(list(answer.model_names)))
+        self._ask(
+            _LIST_SERVICE,
+            "get_model_list",
+            get_service(_LIST_SERVICE).Request(),
+            lambda answer: on_names(list(answer.model_names)),
+        )
 
     def _answered(self, response: Any) -> None:
         if not response.success:
@@ -155,7 +160,7 @@ class EntitySpawner(SimulatorClient):
         self._spawned()
 
     def _spawned(self) -> None:
-        """End with status 0. Called when the simulator reports that the entity was spawned."""
+        """End with status 0; `_answered` calls this after the simulator reports that it spawned the entity."""
         self._end(0)
 
 
@@ -169,14 +174,14 @@ def read_description(address: str, environment: Mapping[str, str]) -> str:
     Raises:
         LinkwrightError: NODE811, there is no such description, or it cannot be read.
     """
-    found = ResourceFinder(current_finder(), environment).model(address, Path.cwd())
-    if isinstance(found, Missing):
-        raise LinkwrightError(Diagnostic("NODE811", found.reason, hint=found.hint))
+    path = ResourceFinder(current_finder(), environment).model(address, Path.cwd())
+    if isinstance(path, Missing):
+        raise LinkwrightError(Diagnostic("NODE811", path.reason, hint=path.hint))
     try:
-        return read_text(found)
+        return read_text(path)
     except (OSError, UnicodeDecodeError) as error:
         reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("cannot read '{path}': {reason}", path=found, reason=reason)
+        message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("NODE811", message)) from error
 
 

@@ -1,4 +1,4 @@
-"""A substitute for Gazebo's window: a node that refers the user to the page in the browser."""
+"""A substitute for Gazebo's window: a node that points the user to the page in the browser."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class Window(SingleNode):
-    """The node of ``gzclient``, which runs without effect until it is closed.
+    """The node of ``gzclient``, which does nothing until it is closed.
 
-    Launch files end all other processes when this node ends.
+    It keeps running because launch files end all other processes when it ends.
     """
 
-    DEFAULT_NAME = "_gzclient"  # hidden, because gzclient is not a node
+    DEFAULT_NAME = "_gzclient"  # hidden, because Gazebo's gzclient does not create a node
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)

@@ -1,4 +1,4 @@
-"""The simulation bar, and the dragging of models in a simulated world, by topics and services only.
+"""The simulation bar, and the dragging of models in a simulated world, with topics and services only.
 
 Source of the topic and service names: gazebo_ros and simulation_interfaces.
 """
@@ -37,30 +37,37 @@ from linkwright.page.protocol.simulation import (
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.simulation.page.services import SimulationServices, refuse
 
-_STATE = "/simulation_state"
+_STATE_TOPIC = "/simulation_state"
 _PAUSED = 2
 """The value of simulation_interfaces/msg/SimulationState for a paused simulation."""
 _VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _PUSH_NS = 50_000_000
-"""The duration of a push; pages repeat it while the user pulls."""
+"""The duration of a push in nanoseconds; pages repeat the push while the user pulls."""
 
-_EMPTY = "std_srvs/srv/Empty"
+_EMPTY_SERVICE = "std_srvs/srv/Empty"
 _ACTIONS = {
-    "play": (_EMPTY, "/unpause_physics"),
-    "pause": (_EMPTY, "/pause_physics"),
-    "reset": (_EMPTY, "/reset_simulation"),
+    "play": (_EMPTY_SERVICE, "/unpause_physics"),
+    "pause": (_EMPTY_SERVICE, "/pause_physics"),
+    "reset": (_EMPTY_SERVICE, "/reset_simulation"),
     "step": ("simulation_interfaces/srv/StepSimulation", "/step_simulation"),
 }
 
 
 @dataclass(slots=True)
 class _Drag:
-    """A model that a page drags: its initial state, once known, and the newest offset not yet sent."""
+    """A model that a page drags.
+
+    Attributes:
+        model: the name of the model.
+        initial_state: the state of the model when the drag began; None until the simulator has returned it.
+        pending_offset: the newest offset that was not sent yet, in metres; None if all were sent.
+        is_calling: whether a request to move the model is in progress.
+    """
 
     model: str
-    start: Any = None
-    target: Sequence[float] | None = None
-    calling: bool = False
+    initial_state: Any = None
+    pending_offset: Sequence[float] | None = None
+    is_calling: bool = False
 
 
 class SimulationFeature(PageFeature):
@@ -71,50 +78,50 @@ class SimulationFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._listening = False
-        self._recorded = False
+        self._is_listening = False
+        self._shows_recording = False
         self._subscriptions: list[Any] = []
         self._services = SimulationServices(self.context)
         self._status = NO_SIMULATION
         self._drags: dict[Page, _Drag] = {}
-        self._spawning: set[asyncio.Task[None]] = set()
+        self._spawn_tasks: set[asyncio.Task[None]] = set()
 
     def opening(self) -> list[ServerMessage]:
-        """Return the messages with the state of the simulation for a new page."""
-        if not self._listening and not self._recorded:
-            self._listening = True
-            self.context.graph_changes.watch(self._review)
-            self._review()
+        """Return the initial messages for a new page: the state of the simulation."""
+        if not self._is_listening and not self._shows_recording:
+            self._is_listening = True
+            self.context.graph_changes.watch(self._update_presence)
+            self._update_presence()
         return [self._status]
 
     def recording_shown(self) -> None:
         """Hide the simulation bar, because a recorded simulation cannot be controlled."""
-        self._recorded = True
+        self._shows_recording = True
         self._stop()
 
     def page_closed(self, page: Page) -> None:
-        """Release the models that the page moves, and unsubscribe after the last page."""
+        """End the drag of the page, and unsubscribe after the last page."""
         self._drags.pop(page, None)
-        if self._listening and len(self.context.pages) == 0:
+        if self._is_listening and len(self.context.pages) == 0:
             self._stop()
 
     def close(self) -> None:
         """Stop the feature permanently."""
         self._stop()
-        for task in self._spawning:
+        for task in self._spawn_tasks:
             task.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
         """Carry out the request of a page."""
         match message:
             case ControlSimulation(action):
-                kind, name = _ACTIONS[action]
+                service_type, name = _ACTIONS[action]
                 fields = {"steps": 1} if action == "step" else {}
-                self._services.ask(page, kind, name, fields)
+                self._services.ask(page, service_type, name, fields)
             case SpawnModel(address, position):
                 task = asyncio.get_running_loop().create_task(self._spawn(page, address, position))
-                self._spawning.add(task)
-                task.add_done_callback(self._spawning.discard)
+                self._spawn_tasks.add(task)
+                task.add_done_callback(self._spawn_tasks.discard)
             case DeleteModel(model):
                 self._services.ask(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
             case DragModel():
@@ -124,20 +131,22 @@ class SimulationFeature(PageFeature):
 
     # --- state of the simulation -------------------------------------------------------------------------------
 
-    def _review(self) -> None:
-        present = bool(self.context.node.get_publishers_info_by_topic(_STATE))
-        if present and not self._subscriptions:
+    def _update_presence(self) -> None:
+        is_present = bool(self.context.node.get_publishers_info_by_topic(_STATE_TOPIC))
+        if is_present and not self._subscriptions:
             node = self.context.node
             self._subscriptions = [
-                node.create_subscription("simulation_interfaces/msg/SimulationState", _STATE, self._state, LATCHED_QOS),
                 node.create_subscription(
-                    "gazebo_msgs/msg/PerformanceMetrics", "/performance_metrics", self._metrics, 10
+                    "simulation_interfaces/msg/SimulationState", _STATE_TOPIC, self._state, LATCHED_QOS
+                ),
+                node.create_subscription(
+                    "gazebo_msgs/msg/PerformanceMetrics", "/performance_metrics", self._on_metrics, 10
                 ),
             ]
-        elif not present:
-            self._leave()
-        now = self._status if present == self._status.present else replace(NO_SIMULATION, present=present)
-        self._publish(replace(now, drivable=present and self._is_drivable()))
+        elif not is_present:
+            self._unsubscribe()
+        status = self._status if is_present == self._status.present else replace(NO_SIMULATION, present=is_present)
+        self._publish(replace(status, drivable=is_present and self._is_drivable()))
 
     def _is_drivable(self) -> bool:
         endpoints = self.context.node.graph.endpoints()
@@ -148,7 +157,7 @@ class SimulationFeature(PageFeature):
     def _state(self, message: Any) -> None:
         self._publish(replace(self._status, present=True, paused=message.state == _PAUSED))
 
-    def _metrics(self, message: Any) -> None:
+    def _on_metrics(self, message: Any) -> None:
         stamp = message.header.stamp
         time = stamp.sec + stamp.nanosec / 1e9
         factor = message.real_time_factor if isfinite(message.real_time_factor) else None
@@ -160,12 +169,12 @@ class SimulationFeature(PageFeature):
             self.context.pages.publish(status)
 
     def _stop(self) -> None:
-        self._listening = False
-        self.context.graph_changes.unwatch(self._review)
-        self._leave()
+        self._is_listening = False
+        self.context.graph_changes.unwatch(self._update_presence)
+        self._unsubscribe()
         self._status = NO_SIMULATION
 
-    def _leave(self) -> None:
+    def _unsubscribe(self) -> None:
         with suppress(ValueError):  # the node may have been destroyed before
             for subscription in self._subscriptions:
                 self.context.node.destroy_subscription(subscription)
@@ -177,32 +186,34 @@ class SimulationFeature(PageFeature):
 
     async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
         try:
-            found = await asyncio.to_thread(self._model_at, address.strip())
+            model = await asyncio.to_thread(self._model_at, address.strip())
         except LinkwrightError as error:
             refuse(page, error.diagnostics[0].placed_message)
             return
-        if found is None:
+        if model is None:
             refuse(page, phrase("there is no model in '{address}'", address=address))
             return
-        name, text = found
+        name, text = model
         fields: dict[str, Any] = {"xml": text}
         if _is_vector(position):
             fields["initial_pose"] = _pose(position)
 
         def listed(response: Any) -> None:
-            taken = () if response is None else response.model_names
-            if name in taken:
-                free = next(candidate for number in count(2) if (candidate := f"{name}_{number}") not in taken)
-                fields.update(name=free, robot_namespace=f"/{free}")
-                spawn(partial(_report_added, page, name, free))
+            existing_names = () if response is None else response.model_names
+            if name in existing_names:
+                free_name = next(
+                    candidate for number in count(2) if (candidate := f"{name}_{number}") not in existing_names
+                )
+                fields.update(name=free_name, robot_namespace=f"/{free_name}")
+                request_spawn(partial(_report_added, page, name, free_name))
             else:
-                spawn(partial(_report_added, page, name, name))
+                request_spawn(partial(_report_added, page, name, name))
 
-        spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
+        request_spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
         self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
 
     def _model_at(self, address: str) -> tuple[str, str] | None:
-        """Return the name and description of the model at an address; None for a world without a model.
+        """Return the name and description of the model at an address; None if the file is a world without a model.
 
         Raises:
             LinkwrightError: there is no file at the address, or the file cannot be read.
@@ -211,8 +222,8 @@ class SimulationFeature(PageFeature):
         from linkwright.sdf.writer import save
 
         finder = self.context.finder
-        found = ResourceFinder(finder).model(address, Path.cwd())
-        path = found if isinstance(found, Path) else finder.resolve(address)
+        resource = ResourceFinder(finder).model(address, Path.cwd())
+        path = resource if isinstance(resource, Path) else finder.resolve(address)
         if not is_world(path.name):
             description = examine(path, packages=finder, xacro=True)
             name = "" if description.robot is None else description.robot.name
@@ -225,35 +236,43 @@ class SimulationFeature(PageFeature):
             drag = self._drags[page] = _Drag(message.model)
             fields = {"name": message.model, "reference_frame": "world"}
             self._services.ask(
-                page, "gazebo_msgs/srv/GetEntityState", "/get_entity_state", fields, partial(self._held, page, drag)
+                page,
+                "gazebo_msgs/srv/GetEntityState",
+                "/get_entity_state",
+                fields,
+                partial(self._on_drag_state, page, drag),
             )
         known = self._drags.get(page)
         if known is not None and known.model == message.model and _is_vector(message.offset):
-            known.target = message.offset
+            known.pending_offset = message.offset
             self._put(page, known)
 
-    def _held(self, page: Page, drag: _Drag, response: Any) -> None:
+    def _on_drag_state(self, page: Page, drag: _Drag, response: Any) -> None:
         if response is not None and response.success:
-            drag.start = response.state
+            drag.initial_state = response.state
             self._put(page, drag)
 
     def _put(self, page: Page, drag: _Drag) -> None:
         """Send the newest pose, or wait until the simulation has answered the previous request."""
-        if drag.start is None or drag.target is None or drag.calling:
+        if drag.initial_state is None or drag.pending_offset is None or drag.is_calling:
             return
-        start = drag.start.pose.position
-        drag.calling = True
-        offset, drag.target = drag.target, None
-        state = type(drag.start)(name=drag.model, reference_frame="world")
+        start = drag.initial_state.pose.position
+        drag.is_calling = True
+        offset, drag.pending_offset = drag.pending_offset, None
+        state = type(drag.initial_state)(name=drag.model, reference_frame="world")
         state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
-        state.pose.orientation = drag.start.pose.orientation
+        state.pose.orientation = drag.initial_state.pose.orientation
 
         def put(_: Any) -> None:
-            drag.calling = False
+            drag.is_calling = False
             self._put(page, drag)
 
-        fixed = phrase("'{model}' cannot be moved: it is fixed to the world, or no longer exists", model=drag.model)
-        self._services.ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, fixed)
+        failure_message = phrase(
+            "'{model}' cannot be moved: it is fixed to the world, or no longer exists", model=drag.model
+        )
+        self._services.ask(
+            page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, failure_message
+        )
 
     def _push(self, page: Page, message: PushLink) -> None:
         if not (_is_vector(message.point) and _is_vector(message.force)):
@@ -266,17 +285,17 @@ class SimulationFeature(PageFeature):
         self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 
-def _report_added(page: Page, name: str, free: str, response: Any) -> None:
-    """Notify a page that a model was added, and that it was renamed if its name was already used."""
+def _report_added(page: Page, name: str, actual_name: str, response: Any) -> None:
+    """Notify a page that a model was added, and of its new name if the original name was in use."""
     if response is None or not response.success:
         return
-    page.send(ModelAdded(free))
-    if free != name:
+    page.send(ModelAdded(actual_name))
+    if actual_name != name:
         notice = phrase(
             "A model '{name}' already exists: the new one is named '{free}', and the topics of its "
             "plugins begin with /{free}. The frames of both models have the same names.",
             name=name,
-            free=free,
+            free=actual_name,
         )
         page.send(SimulationNotice(notice))
 

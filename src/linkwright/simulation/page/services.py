@@ -1,4 +1,4 @@
-"""Calls of simulation services on behalf of pages, which receive reports of failures."""
+"""Calls of simulation services for pages, which receive a notice if a call fails."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.rviz.context import ViewerContext
 
 
 class SimulationServices:
-    """Service clients, each created on first use.
+    """Clients of simulation services, each created on first use.
 
     Args:
         context: the context of the viewer, whose node calls the services.
@@ -31,24 +31,24 @@ class SimulationServices:
         kind: str,
         name: str,
         fields: dict[str, Any],
-        answered: Callable[[Any], None] = lambda _: None,
-        refused: Phrase | None = None,
+        on_response: Callable[[Any], None] = lambda _: None,
+        failure_text: Phrase | None = None,
     ) -> None:
         """Call a service, and report to the page if the service does not exist or the call fails.
 
         Args:
             page: the page that requests the call.
-            kind: the service's type.
-            name: the service's name.
-            fields: the fields of the request.
-            answered: called with the response, or with None if there is no such service.
-            refused: the text for the page if the response reports a failure without a reason.
+            kind: the type of the service, such as ``std_srvs/srv/Empty``.
+            name: the name of the service, such as ``/pause_physics``.
+            fields: the values of the request's fields, by name.
+            on_response: called with the response, or with None if the service does not exist.
+            failure_text: the text for the page if the response reports a failure without a reason.
         """
         client = self._clients.get(name)
         if client is None:
             client = self._clients[name] = self._node.create_client(get_service(kind), name)
         if not client.service_is_ready():
-            answered(None)
+            on_response(None)
             refuse(page, phrase("there is no service '{name}'", name=name))
             return
         future = client.call_async(client.srv_type.Request(**fields))
@@ -57,11 +57,11 @@ class SimulationServices:
             response = future.result()
             result = getattr(response, "result", None)
             if getattr(response, "success", True) is False:
-                without_reason = refused or phrase("'{name}' failed", name=name)
-                refuse(page, getattr(response, "status_message", "") or without_reason)
+                fallback = failure_text or phrase("'{name}' failed", name=name)
+                refuse(page, getattr(response, "status_message", "") or fallback)
             elif result is not None and result.error_message:
                 refuse(page, result.error_message)
-            answered(response)
+            on_response(response)
 
         future.add_done_callback(done)
 

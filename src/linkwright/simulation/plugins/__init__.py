@@ -1,4 +1,4 @@
 """Plugins and sensors of models, which replace the libraries of Gazebo classic and gz.
 
-They are found through entry points.
+The registry finds them through entry points.
 """

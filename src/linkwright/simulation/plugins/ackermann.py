@@ -1,8 +1,8 @@
 """Ackermann steering of Gazebo classic: ``libgazebo_ros_ackermann_drive.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (parameters, topics, defaults, the angles of the wheels; ``angular.z`` of a command is
-the steering angle). Unlike in gazebo_ros_pkgs, the front wheels are held at their angles, the steering gains have no
-effect, and the rear wheels hold their velocity with no more than the torque at which they would slip.
+the steering angle). Unlike in gazebo_ros_pkgs, servos hold the front wheels at their angles, and the steering gains
+have no effect. The torque of each rear wheel is limited to the torque at which the wheel would slip.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from linkwright.messages import get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_GAIN = 20.0
-"""Torque of a motor in N m for each rad/s that its wheel is too slow."""
+_MOTOR_GAIN = 20.0
+"""The torque of a motor in N m per rad/s by which its wheel is too slow."""
 _GRAVITY = 9.81
 
 
@@ -71,10 +71,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         for joint in (*front, *rear):
             simulation.let_roll(joint)
         self._radius = self._radius_of(rear[1])
-        self._measure(front, rear)
+        self._measure_car(front, rear)
         simulation.keep_awake(self.first_link)
         torque = simulation.mass_of(self.place.path) * _GRAVITY * self._radius / 2.0
-        self._motors = [simulation.add_velocity_motor(joint, _GAIN, torque) for joint in rear]
+        self._motors = [simulation.add_velocity_motor(joint, _MOTOR_GAIN, torque) for joint in rear]
         self._servos = [simulation.add_servo(joint) for joint in steering]
         odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if parameters.publish_odom else None
         transforms = transforms_topic(node) if parameters.publish_odom_tf else None
@@ -82,9 +82,13 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
-        self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if parameters.publish_distance else None
-        commander = node.commander(self._rest)
-        node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1, commander=commander, rest=self._rest)
+        self._distance_topic = (
+            node.publisher("std_msgs/msg/Float32", "distance", 1) if parameters.publish_distance else None
+        )
+        commander = node.commander(self._stop_motion)
+        node.subscribe(
+            "geometry_msgs/msg/Twist", "cmd_vel", self._on_command, 1, commander=commander, rest=self._stop_motion
+        )
         self._begin()
         self.every(parameters.update_rate, self._update)
 
@@ -105,59 +109,61 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         if radius is None:
             raise self.parameter_error(
                 phrase(
-                    "plugin '{plugin}': the wheel on '{joint}' has no round collision",
+                    "plugin '{plugin}': the wheel on '{joint}' needs a collision that is a cylinder or a sphere",
                     plugin=self.place.name,
                     joint=self.parameters.rear_right_joint,
                 )
             )
         return radius
 
-    def _measure(self, front: list[str], rear: list[str]) -> None:
-        """Measure the track of the front wheels and the wheelbase, in m."""
+    def _measure_car(self, front: list[str], rear: list[str]) -> None:
+        """Measure the track of the front wheels and the wheelbase, in m; raise if either is zero."""
         simulation = self.simulation
-        left, right, back_left, back_right = (
+        left, right, rear_left, rear_right = (
             simulation.link_pose(simulation.scene.joints[joint].child)[:3] for joint in (*front, *rear)
         )
-        self._separation = dist(left, right)
+        self._track = dist(left, right)
         self._base = dist(
             [(a + b) / 2.0 for a, b in zip(left, right, strict=True)],
-            [(a + b) / 2.0 for a, b in zip(back_left, back_right, strict=True)],
+            [(a + b) / 2.0 for a, b in zip(rear_left, rear_right, strict=True)],
         )
-        if not (self._separation > 0.0 and self._base > 0.0):
+        if not (self._track > 0.0 and self._base > 0.0):
             raise self.parameter_error(
-                phrase("plugin '{plugin}': its wheels are all in the same place", plugin=self.place.name)
+                phrase(
+                    ("plugin '{plugin}': its wheels have the same position; place them apart"), plugin=self.place.name
+                )
             )
 
-    def _commanded(self, twist: Any) -> None:
+    def _on_command(self, twist: Any) -> None:
         parameters = self.parameters
         self._speed = min(max(float(twist.linear.x), -parameters.max_speed), parameters.max_speed)
         angle = float(twist.angular.z) * copysign(1.0, self._speed)
         self._angle = min(max(angle, -parameters.max_steer), parameters.max_steer)
 
-    def _rest(self) -> bool:
-        """Stop the car without changing the steering; return whether a motion was commanded."""
-        before, self._speed = self._speed, 0.0
-        return before != 0.0
+    def _stop_motion(self) -> bool:
+        """Stop the car but keep the steering angle; return whether it was commanded to move."""
+        old_speed, self._speed = self._speed, 0.0
+        return old_speed != 0.0
 
     def _update(self) -> None:
         now = self.simulation.time
         seconds, self._time = (now - self._time) / NANOSECONDS_PER_SECOND, now
         self._drive(seconds)
-        before, self._place = self._place, self.simulation.model_pose(self.place.path)
-        self._distance += hypot(self._place[0] - before[0], self._place[1] - before[1])
+        old_pose, self._place = self._place, self.simulation.model_pose(self.place.path)
+        self._distance += hypot(self._place[0] - old_pose[0], self._place[1] - old_pose[1])
         velocity = planar_velocity(self._place, *self.simulation.link_velocity(self.first_link))
         self._topics.publish(self.stamp(), self._place, *velocity)
-        if self._way is not None:
-            self._way.publish(get_message("std_msgs/msg/Float32")(data=self._distance))
+        if self._distance_topic is not None:
+            self._distance_topic.publish(get_message("std_msgs/msg/Float32")(data=self._distance))
 
     def _drive(self, seconds: float) -> None:
-        """Set the wheel speeds, and steer towards the commanded angle for `seconds`.
+        """Set the speeds of the rear wheels, and steer towards the commanded angle for `seconds`.
 
         The inner front wheel is steered further than the outer one, so that both roll about one point.
         """
         for motor in self._motors:
             motor.target = self._speed / self._radius
         slope = tan(self._angle)
-        angles = ackermann_angles(slope, self._separation / self._base * slope)
+        angles = ackermann_angles(slope, self._track / self._base * slope)
         for servo, angle in zip(self._servos, angles, strict=True):
             servo.move(angle, seconds)

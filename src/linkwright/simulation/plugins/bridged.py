@@ -1,8 +1,9 @@
-"""gz topics whose names a bridge also uses in ROS, but with another type.
+"""gz topics that need a hidden name, because a bridge offers their name in ROS with another type.
 
-Topics of gz are topics of the graph under their own names. A bridge from ``geometry_msgs/msg/TwistStamped`` to
-``gz.msgs.Twist`` with one name for both sides, as in the robots of Jazzy, would give this topic two types. Therefore
-the gz side gets a hidden name as soon as there is such a bridge, in this process or in another one.
+In Linkwright, gz topics are topics of the graph under their own names. A bridge from
+``geometry_msgs/msg/TwistStamped`` to ``gz.msgs.Twist`` with one name for both sides, as in the robots of Jazzy, would
+give the topic of this name two types. Therefore the gz topic is renamed to a hidden name when such a bridge starts, in
+any process.
 """
 
 from __future__ import annotations
@@ -12,66 +13,66 @@ from collections.abc import Callable
 from linkwright.graph import EndpointKind, Node
 from linkwright.graph.stepped.exchange import Exchange
 
-_HIDDEN = "/_gz"
+_HIDDEN_PREFIX = "/_gz"
 
 
 def hidden_gz_topic(topic: str) -> str:
-    """Return the hidden name that a gz topic gets when a bridge uses its name for another type.
+    """Return the hidden name of a gz topic, which it gets if a bridge uses its name for another type.
 
     Both names are absolute.
     """
-    return _HIDDEN + topic
+    return _HIDDEN_PREFIX + topic
 
 
 class BridgedTopics:
-    """A watcher that notifies a simulation's plugins when a bridge starts to use a topic's name.
+    """A watcher that calls functions of plugins when a bridge starts to use the name of a topic.
 
     Args:
         node: the simulator's node.
-        exchange: passes the notification to the simulation thread.
+        exchange: runs the functions in the simulation thread.
     """
 
     def __init__(self, node: Node, exchange: Exchange) -> None:
         self._graph = node.graph
         self._exchange = exchange
-        self._moves: dict[str, list[Callable[[], None]]] = {}
-        self._is_due = False
-        self._graph.watch(self._changed)
+        self._callbacks: dict[str, list[Callable[[], None]]] = {}
+        self._is_review_queued = False
+        self._graph.watch(self._on_graph_change)
 
     def close(self) -> None:
         """Stop watching the graph and notifying the plugins."""
-        self._graph.unwatch(self._changed)
+        self._graph.unwatch(self._on_graph_change)
 
     def has(self, topic: str) -> bool:
         """Return whether a bridge offers a topic under another type."""
-        return topic in self._bridged([topic])
+        return topic in self._bridged_topics([topic])
 
-    def notify(self, topic: str, move: Callable[[], None]) -> None:
-        """Register a function to be called once, when a bridge offers a topic under another type."""
-        self._moves.setdefault(topic, []).append(move)
+    def notify(self, topic: str, callback: Callable[[], None]) -> None:
+        """Register a function that is called once, when a bridge starts to offer a topic with another type."""
+        self._callbacks.setdefault(topic, []).append(callback)
 
-    def forget(self, topic: str, move: Callable[[], None]) -> None:
+    def forget(self, topic: str, callback: Callable[[], None]) -> None:
         """Unregister a function that was registered with `notify`."""
-        moves = self._moves.get(topic, [])
-        if move in moves:
-            moves.remove(move)
-        if not moves:
-            self._moves.pop(topic, None)
+        callbacks = self._callbacks.get(topic, [])
+        if callback in callbacks:
+            callbacks.remove(callback)
+        if not callbacks:
+            self._callbacks.pop(topic, None)
 
-    def _changed(self) -> None:
-        if self._moves and not self._is_due:
-            self._is_due = True
-            self._exchange.post(self._review)
+    def _on_graph_change(self) -> None:
+        if self._callbacks and not self._is_review_queued:
+            self._is_review_queued = True
+            self._exchange.post(self._call_callbacks)
 
-    def _review(self) -> None:
-        self._is_due = False
-        for topic in self._bridged(list(self._moves)):
-            for move in self._moves.pop(topic):
-                move()
+    def _call_callbacks(self) -> None:
+        self._is_review_queued = False
+        for topic in self._bridged_topics(list(self._callbacks)):
+            for callback in self._callbacks.pop(topic):
+                callback()
 
-    def _bridged(self, topics: list[str]) -> list[str]:
+    def _bridged_topics(self, topics: list[str]) -> list[str]:
         """Return the topics in `topics` whose hidden names have publishers."""
-        outside = {
+        remote_topics = {
             remote_endpoint.name
             for remote_endpoint in self._graph.remote_endpoints()
             if remote_endpoint.kind is EndpointKind.PUBLISHER
@@ -79,5 +80,5 @@ class BridgedTopics:
         return [
             topic
             for topic in topics
-            if hidden_gz_topic(topic) in outside or self._graph.bus.publishers(hidden_gz_topic(topic))
+            if hidden_gz_topic(topic) in remote_topics or self._graph.bus.publishers(hidden_gz_topic(topic))
         ]

@@ -15,9 +15,9 @@ from linkwright.messages import get_message
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_LOOKS = 100.0
-"""The rate in Hz of simulated time at which the child model is looked for."""
-_OWN = "__model__"
+_SEARCH_RATE = 100.0
+"""The rate at which the plugin searches for the child model, in Hz of simulated time."""
+_OWN_MODEL = "__model__"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,81 +46,83 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         Raises:
             LinkwrightError: SIM133, the model does not have this link.
         """
-        parameters, begin = self.parameters, f"/model/{self.place.path}/detachable_joint"
-        self._is_attached, self._is_wanted = False, parameters.initial_attach
+        parameters, topic_prefix = self.parameters, f"/model/{self.place.path}/detachable_joint"
+        self._is_attached, self._should_attach = False, parameters.initial_attach
         self._parent, self._child = self.link(parameters.parent_link), ""
-        self._is_warned = parameters.suppress_child_warning
-        state = parameters.output_topic or f"/model/{parameters.child_model}/detachable_joint/state"
-        self._output = self.node.publisher("std_msgs/msg/String", state)
-        detach = parameters.detach_topic or parameters.topic or f"{begin}/detach"
-        self.node.subscribe("std_msgs/msg/Empty", detach, self._let_go)
-        self.node.subscribe("std_msgs/msg/Empty", parameters.attach_topic or f"{begin}/attach", self._hold)
-        if self._is_wanted and self._find_child():
+        self._has_warned = parameters.suppress_child_warning
+        state_topic = parameters.output_topic or f"/model/{parameters.child_model}/detachable_joint/state"
+        self._output = self.node.publisher("std_msgs/msg/String", state_topic)
+        detach_topic = parameters.detach_topic or parameters.topic or f"{topic_prefix}/detach"
+        self.node.subscribe("std_msgs/msg/Empty", detach_topic, self._on_detach)
+        self.node.subscribe("std_msgs/msg/Empty", parameters.attach_topic or f"{topic_prefix}/attach", self._on_attach)
+        if self._should_attach and self._find_child():
             self._attach()
-        self.every(_LOOKS, self._attach_if_found)
+        self.every(_SEARCH_RATE, self._attach_if_found)
 
     def reset(self) -> None:
         """Restore the initial state, attached or detached."""
         self._detach()
-        self._is_wanted = self.parameters.initial_attach
-        if self._is_wanted and self._find_child():
+        self._should_attach = self.parameters.initial_attach
+        if self._should_attach and self._find_child():
             self._attach()
 
     def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
-        """Attach the child if the previous instance held it or was to attach it; otherwise detach it."""
+        """Attach the child if the previous instance was attached or waited for the child; otherwise detach it."""
         assert isinstance(before, GzDetachableJoint)
-        if before._is_attached or before._is_wanted:
-            self._hold(None)
+        if before._is_attached or before._should_attach:
+            self._on_attach(None)
         else:
             self._detach()
 
     def stop(self) -> None:
-        """Detach the child, because the model may be about to be removed."""
+        """Detach the child without publishing the state, because the model may be about to be removed."""
         self._unweld()
 
-    def _hold(self, _: Any) -> None:
+    def _on_attach(self, _: Any) -> None:
         if not self._is_attached:
-            self._is_wanted = True
+            self._should_attach = True
             self._attach_if_found()
 
-    def _let_go(self, _: Any) -> None:
+    def _on_detach(self, _: Any) -> None:
         self._detach()
 
     def _attach_if_found(self) -> None:
-        """Attach the child if this is requested and the child is in the world.
+        """Attach the child if attaching was requested and the child is in the world; warn once if it is not.
 
-        A child that was replaced while it was attached is attached again.
+        If an attached child was replaced by a new instance, the new instance is attached.
         """
         if self._is_attached and not self.simulation.scene.is_welded(self._parent, self._child):
-            self._is_attached, self._is_wanted = False, True
-        if not self._is_wanted:
+            self._is_attached, self._should_attach = False, True
+        if not self._should_attach:
             return
         if self._find_child():
             self._attach()
-        elif not self._is_warned:
-            self._is_warned = True
+        elif not self._has_warned:
+            self._has_warned = True
             name = f"{self.parameters.child_model}{SEPARATOR}{self.parameters.child_link}"
             message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
             self.node.logger.warning(message)
 
     def _find_child(self) -> bool:
-        """Find the child link in a model of the world or in a nested model; return whether it exists."""
+        """Store the name of the child link, which may be in a nested model; return whether the link exists."""
         parameters, bodies = self.parameters, self.simulation.scene.bodies
-        model = self.place.path if parameters.child_model == _OWN else parameters.child_model
+        model = self.place.path if parameters.child_model == _OWN_MODEL else parameters.child_model
         link = f"{model}{SEPARATOR}{parameters.child_link}"
-        ways = (link, f"{self.place.path}{SEPARATOR}{link}")
-        self._child = next((way for way in ways if way in bodies and way != self._parent), "")
+        candidates = (link, f"{self.place.path}{SEPARATOR}{link}")
+        self._child = next(
+            (candidate for candidate in candidates if candidate in bodies and candidate != self._parent), ""
+        )
         return bool(self._child)
 
     def _attach(self) -> None:
         simulation = self.simulation
-        parent, child = (simulation.link_pose(item) for item in (self._parent, self._child))
-        simulation.scene.weld(self._parent, self._child, compose(invert(parent), child))
-        self._renew()
+        parent_pose, child_pose = (simulation.link_pose(link) for link in (self._parent, self._child))
+        simulation.scene.weld(self._parent, self._child, compose(invert(parent_pose), child_pose))
+        self._apply_change()
         self._publish_state(attached=True)
 
     def _detach(self) -> None:
-        self._is_wanted = False
+        self._should_attach = False
         if self._is_attached:
             self._unweld()
             self._publish_state(attached=False)
@@ -128,12 +130,12 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     def _unweld(self) -> None:
         if self._is_attached:
             self.simulation.scene.unweld(self._parent, self._child)
-            self._renew()
+            self._apply_change()
 
-    def _renew(self) -> None:
+    def _apply_change(self) -> None:
         self.simulation.set_altered()
         self.simulation.refresh()
 
     def _publish_state(self, *, attached: bool) -> None:
-        self._is_attached, self._is_wanted = attached, False
+        self._is_attached, self._should_attach = attached, False
         self._output.publish(get_message("std_msgs/msg/String")(data="attached" if attached else "detached"))

@@ -1,8 +1,8 @@
 """Differential drive: ``libgazebo_ros_diff_drive.so`` of ROS 2 and ROS 1, and ``gz-sim-diff-drive-system``.
 
-Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Unlike in
-gazebo_ros_pkgs, a robot that drives backward has a negative velocity in its wheel odometry, unless Gazebo's mistakes
-are requested.
+Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). In gazebo_ros_pkgs,
+the wheel odometry of a robot that drives backward has a positive velocity. Here the velocity is negative, unless
+Gazebo's mistakes are requested.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 P = TypeVar("P")
 
-_WORLD = 1
+_WORLD_SOURCE = 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,8 +80,15 @@ class GzParameters(GzDriveParameters):
 
 
 @dataclass(frozen=True, slots=True)
-class _Pair:
-    """Two wheels on one axis: their motors, their joint names in the simulation, and their kinematics."""
+class _WheelPair:
+    """The two wheels on one axis.
+
+    Attributes:
+        left: the motor of the left wheel.
+        right: the motor of the right wheel.
+        joints: the names of the left and the right joint in the simulation.
+        drive: the kinematics of the two wheels.
+    """
 
     left: Motor
     right: Motor
@@ -93,13 +100,13 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     """A differential drive that follows a commanded velocity, with odometry from the wheels' rotation."""
 
     CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
-    _pairs: tuple[_Pair, ...]
+    _pairs: tuple[_WheelPair, ...]
     _topics: OdometryTopics
 
     def _begin(self) -> None:
         self._wanted = self._now = (0.0, 0.0)
         self._place = PlanarPose()
-        self._turned = self._angles()
+        self._wheel_angles = self._read_angles()
 
     def _create_motors(
         self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
@@ -111,7 +118,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         """
         if len(left) != len(right):
             message = phrase(
-                "plugin '{plugin}' has {left} left wheels, but {right} right wheels",
+                "plugin '{plugin}' has {left} left wheels, but {right} right wheels; the numbers must be equal",
                 plugin=self.place.name,
                 left=len(left),
                 right=len(right),
@@ -128,40 +135,40 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         for names, (separation, radius) in zip(zip(left, right, strict=True), sizes, strict=False):
             joints = (self.joint(names[0]), self.joint(names[1]))
             motors = [self.simulation.add_velocity_motor(joint, MOTOR_GAIN, torque) for joint in joints]
-            pairs.append(_Pair(motors[0], motors[1], joints, DifferentialDrive(separation, radius, radius)))
+            pairs.append(_WheelPair(motors[0], motors[1], joints, DifferentialDrive(separation, radius, radius)))
         self._pairs = tuple(pairs)
         self._begin()
 
-    def _commanded(self, twist: Any) -> None:
+    def _on_command(self, twist: Any) -> None:
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
 
     def _rest(self) -> bool:
-        """Stop the robot; return whether a motion was commanded."""
-        before, self._wanted = self._wanted, (0.0, 0.0)
-        return before != self._wanted
+        """Stop the robot; return whether it was commanded to move."""
+        old_command, self._wanted = self._wanted, (0.0, 0.0)
+        return old_command != self._wanted
 
     def _turn_wheels(self) -> None:
         forward, angular = self._now
         for pair in self._pairs:
             pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, angular)
 
-    def _angles(self) -> tuple[float, float]:
-        """Return the angles of the first pair of wheels in rad, and store their velocities for `_speeds`."""
+    def _read_angles(self) -> tuple[float, float]:
+        """Return the angles of the first wheel pair in rad, and store the wheel velocities for `_measured_velocity`."""
         state, (left, right) = self.simulation.joint_state, self._pairs[0].joints
         (left_angle, left_speed), (right_angle, right_speed) = state(left), state(right)
-        self._rolling = left_speed, right_speed
+        self._wheel_velocities = left_speed, right_speed
         return left_angle, right_angle
 
-    def _speeds(self) -> tuple[float, float]:
-        """Return the measured forward velocity in m/s and yaw rate in rad/s of the first pair of wheels."""
-        return self._pairs[0].drive.motion(*self._rolling)
+    def _measured_velocity(self) -> tuple[float, float]:
+        """Return the forward velocity in m/s and the yaw rate in rad/s at the last call of `_read_angles`."""
+        return self._pairs[0].drive.motion(*self._wheel_velocities)
 
-    def _measure(self) -> None:
+    def _update_odometry(self) -> None:
         """Update the odometry from the rotation of the first pair of wheels."""
-        pair, (left, right), self._turned = self._pairs[0], self._turned, self._angles()
-        new_left, new_right = self._turned
-        way, turn = pair.drive.motion(new_left - left, new_right - right)
-        self._place.advance(way, 0.0, turn)
+        pair, (left, right), self._wheel_angles = self._pairs[0], self._wheel_angles, self._read_angles()
+        new_left, new_right = self._wheel_angles
+        distance, yaw_change = pair.drive.motion(new_left - left, new_right - right)
+        self._place.advance(distance, 0.0, yaw_change)
 
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""
@@ -183,7 +190,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             _one_per_pair(parameters.wheel_separation, count),
             _one_per_pair(parameters.wheel_diameter, count),
         )
-        sizes = [(a, b / 2.0) for a, b in zip(separations, diameters, strict=True)]
+        sizes = [(separation, diameter / 2.0) for separation, diameter in zip(separations, diameters, strict=True)]
         self._create_motors(parameters.left_joint, parameters.right_joint, sizes, parameters.max_wheel_torque)
         self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
         odometry = (
@@ -194,12 +201,12 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
-        self._sees_world = parameters.odometry_source.strip().lower() in (str(_WORLD), "world")
+        self._uses_true_pose = parameters.odometry_source.strip().lower() in (str(_WORLD_SOURCE), "world")
         commander = node.commander(self._rest)
         node.subscribe(
             "geometry_msgs/msg/Twist",
             parameters.command_topic,
-            self._commanded,
+            self._on_command,
             1,
             commander=commander,
             rest=self._rest,
@@ -209,11 +216,13 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self.every(parameters.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
 
     def _publish_wheels(self, output: Output) -> None:
-        """Publish the transforms of the wheels in the frames of the links that carry them."""
+        """Publish the transform of each wheel in the frame of the link that holds it."""
         for joint in [joint for pair in self._pairs for joint in pair.joints]:
-            placed = self.simulation.scene.joints[joint]
-            pose = compose(invert(self.simulation.link_pose(placed.parent)), self.simulation.link_pose(placed.child))
-            parent, child = (link.rpartition(SEPARATOR)[2] for link in (placed.parent, placed.child))
+            scene_joint = self.simulation.scene.joints[joint]
+            pose = compose(
+                invert(self.simulation.link_pose(scene_joint.parent)), self.simulation.link_pose(scene_joint.child)
+            )
+            parent, child = (link.rpartition(SEPARATOR)[2] for link in (scene_joint.parent, scene_joint.child))
             output.publish(transform_message(Header(self.stamp(), parent), child, pose))
 
     def reset(self) -> None:
@@ -222,47 +231,53 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         super().reset()
 
     def _update(self) -> None:
-        self._measure()
+        self._update_odometry()
         self._drive()
         if not self._topics.is_wanted:
             return
         stamp = self.stamp()
-        if self._sees_world:
+        if self._uses_true_pose:
             pose = self.simulation.model_pose(self.place.path)
             self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
         else:
-            forward, angular = self._speeds()
-            published = abs(forward) if self.gazebo_mistakes else forward
-            self._topics.publish(stamp, self._place.transform, published, 0.0, angular)
+            forward, angular = self._measured_velocity()
+            published_forward = abs(forward) if self.gazebo_mistakes else forward
+            self._topics.publish(stamp, self._place.transform, published_forward, 0.0, angular)
 
     def _drive(self) -> None:
-        """Accelerate the wheels towards the commanded velocity, within the limit for their rims in m/s2."""
+        """Accelerate the wheels towards the commanded velocity, within the limit of the rims in m/s2."""
         forward, angular = self._wanted
-        for number, pair in enumerate(self._pairs):
-            wanted, now = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[number]
-            if now == wanted:
+        for index, pair in enumerate(self._pairs):
+            target_speeds, current_speeds = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[index]
+            if current_speeds == target_speeds:
                 continue
             parameters = self.parameters
-            greatest = (
-                inf if parameters.max_wheel_acceleration <= 0 else parameters.max_wheel_acceleration * self._interval
+            max_change = (
+                inf
+                if parameters.max_wheel_acceleration <= 0
+                else parameters.max_wheel_acceleration * self._update_period
             )
-            change = greatest / pair.drive.left_radius
-            self._turn(number, _step_towards(now[0], wanted[0], change), _step_towards(now[1], wanted[1], change))
+            max_wheel_change = max_change / pair.drive.left_radius
+            self._set_wheel_speeds(
+                index,
+                _step_towards(current_speeds[0], target_speeds[0], max_wheel_change),
+                _step_towards(current_speeds[1], target_speeds[1], max_wheel_change),
+            )
 
-    def _turn(self, number: int, left: float, right: float) -> None:
-        """Set the velocities of the wheels of pair `number`, in rad/s."""
-        pair = self._pairs[number]
-        self._wheel_speeds[number] = left, right
+    def _set_wheel_speeds(self, index: int, left: float, right: float) -> None:
+        """Set the velocities of the two wheels of pair `index`, in rad/s."""
+        pair = self._pairs[index]
+        self._wheel_speeds[index] = left, right
         pair.left.target, pair.right.target = left, right
 
     def resume(self, before: SimulatedPlugin[ClassicParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
         super().resume(before)
-        for number, (left, right) in enumerate(self._wheel_speeds):
-            self._turn(number, left, right)
+        for index, (left, right) in enumerate(self._wheel_speeds):
+            self._set_wheel_speeds(index, left, right)
 
     @property
-    def _interval(self) -> float:
+    def _update_period(self) -> float:
         rate = self.parameters.update_rate
         return 1.0 / rate if rate > 0 else self.simulation.step / NANOSECONDS_PER_SECOND
 
@@ -296,24 +311,24 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self._commands.resume(before._commands)
 
     def _drive(self) -> None:
-        self._measure()
+        self._update_odometry()
         forward, _, angular = self._commands.next_velocity()
         self._now = (forward, angular)
         self._turn_wheels()
 
     def _publish(self) -> None:
-        self._measure()
+        self._update_odometry()
         if not self._topics.is_wanted:
             return
-        forward, angular = self._speeds()
+        forward, angular = self._measured_velocity()
         self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, angular)
 
 
-def _step_towards(now: float, to: float, greatest: float) -> float:
-    """Return `now` moved towards `to` by no more than `greatest`."""
-    return min(max(to, now - greatest), now + greatest)
+def _step_towards(value: float, target: float, max_step: float) -> float:
+    """Return `value` changed towards `target` by at most `max_step`."""
+    return min(max(target, value - max_step), value + max_step)
 
 
 def _one_per_pair(values: tuple[float, ...], count: int) -> tuple[float, ...]:
-    """Return exactly `count` values: repeat the last value if there are too few, and drop extra ones."""
+    """Return exactly `count` values: repeat the last value if there are too few, and drop surplus ones."""
     return (*values, *(values[-1:] * count))[:count]

@@ -1,4 +1,4 @@
-"""Poses and velocities of models and links, by the names that the services of gazebo_ros use.
+"""Poses and velocities of models and links under the names that the services of gazebo_ros use.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 """
@@ -15,8 +15,8 @@ from linkwright.messages import Header, Quaternion, Time, Vector3, get_message
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.simulation.simulation import Simulation
 
-_WHOLE_WORLD = ("", WORLD, "map", "/map")
-"""Names of the frame of the world."""
+_WORLD_FRAMES = ("", WORLD, "map", "/map")
+"""The names of the world's frame."""
 
 
 class Entities:
@@ -30,42 +30,42 @@ class Entities:
         self._simulation = simulation
 
     def link(self, name: str) -> str:
-        """Return the full name, ``model::link``, of a link that is named fully or by its link name.
+        """Return the full name, ``model::link``, of a link, given this name or only the link name.
 
         The link name is sufficient if only one model has such a link.
 
         Raises:
-            LinkwrightError: SIM141, there is no such link.
+            LinkwrightError: SIM141, there is no such link, or several models have one.
         """
-        return self._one(name, self._simulation.scene.bodies)
+        return self._full_name(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
-        """Return the full name, ``model::joint``, of a joint that is named fully or by its joint name.
+        """Return the full name, ``model::joint``, of a joint, given this name or only the joint name.
 
         The joint name is sufficient if only one model has such a joint.
 
         Raises:
-            LinkwrightError: SIM141, there is no such joint.
+            LinkwrightError: SIM141, there is no such joint, or several models have one.
         """
-        return self._one(name, self._simulation.scene.joints)
+        return self._full_name(name, self._simulation.scene.joints)
 
     def model(self, name: str) -> str:
-        """Return the name of a model, after checking that the model exists.
+        """Return `name` if a model has this name.
 
         Raises:
             LinkwrightError: SIM141, there is no such model.
         """
         if name not in self._simulation.scene.models:
-            raise _nothing(name, self._simulation.scene.models)
+            raise _not_found_error(name, self._simulation.scene.models)
         return name
 
     def frame(self, name: str) -> Transform:
-        """Return the pose of a model or link in the world; the identity for the world itself.
+        """Return the pose of a model or link in the world; the identity if `name` is a name of the world's frame.
 
         Raises:
             LinkwrightError: SIM141, there is no such entity.
         """
-        if name in _WHOLE_WORLD:
+        if name in _WORLD_FRAMES:
             return IDENTITY
         if name in self._simulation.scene.models:
             return self._simulation.model_pose(name)
@@ -86,11 +86,11 @@ class Entities:
         link = simulation.scene.models[name].structure.links[0].link.name if is_model else self.link(name)
         pose = simulation.model_pose(name) if is_model else simulation.link_pose(link)
         linear, angular = simulation.link_velocity(link)
-        into = invert(self.frame(reference))
+        to_reference = invert(self.frame(reference))
         message = get_message("gazebo_msgs/msg/EntityState")(name=name, reference_frame=reference or WORLD)
-        message.pose = pose_message(compose(into, pose))
-        message.twist.linear = Vector3(*rotate(into[3:], tuple(linear.tolist())))
-        message.twist.angular = Vector3(*rotate(into[3:], tuple(angular.tolist())))
+        message.pose = pose_message(compose(to_reference, pose))
+        message.twist.linear = Vector3(*rotate(to_reference[3:], tuple(linear.tolist())))
+        message.twist.angular = Vector3(*rotate(to_reference[3:], tuple(angular.tolist())))
         return message
 
     def put(self, state: Any) -> None:
@@ -101,11 +101,11 @@ class Entities:
         """
         name, frame = self.model(state.name), self.frame(state.reference_frame)
         self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
-        linear, angular = (rotate(frame[3:], numbers(item)) for item in (state.twist.linear, state.twist.angular))
+        linear, angular = (rotate(frame[3:], numbers(vector)) for vector in (state.twist.linear, state.twist.angular))
         self._simulation.set_model_velocity(name, linear, angular)
 
-    def answer_get(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/GetEntityState``.
+    def fill_get_response(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
+        """Fill in and return the response to ``gazebo_msgs/srv/GetEntityState``.
 
         `log`, such as a logger's method, receives the reason for a failure.
         """
@@ -116,29 +116,29 @@ class Entities:
 
         return _respond_without_message(response, get, service, log)
 
-    def answer_set(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/SetEntityState``.
+    def fill_set_response(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
+        """Set the requested state, and fill in the response to ``gazebo_msgs/srv/SetEntityState``.
 
         `log`, such as a logger's method, receives the reason for a failure.
         """
         return _respond_without_message(response, partial(self.put, request.state), service, log)
 
-    def _one(self, name: str, known: Collection[str]) -> str:
-        if name in known:
+    def _full_name(self, name: str, full_names: Collection[str]) -> str:
+        if name in full_names:
             return name
-        found = [each for each in known if each.endswith(f"{SEPARATOR}{name}")]
-        if len(found) == 1:
-            return found[0]
-        raise _nothing(name, (*self._simulation.scene.models, *known))
+        matches = [full_name for full_name in full_names if full_name.endswith(f"{SEPARATOR}{name}")]
+        if len(matches) == 1:
+            return matches[0]
+        raise _not_found_error(name, (*self._simulation.scene.models, *full_names))
 
 
-def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
+def _not_found_error(name: str, names: Collection[str]) -> LinkwrightError:
     message = phrase("there is no model or link '{name}'", name=name)
-    return LinkwrightError(Diagnostic("SIM141", message, hint=did_you_mean(name, known)))
+    return LinkwrightError(Diagnostic("SIM141", message, hint=did_you_mean(name, names)))
 
 
 def fill_response(response: Any, work: Callable[[], str]) -> Any:
-    """Call `work`, and return the response with `success` and `status_message`.
+    """Call `work`, and set `success` and `status_message` of the response, which is returned.
 
     `status_message` is the text that `work` returns, or the reason for a failure.
     """
@@ -152,7 +152,7 @@ def fill_response(response: Any, work: Callable[[], str]) -> Any:
 def _respond_without_message(
     response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
-    """Call `work`, and return the response with `success`; `log` receives the reason for a failure."""
+    """Call `work`, set `success` of the response and return it; `log` receives the reason for a failure."""
     try:
         work()
         response.success = True
@@ -171,10 +171,10 @@ def refusal_text(service: str, error: LinkwrightError) -> Phrase:
 
 
 def in_one_line(finding: Diagnostic) -> str:
-    """Return a finding on one line: place, message and hint."""
-    place = f"{finding.span}: " if finding.span else ""
+    """Return a finding on one line: location, message and hint."""
+    location = f"{finding.span}: " if finding.span else ""
     hint = f" ({finding.hint})" if finding.hint else ""
-    return f"{place}{finding.message}{hint}"
+    return f"{location}{finding.message}{hint}"
 
 
 def pose_message(pose: Transform) -> Any:
@@ -185,8 +185,8 @@ def pose_message(pose: Transform) -> Any:
 
 def transform_in(message: Any) -> Transform:
     """Return the pose in a message as a transform; a quaternion of zeros means no rotation."""
-    turn = message.orientation
-    quaternion = (turn.x, turn.y, turn.z, turn.w)
+    orientation = message.orientation
+    quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
     if not any(quaternion):
         quaternion = (0.0, 0.0, 0.0, 1.0)
     return (*numbers(message.position), *normalized(*quaternion))

@@ -1,4 +1,4 @@
-"""The findings for errors of plugins and sensors."""
+"""Findings that report errors in plugins and sensors."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.xmltree import Element
 
 
-def findings_of(error: Exception, name: str, element: Element | None) -> list[Diagnostic]:
+def error_findings(error: Exception, name: str, element: Element | None) -> list[Diagnostic]:
     """Return the findings for an error of a plugin or sensor.
 
     Args:
-        error: the exception; the findings of a `LinkwrightError` are reported unchanged, any other exception is
-            reported as a fault of the plugin's code (SIM138).
+        error: the exception. The findings of a `LinkwrightError` are returned unchanged; any other exception gives the
+            finding SIM138, a fault in the plugin's code.
         name: the name of the plugin or sensor.
-        element: the element that declares it; None if there is none.
+        element: the element that declares the plugin or sensor; None if it has no element.
     """
     if isinstance(error, LinkwrightError):
         return list(error.diagnostics)
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     message = phrase("'{plugin}' stopped because its code failed: {error}", plugin=name, error=foreign(reason))
     hint = phrase("everything else continues without it")
-    if places := extract_tb(error.__traceback__):
-        where = f"{Path(places[-1].filename).name}:{places[-1].lineno}"
-        hint = phrase("it failed in {place}; everything else continues without it", place=where)
+    if frames := extract_tb(error.__traceback__):
+        location = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}"
+        hint = phrase("it failed in {place}; everything else continues without it", place=location)
     span, source = (None, None) if element is None else (element.span(), element.source)
     return [Diagnostic("SIM138", message, span, hint=hint, source=source)]

@@ -1,7 +1,7 @@
 """A force on a link, commanded on a topic: ``libgazebo_ros_force.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step the force of the last message is added
-at the centre of mass, in the axes of the world or of the link).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step, the force of the last message acts at
+the centre of mass, in the axes of the world or of the link).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from linkwright.simulation.plugins.entities import numbers
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_STILL = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_NO_WRENCH = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,31 +46,35 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
                 phrase("plugin '{plugin}': <force_frame> must be 'world' or 'link'", plugin=self.place.name)
             )
         self.simulation.keep_awake(self._link)
-        self._wrench = _STILL
-        commander = self.node.commander(self._rest)
+        self._wrench = _NO_WRENCH
+        commander = self.node.commander(self._stop_motion)
         self.node.subscribe(
-            "geometry_msgs/msg/Wrench", parameters.topic_name, self._receive, commander=commander, rest=self._rest
+            "geometry_msgs/msg/Wrench",
+            parameters.topic_name,
+            self._receive,
+            commander=commander,
+            rest=self._stop_motion,
         )
-        self.every(0.0, self._push)
+        self.every(0.0, self._apply_wrench)
 
     def reset(self) -> None:
         """Set the force to zero."""
-        self._wrench = _STILL
-        self._push()
+        self._wrench = _NO_WRENCH
+        self._apply_wrench()
 
     def _receive(self, message: Any) -> None:
         self._wrench = (numbers(message.force), numbers(message.torque))
-        self._push()
+        self._apply_wrench()
 
-    def _rest(self) -> bool:
+    def _stop_motion(self) -> bool:
         """Set the force to zero; return whether it was nonzero."""
-        before = self._wrench
+        old_wrench = self._wrench
         self.reset()
-        return before != _STILL
+        return old_wrench != _NO_WRENCH
 
-    def _push(self) -> None:
+    def _apply_wrench(self) -> None:
         force, torque = self._wrench
         if self.parameters.force_frame == "link":
-            turn = self.simulation.link_pose(self._link)[3:]
-            force, torque = rotate(turn, force), rotate(turn, torque)
+            orientation = self.simulation.link_pose(self._link)[3:]
+            force, torque = rotate(orientation, force), rotate(orientation, torque)
         self.simulation.push(self._link, force, torque, by=self.node.name)

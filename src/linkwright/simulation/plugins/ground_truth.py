@@ -27,7 +27,7 @@ from linkwright.messages import Vector3 as VectorMessage
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_WORLD = ("world", "/world", "map", "/map")
+_WORLD_FRAMES = ("world", "/world", "map", "/map")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,19 +62,19 @@ class GzOdometryParameters:
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
     """The substitute for ``libgazebo_ros_p3d.so``: publishes the pose of a link.
 
-    The pose is expressed in the world or in the frame of another link. Velocities are expressed in the axes of the
-    world or of the other link. gazebo_ros_p3d rotates velocities into the axes of another link the wrong way, which
-    is reproduced if Gazebo's mistakes are requested.
+    The pose is expressed in the world or in the frame of another link, and the velocities in the axes of the same
+    frame. gazebo_ros_p3d rotates velocities in the wrong direction into the axes of another link. The plugin does the
+    same if Gazebo's mistakes are requested.
     """
 
     PARAMETERS = ClassicPoseParameters
 
     def start(self) -> None:
-        """Find the links, and create the topic."""
+        """Find the links, and create the odometry topic."""
         parameters = self.parameters
         self._link = self.link(parameters.body_name)
-        self._reference = "" if parameters.frame_name in _WORLD else self.link(parameters.frame_name)
-        self._turn = quaternion_from_rpy(parameters.rpy_offset)
+        self._reference = "" if parameters.frame_name in _WORLD_FRAMES else self.link(parameters.frame_name)
+        self._rotation_offset = quaternion_from_rpy(parameters.rpy_offset)
         self._random = self.random
         self._output = self.node.publisher("nav_msgs/msg/Odometry", parameters.topic_name, 1)
         self.every(parameters.update_rate, self._publish)
@@ -94,13 +94,13 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
                 simulation.link_velocity(self._reference),
             )
             pose = compose(invert(frame), pose)
-            turned = _rotated_by_frame if self.gazebo_mistakes else _in_frame_axes
-            linear, angular = turned(frame, linear - base_linear), turned(frame, angular - base_angular)
+            express = _rotated_by_frame if self.gazebo_mistakes else _in_frame_axes
+            linear, angular = express(frame, linear - base_linear), express(frame, angular - base_angular)
         x, y, z = (a + b for a, b in zip(pose[:3], parameters.xyz_offset, strict=True))
-        moved = (x, y, z, *quaternion_multiply(self._turn, pose[3:]))
-        linear, angular = _with_noise(self._random, parameters.gaussian_noise, linear, angular)
+        offset_pose = (x, y, z, *quaternion_multiply(self._rotation_offset, pose[3:]))
+        linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)
         header = Header(self.stamp(), parameters.frame_name)
-        message = _odometry(header, parameters.body_name, moved, linear, angular, parameters.gaussian_noise**2)
+        message = _odometry(header, parameters.body_name, offset_pose, linear, angular, parameters.gaussian_noise**2)
         self._output.publish(message)
 
 
@@ -115,14 +115,14 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
     def start(self) -> None:
         """Create the topics for odometry and transforms."""
         parameters, model, node = self.parameters, self.place.path, self.node
-        self._child = parameters.robot_base_frame or f"{model}/base_footprint"
+        self._child_frame = parameters.robot_base_frame or f"{model}/base_footprint"
         self._frame = parameters.odom_frame or f"{model}/odom"
         self._offset: Transform = (*parameters.xyz_offset, *quaternion_from_rpy(parameters.rpy_offset))
         self._random = self.random
         topic = parameters.odom_topic or f"/model/{model}/odometry"
-        uncertain = parameters.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
+        covariance_topic = parameters.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
         self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, usual="/odom")
-        self._uncertain = node.publisher("nav_msgs/msg/Odometry", uncertain)
+        self._covariance_odometry = node.publisher("nav_msgs/msg/Odometry", covariance_topic)
         self._transforms = node.publisher(
             TRANSFORMS, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, usual="/tf"
         )
@@ -133,7 +133,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self._random = self.random
 
     def _publish(self) -> None:
-        if not any(output.is_wanted for output in (self._odometry, self._uncertain, self._transforms)):
+        if not any(output.is_wanted for output in (self._odometry, self._covariance_odometry, self._transforms)):
             return
         parameters, simulation = self.parameters, self.simulation
         pose = compose(simulation.model_pose(self.place.path), self._offset)
@@ -144,29 +144,33 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
             forward, sideways, yaw_rate = planar_velocity(pose, linear, angular)
             linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, yaw_rate))
             pose = (pose[0], pose[1], 0.0, *pose[3:])
-        linear, angular = _with_noise(self._random, parameters.gaussian_noise, linear, angular)
+        linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)
         header = Header(self.stamp(), self._frame)
-        self._odometry.publish(_odometry(header, self._child, pose, linear, angular, 0.0))
-        self._uncertain.publish(_odometry(header, self._child, pose, linear, angular, parameters.gaussian_noise**2))
-        self._transforms.publish(transform_message(header, self._child, pose))
+        self._odometry.publish(_odometry(header, self._child_frame, pose, linear, angular, 0.0))
+        self._covariance_odometry.publish(
+            _odometry(header, self._child_frame, pose, linear, angular, parameters.gaussian_noise**2)
+        )
+        self._transforms.publish(transform_message(header, self._child_frame, pose))
 
 
 def _in_frame_axes(frame: Transform, vector: Array) -> Array:
-    """Express a vector given in the axes of the world in the axes of a frame."""
+    """Return a vector of the world's axes in the axes of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
 
 
 def _rotated_by_frame(frame: Transform, vector: Array) -> Array:
-    """Rotate a vector by the orientation of a frame."""
+    """Return a vector rotated by the orientation of a frame: the mistake of gazebo_ros_p3d."""
     x, y, z = vector
     return np.array(rotate(frame[3:], (float(x), float(y), float(z))))
 
 
-def _with_noise(random: np.random.Generator, deviation: float, linear: Array, angular: Array) -> tuple[Array, Array]:
-    if deviation <= 0.0:
+def _add_noise(
+    random: np.random.Generator, standard_deviation: float, linear: Array, angular: Array
+) -> tuple[Array, Array]:
+    if standard_deviation <= 0.0:
         return linear, angular
-    return linear + random.normal(0.0, deviation, 3), angular + random.normal(0.0, deviation, 3)
+    return linear + random.normal(0.0, standard_deviation, 3), angular + random.normal(0.0, standard_deviation, 3)
 
 
 def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
@@ -177,6 +181,6 @@ def _odometry(header: Header, child: str, pose: Transform, linear: Array, angula
     message.pose.pose.orientation = Quaternion(*rotation)
     message.twist.twist.linear = VectorMessage(*linear.tolist())
     message.twist.twist.angular = VectorMessage(*angular.tolist())
-    for part in (message.pose, message.twist):
-        part.covariance[::7] = [variance] * 6
+    for estimate in (message.pose, message.twist):
+        estimate.covariance[::7] = [variance] * 6
     return message

@@ -1,7 +1,7 @@
 """Ackermann steering of gz: ``gz-sim-ackermann-steering-system``.
 
 Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is the yaw
-rate of the car). Unlike in gz-sim, the gain determines how fast a wheel is steered to its angle, whatever the load.
+rate of the car). Unlike in gz-sim, the steering speed depends only on the gain, not on the load of the wheel.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from linkwright.simulation.plugins.gz_drive import (
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_SLOW = 1e-3
-"""A car that is to turn no faster than this, in rad/s, goes straight ahead."""
+_MIN_YAW_RATE = 1e-3
+"""A car drives straight ahead if its commanded yaw rate is less than this, in rad/s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,54 +62,57 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         """Create motors and servos for the wheels, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134, a joint does not exist; SIM160, a dimension is not positive, or no wheel is named.
+            LinkwrightError: SIM134, a joint does not exist; SIM160, a size is not positive, or a side has no wheel.
         """
         parameters, simulation = self.parameters, self.simulation
         sizes = (parameters.wheel_separation, parameters.wheel_base, parameters.wheel_radius)
         if not (min(sizes) > 0.0 and parameters.left_joint and parameters.right_joint) and not parameters.steering_only:
             raise self.parameter_error(
-                phrase("plugin '{plugin}' needs wheel joints and positive dimensions", plugin=self.place.name)
+                phrase(
+                    ("plugin '{plugin}' needs wheel joints on both sides, and positive dimensions"),
+                    plugin=self.place.name,
+                )
             )
-        sides = (parameters.left_joint, parameters.right_joint)
-        wheels = [] if parameters.steering_only else [[self.joint(name) for name in side] for side in sides]
+        joint_names = (parameters.left_joint, parameters.right_joint)
+        wheels = [] if parameters.steering_only else [[self.joint(name) for name in names] for names in joint_names]
         steering = [
             [self.joint(name) for name in side]
             for side in (parameters.left_steering_joint, parameters.right_steering_joint)
         ]
-        steered = {simulation.scene.joints[joint].child for side in steering for joint in side}
-        for name, placed in simulation.scene.joints.items():
-            if placed.parent in steered:
+        steered_links = {simulation.scene.joints[joint].child for joints in steering for joint in joints}
+        for name, scene_joint in simulation.scene.joints.items():
+            if scene_joint.parent in steered_links:
                 simulation.let_roll(name)
         simulation.keep_awake(self.first_link)
-        self._turned = [joints[0] for joints in wheels]
-        self._steering = [joints[0] for joints in steering]
+        self._odometry_joints = [joints[0] for joints in wheels]
+        self._steering_joints = [joints[0] for joints in steering]
         self._motors = [
             [simulation.add_velocity_motor(joint, MOTOR_GAIN, GZ_TORQUE) for joint in joints] for joints in wheels
         ]
-        greatest = max(parameters.steer_cmd_max, -parameters.steer_cmd_min)
-        self._servos = [[simulation.add_servo(joint, greatest) for joint in joints] for joints in steering]
+        max_steering_speed = max(parameters.steer_cmd_max, -parameters.steer_cmd_min)
+        self._servos = [[simulation.add_servo(joint, max_steering_speed) for joint in joints] for joints in steering]
         self._commands, self._limiter = DriveCommands(parameters), parameters.limiter("angular")
         self._angle = 0.0
         self._begin()
         if parameters.steering_only:
-            self._listen_to_angles()
+            self._subscribe_to_angles()
             self.every(GZ_RATE, self._steer_only)
             return
-        self._topics = connect_drive(self, self._with_topic(), self._commands)
+        self._topics = connect_drive(self, self._drive_parameters(), self._commands)
         self.every(GZ_RATE, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
 
-    def _with_topic(self) -> SteeringParameters:
+    def _drive_parameters(self) -> SteeringParameters:
         parameters = self.parameters
-        inside = f"/model/{self.place.path}/{parameters.sub_topic}" if parameters.sub_topic else ""
-        return replace(parameters, topic=parameters.topic or inside)
+        model_topic = f"/model/{self.place.path}/{parameters.sub_topic}" if parameters.sub_topic else ""
+        return replace(parameters, topic=parameters.topic or model_topic)
 
-    def _listen_to_angles(self) -> None:
+    def _subscribe_to_angles(self) -> None:
         parameters = self.parameters
         topic = parameters.topic or f"/model/{self.place.path}/{parameters.sub_topic or 'steer_angle'}"
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._receive_angle, rest=lambda: None)
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._on_angle, rest=lambda: None)
 
-    def _receive_angle(self, message: Any) -> None:
+    def _on_angle(self, message: Any) -> None:
         self._angle = float(message.data)
 
     def _begin(self) -> None:
@@ -122,7 +125,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._begin()
         self._commands.restart()
         self._limiter.restart()
-        for servo in (servo for side in self._servos for servo in side):
+        for servo in (servo for servos in self._servos for servo in servos):
             servo.restart()
         self._turn_wheels(0.0, 0.0)
 
@@ -136,24 +139,24 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     # --- the wheels ---------------------------------------------------------------------------------------------------
 
     def _drive(self) -> None:
-        """Drive and steer as commanded; the inner wheels turn more slowly and are steered further."""
-        self._measure()
+        """Drive and steer as commanded; the inner wheels turn slower and are steered further than the outer ones."""
+        self._update_odometry()
         parameters = self.parameters
         forward, _, angular = self._commands.next_velocity()
         curvature = self._curvature(forward, angular)
-        half = parameters.wheel_separation / 2.0 * curvature
-        self._turn_wheels(forward * (1.0 - half), forward * (1.0 + half))
+        offset_ratio = parameters.wheel_separation / 2.0 * curvature
+        self._turn_wheels(forward * (1.0 - offset_ratio), forward * (1.0 + offset_ratio))
         self._steer(*ackermann_angles(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
     def _curvature(self, forward: float, angular: float) -> float:
         """Return the commanded curvature in 1/m, positive to the left, clipped to the steering limit."""
         parameters = self.parameters
-        greatest = sin(parameters.steering_limit) / parameters.wheel_base
-        if abs(angular) < _SLOW:
+        max_curvature = sin(parameters.steering_limit) / parameters.wheel_base
+        if abs(angular) < _MIN_YAW_RATE:
             return 0.0
         if forward == 0.0:
-            return copysign(greatest, angular)
-        return min(max(angular / forward, -greatest), greatest)
+            return copysign(max_curvature, angular)
+        return min(max(angular / forward, -max_curvature), max_curvature)
 
     def _turn_wheels(self, left: float, right: float) -> None:
         for motors, speed in zip(self._motors, (left, right), strict=False):
@@ -164,9 +167,9 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         parameters = self.parameters
         angle = self._limiter.follow(self._angle, 1.0 / GZ_RATE)
         angle = min(max(angle, -parameters.steering_limit), parameters.steering_limit)
-        along, across = 2.0 * parameters.wheel_base * cos(angle), parameters.wheel_separation * sin(angle)
+        longitudinal, lateral = 2.0 * parameters.wheel_base * cos(angle), parameters.wheel_separation * sin(angle)
         slope = 2.0 * parameters.wheel_base * sin(angle)
-        self._steer(atan(slope / (along - across)), atan(slope / (along + across)))
+        self._steer(atan(slope / (longitudinal - lateral)), atan(slope / (longitudinal + lateral)))
 
     def _steer(self, left: float, right: float) -> None:
         """Steer towards the angles in rad for one update period.
@@ -183,22 +186,26 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     # --- odometry -----------------------------------------------------------------------------------------------------
 
     def _wheel_angles(self) -> tuple[float, ...]:
-        return tuple(self.simulation.joint_state(joint)[0] for joint in self._turned)
+        return tuple(self.simulation.joint_state(joint)[0] for joint in self._odometry_joints)
 
     @property
-    def _turn(self) -> float:
+    def _yaw_per_metre(self) -> float:
         """The change of yaw in rad per metre driven, at the measured steering angles."""
-        left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering)
+        left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering_joints)
         return tan((left + right) / 2.0) / self.parameters.wheel_base
 
-    def _measure(self) -> None:
+    def _update_odometry(self) -> None:
         """Update the odometry from the rotation of the first wheel on each side."""
-        before, self._angles = self._angles, self._wheel_angles()
-        way = sum(new - old for new, old in zip(self._angles, before, strict=True)) / 2.0 * self.parameters.wheel_radius
-        self._place.advance(way, 0.0, way * self._turn)
+        old_angles, self._angles = self._angles, self._wheel_angles()
+        distance = (
+            sum(new_angle - old_angle for new_angle, old_angle in zip(self._angles, old_angles, strict=True))
+            / 2.0
+            * self.parameters.wheel_radius
+        )
+        self._place.advance(distance, 0.0, distance * self._yaw_per_metre)
 
     def _publish(self) -> None:
-        self._measure()
-        speeds = [self.simulation.joint_state(joint)[1] for joint in self._turned]
+        self._update_odometry()
+        speeds = [self.simulation.joint_state(joint)[1] for joint in self._odometry_joints]
         forward = sum(speeds) / 2.0 * self.parameters.wheel_radius
-        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, forward * self._turn)
+        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, forward * self._yaw_per_metre)

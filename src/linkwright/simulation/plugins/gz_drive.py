@@ -1,4 +1,4 @@
-"""Commands, odometry topics and frames that the drives of gz have in common.
+"""Commands, odometry topics and frames that all drives of gz use.
 
 Source: gz-sim (parameters, topics, defaults).
 """
@@ -14,11 +14,11 @@ from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 GZ_RATE = 100.0
-"""The rate in Hz at which drives of gz process commands; gz does before each step."""
+"""The rate in Hz at which drives of gz process commands; gz itself processes them before each step."""
 GZ_TORQUE = 5.0
-"""The greatest torque of a wheel in N m where a plugin of gz names none: gz sets velocities whatever that takes."""
+"""The maximum torque of a wheel in N m if a gz plugin specifies none; gz sets velocities without a limit."""
 MOTOR_GAIN = 20.0
-"""Torque of a motor in N m for each rad/s that its wheel is too slow."""
+"""The torque of a motor in N m per rad/s by which its wheel is too slow."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +34,7 @@ class GzDriveParameters(SpeedLimits):
 
 
 class DriveCommands:
-    """The commanded velocity of a drive, with limits: forward and left in m/s, about z in rad/s.
+    """The commanded velocity of a drive, with limits: forward and left in m/s, and the yaw rate in rad/s.
 
     Args:
         limits: the limits of velocity, acceleration and jerk.
@@ -49,14 +49,14 @@ class DriveCommands:
         self.restart()
 
     def restart(self) -> None:
-        """Set the velocity to zero, and drop the command."""
+        """Set the velocity and the command to zero."""
         self._wanted = (0.0, 0.0, 0.0)
         for limiter in self._limiters:
             limiter.restart()
 
-    def resume(self, before: DriveCommands) -> None:
-        """Take over the velocity, the command and the enabled state of a predecessor with equal limits."""
-        self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
+    def resume(self, previous: DriveCommands) -> None:
+        """Take over the velocity, the command and the enabled state of a previous instance with equal limits."""
+        self.is_enabled, self._wanted, self._limiters = previous.is_enabled, previous._wanted, previous._limiters
 
     def set_command(self, twist: Any) -> None:
         """Set the command from a ``geometry_msgs/msg/Twist``, unless the drive is disabled."""
@@ -64,9 +64,9 @@ class DriveCommands:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def rest(self) -> bool:
-        """Set the command to zero; return whether a motion was commanded."""
-        before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
-        return before != self._wanted
+        """Set the command to zero; return whether it was nonzero."""
+        old_command, self._wanted = self._wanted, (0.0, 0.0, 0.0)
+        return old_command != self._wanted
 
     def enable(self, message: Any) -> None:
         """Enable the drive, or disable and stop it, as a ``std_msgs/msg/Bool`` requests."""
@@ -79,9 +79,9 @@ class DriveCommands:
 
         Call this `GZ_RATE` times per simulated second.
         """
-        pairs = zip(self._limiters, self._wanted, strict=True)
-        forward, sideways, angular = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
-        return forward, sideways, angular
+        limited_targets = zip(self._limiters, self._wanted, strict=True)
+        forward, left, angular = (limiter.follow(target, 1.0 / GZ_RATE) for limiter, target in limited_targets)
+        return forward, left, angular
 
 
 def connect_drive(
@@ -90,7 +90,7 @@ def connect_drive(
     """Subscribe to the commands of a drive, and create and return its odometry topics."""
     model, node = plugin.place.path, plugin.node
     frame = parameters.frame_id or f"{model}/odom"
-    child = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
+    child_frame = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
     odometry = node.publisher(
         "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", usual="/odom"
     )
@@ -105,4 +105,4 @@ def connect_drive(
         commander=commander,
         rest=commands.rest,
     )
-    return OdometryTopics(frame, child, odometry, transforms)
+    return OdometryTopics(frame, child_frame, odometry, transforms)

@@ -16,10 +16,10 @@ from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_GAIN = 20.0
-"""Torque of a motor in N m for each rad/s that its joint is too slow."""
-_UNBOUNDED = 1000.0
-"""The greatest command of gz if there is no limit."""
+_MOTOR_GAIN = 20.0
+"""The torque of a motor in N m per rad/s by which its joint is too slow."""
+_DEFAULT_MAX_COMMAND = 1000.0
+"""The default of ``cmd_max`` in gz, which means that there is no limit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,8 +34,8 @@ class ControllerParameters:
     d_gain: float = 0.0
     i_max: float = 1.0
     i_min: float = -1.0
-    cmd_max: float = _UNBOUNDED
-    cmd_min: float = -_UNBOUNDED
+    cmd_max: float = _DEFAULT_MAX_COMMAND
+    cmd_min: float = -_DEFAULT_MAX_COMMAND
     cmd_offset: float = 0.0
 
     @property
@@ -76,7 +76,7 @@ P = TypeVar("P", bound=ControllerParameters)
 
 
 class _JointController(SimulatedPlugin[P], Generic[P]):
-    """A plugin that keeps joints at the value `_wanted`, which is commanded on a topic."""
+    """A plugin that keeps joints at the commanded value `_wanted`: a position, or a velocity."""
 
     IGNORED = ("use_actuator_msg", "actuatorNumber")
 
@@ -91,21 +91,21 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._begin()
 
     def _find_joints(self) -> None:
-        """Find the joints, and keep the bodies that they move awake."""
+        """Find the joints, and prevent the bodies that they move from sleeping."""
         simulation = self.simulation
         self._joints = [self.joint(name) for name in self.parameters.joint_name]
         for joint in self._joints:
             simulation.keep_awake(simulation.scene.joints[joint].child)
 
-    def _listen(self, leaf: str) -> None:
+    def _subscribe_to_commands(self, topic_suffix: str) -> None:
         """Subscribe to the commands, on the configured topic or on the default topic of the first joint.
 
-        `leaf` is the last part of the default topic's name.
+        `topic_suffix` is the end of the default topic's name.
         """
         parameters = self.parameters
         topic = (
             parameters.topic
-            or f"/model/{self.place.path}/{parameters.sub_topic or f'joint/{parameters.joint_name[0]}/{leaf}'}"
+            or f"/model/{self.place.path}/{parameters.sub_topic or f'joint/{parameters.joint_name[0]}/{topic_suffix}'}"
         )
         commander = self.node.commander(self._rest)
         self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander, rest=self._rest)
@@ -115,29 +115,28 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._wanted = float(message.data)
 
     def _rest(self) -> bool:
-        """Stop a commanded motion, and return whether the joints were commanded to move.
+        """Stop a commanded motion, and return whether there was one.
 
-        A commanded position is held, so there is nothing to stop by default.
+        By default nothing stops, because a commanded position is held.
         """
         return False
 
-    def _push(self, derivative: int) -> None:
+    def _apply_forces(self, state_index: int) -> None:
         """Apply the PID forces of one step to the joints.
 
-        `derivative` selects the controlled value: 0 for the position, 1 for the velocity.
+        `state_index` selects the controlled value: 0 for the position, 1 for the velocity.
         """
         seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint, controller in zip(self._joints, self._controllers, strict=True):
-            error = self._wanted - self.simulation.joint_state(joint)[derivative]
+            error = self._wanted - self.simulation.joint_state(joint)[state_index]
             self.simulation.push_joint(joint, controller.force(error, seconds))
 
 
 class GzJointPosition(_JointController[PositionParameters]):
     """The substitute for ``gz-sim-joint-position-controller-system``.
 
-    With ``use_velocity_commands``, a joint moves straight to the commanded position, as fast as its limit and
-    ``cmd_max`` allow, and stays there under any load. Without this parameter, a PID controller applies forces to the
-    joint.
+    With ``use_velocity_commands``, a joint moves directly to the commanded position and stays there under any load. Its
+    speed is limited by the joint and ``cmd_max``. Without this parameter, a PID controller applies forces to the joint.
     """
 
     PARAMETERS = PositionParameters
@@ -148,14 +147,17 @@ class GzJointPosition(_JointController[PositionParameters]):
         parameters, simulation = self.parameters, self.simulation
         if parameters.joint_index:
             raise self.parameter_error(
-                phrase("plugin '{plugin}': only the first axis of a joint is simulated", plugin=self.place.name)
+                phrase(
+                    ("plugin '{plugin}': only the first axis of a joint is simulated; remove <joint_index>"),
+                    plugin=self.place.name,
+                )
             )
         self._find_joints()
         self._servos = []
         if parameters.use_velocity_commands:
-            greatest = inf if parameters.cmd_max == _UNBOUNDED else parameters.cmd_max
-            self._servos = [simulation.add_servo(joint, greatest) for joint in self._joints]
-        self._listen("0/cmd_pos")
+            max_speed = inf if parameters.cmd_max == _DEFAULT_MAX_COMMAND else parameters.cmd_max
+            self._servos = [simulation.add_servo(joint, max_speed) for joint in self._joints]
+        self._subscribe_to_commands("0/cmd_pos")
         self.every(0.0, self._move)
 
     def _begin(self) -> None:
@@ -166,7 +168,7 @@ class GzJointPosition(_JointController[PositionParameters]):
 
     def _move(self) -> None:
         if not self._servos:
-            self._push(0)
+            self._apply_forces(0)
         for servo in self._servos:
             servo.move(self._wanted, self.simulation.step / NANOSECONDS_PER_SECOND)
 
@@ -184,30 +186,30 @@ class GzJointVelocity(_JointController[VelocityParameters]):
         self._find_joints()
         self._motors = []
         if not self.parameters.use_force_commands:
-            self._motors = [self.simulation.add_velocity_motor(joint, _GAIN, inf) for joint in self._joints]
-        self._listen("cmd_vel")
+            self._motors = [self.simulation.add_velocity_motor(joint, _MOTOR_GAIN, inf) for joint in self._joints]
+        self._subscribe_to_commands("cmd_vel")
         if self.parameters.use_force_commands:
-            self.every(0.0, lambda: self._push(1))
+            self.every(0.0, lambda: self._apply_forces(1))
 
     def _begin(self) -> None:
         super()._begin()
-        self._turn(self.parameters.initial_velocity)
+        self._set_velocity(self.parameters.initial_velocity)
 
     def resume(self, before: SimulatedPlugin[VelocityParameters]) -> None:
         """Take over the velocity of the previous instance."""
         assert isinstance(before, GzJointVelocity)
-        self._turn(before._wanted)
+        self._set_velocity(before._wanted)
 
     def _commanded(self, message: Any) -> None:
-        self._turn(float(message.data))
+        self._set_velocity(float(message.data))
 
     def _rest(self) -> bool:
-        moved = self._wanted != 0.0
-        self._turn(0.0)
-        return moved
+        was_moving = self._wanted != 0.0
+        self._set_velocity(0.0)
+        return was_moving
 
-    def _turn(self, velocity: float) -> None:
+    def _set_velocity(self, velocity: float) -> None:
         self._wanted = velocity
         for joint, motor in zip(self._joints, self._motors, strict=False):
-            greatest = self.simulation.scene.speed_limit(joint)
-            motor.target = min(max(velocity, -greatest), greatest)
+            max_speed = self.simulation.scene.speed_limit(joint)
+            motor.target = min(max(velocity, -max_speed), max_speed)

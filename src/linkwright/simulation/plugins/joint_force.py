@@ -33,23 +33,25 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         simulation.keep_awake(simulation.scene.joints[self._joint].child)
         self._force = 0.0
         topic = f"/model/{self.place.path}/joint/{name}/cmd_force"
-        commander = self.node.commander(self._rest)
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander, rest=self._rest)
-        self.every(0.0, self._push)
+        commander = self.node.commander(self._stop_motion)
+        self.node.subscribe(
+            "std_msgs/msg/Float64", topic, self._on_command, commander=commander, rest=self._stop_motion
+        )
+        self.every(0.0, self._apply_force)
 
     def reset(self) -> None:
         """Set the force to zero."""
         self._force = 0.0
-        self._push()
+        self._apply_force()
 
-    def _commanded(self, message: Any) -> None:
+    def _on_command(self, message: Any) -> None:
         self._force = float(message.data)
 
-    def _rest(self) -> bool:
+    def _stop_motion(self) -> bool:
         """Set the force to zero; return whether it was nonzero."""
-        before = self._force
+        old_force = self._force
         self.reset()
-        return before != 0.0
+        return old_force != 0.0
 
-    def _push(self) -> None:
+    def _apply_force(self) -> None:
         self.simulation.push_joint(self._joint, self._force)

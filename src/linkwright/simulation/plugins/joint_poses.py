@@ -1,7 +1,7 @@
 """Joints that are set to the positions of a trajectory: ``libgazebo_ros_joint_pose_trajectory.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (topic, parameters; joints jump from point to point, and the
-``time_from_start`` of a point is the delay between that point and the next one).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (topic, parameters). Joints jump from point to point, and the
+``time_from_start`` of a point is the time until the next point.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self._due = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
-        """Set the joints to the next point of the trajectory once the time of this point is reached."""
+        """Set the joints to the next point of the trajectory if its time has come."""
         if not self._points or self.simulation.time < self._due:
             return
         point = self._points.popleft()

@@ -59,10 +59,10 @@ class ClassicJointStates(_JointStates[ClassicParameters]):
     PARAMETERS = ClassicParameters
 
     def start(self) -> None:
-        """Find the joints; omit fixed joints with a warning."""
-        asked = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
-        found = [(name, joint) for name in asked if (joint := self._joint(name)) is not None]
-        names, joints = [name for name, _ in found], [joint for _, joint in found]
+        """Find the joints, and publish their states; skip fixed and missing joints with a warning."""
+        requested_names = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
+        joints_by_name = [(name, joint) for name in requested_names if (joint := self._joint(name)) is not None]
+        names, joints = [name for name, _ in joints_by_name], [joint for _, joint in joints_by_name]
         if names:
             self._publish_joints(names, joints, self.parameters.update_rate, "joint_states")
 
@@ -80,12 +80,14 @@ class GzJointStates(_JointStates[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Find the joints that the parameters name, or all movable joints if the parameters name none."""
-        begin = f"{self.place.path}::"
-        moving = [
-            name for name, placed in self.simulation.scene.joints.items() if name.startswith(begin) and placed.axes
+        """Find the joints that the parameters name, or all movable joints if the parameters do not name any."""
+        prefix = f"{self.place.path}::"
+        movable_joints = [
+            name
+            for name, scene_joint in self.simulation.scene.joints.items()
+            if name.startswith(prefix) and scene_joint.axes
         ]
-        joints = [self.joint(name) for name in self.parameters.joint_name] or moving
-        names = [joint.removeprefix(begin) for joint in joints]
+        joints = [self.joint(name) for name in self.parameters.joint_name] or movable_joints
+        names = [joint.removeprefix(prefix) for joint in joints]
         topic = self.parameters.topic or f"/world/{self.place.world.name}/model/{self.place.path}/joint_state"
         self._publish_joints(names, joints, self.parameters.update_rate, topic, "/joint_states")

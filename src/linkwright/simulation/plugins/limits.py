@@ -15,7 +15,7 @@ from linkwright.kinematics.limits import SpeedLimiter
 class SpeedLimits:
     """Limits of velocity (m/s, rad/s), acceleration (m/s2, rad/s2) and jerk (m/s3, rad/s3).
 
-    A linear or angular limit takes precedence over the limit for both kinds.
+    A limit for linear or angular velocity takes precedence over the limit for both.
     """
 
     min_velocity: float = -inf
@@ -42,7 +42,10 @@ class SpeedLimits:
         return SpeedLimiter(*(self._bounds(kind, item) for item in ("velocity", "acceleration", "jerk")))
 
     def _bounds(self, kind: str, derivative: str) -> tuple[float, float]:
-        special = (getattr(self, f"{side}_{kind}_{derivative}") for side in ("min", "max"))
-        general = (getattr(self, f"{side}_{derivative}") for side in ("min", "max"))
-        lower, upper = (both if one is None else one for one, both in zip(special, general, strict=True))
+        specific_limits = (getattr(self, f"{side}_{kind}_{derivative}") for side in ("min", "max"))
+        general_limits = (getattr(self, f"{side}_{derivative}") for side in ("min", "max"))
+        lower, upper = (
+            general_limit if specific_limit is None else specific_limit
+            for specific_limit, general_limit in zip(specific_limits, general_limits, strict=True)
+        )
         return lower, upper

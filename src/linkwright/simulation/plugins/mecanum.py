@@ -1,8 +1,8 @@
 """Mecanum drive of gz: ``gz-sim-mecanum-drive-system``.
 
-Source: gz-sim (parameters, topics, defaults, wheel speeds, wheel odometry). Unlike in gz-sim, rollers are not simulated
-by anisotropic friction: the wheels slide, and the robot gets the velocity that mecanum wheels would give it, in the way
-that `planar_move` holds a velocity.
+Source: gz-sim (parameters, topics, defaults, wheel speeds, wheel odometry). Unlike in gz-sim, anisotropic friction does
+not simulate the rollers. The wheels slide, and the plugin sets the velocity that mecanum wheels would give the robot,
+as `planar_move` does.
 """
 
 from __future__ import annotations
@@ -59,19 +59,19 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
                 )
             )
         self.require_free_model()
-        corners = (
+        joint_names = (
             parameters.front_left_joint,
             parameters.front_right_joint,
             parameters.back_left_joint,
             parameters.back_right_joint,
         )
-        wheels = [[self.joint(name) for name in names] for names in corners]
-        for joint in (joint for joints in wheels for joint in joints):
+        joints_by_wheel = [[self.joint(name) for name in names] for names in joint_names]
+        for joint in (joint for joints in joints_by_wheel for joint in joints):
             simulation.let_slide(joint)
         self._motors = [
-            [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in wheels
+            [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in joints_by_wheel
         ]
-        self._wheels = [joints[0] for joints in wheels]
+        self._wheels = [joints[0] for joints in joints_by_wheel]
         self._drive_train = MecanumDrive(
             (parameters.wheel_separation + parameters.wheelbase) / 2.0, parameters.wheel_radius
         )
@@ -84,7 +84,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
 
     def _begin(self) -> None:
         self._place = PlanarPose()
-        self._angles = self._states(0)
+        self._angles = self._wheel_states(0)
 
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""
@@ -106,18 +106,22 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
             for motor in motors:
                 motor.target = speed
 
-    def _states(self, derivative: int) -> list[float]:
+    def _wheel_states(self, derivative: int) -> list[float]:
         """Return the angles in rad (derivative 0) or velocities in rad/s (1) of the four wheels."""
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
-    def _robot_motion(self, turned: list[float]) -> tuple[float, float, float]:
-        """Return the robot's displacement or velocity that corresponds to the wheels' angles or velocities."""
-        return self._drive_train.motion(*turned)
+    def _robot_motion(self, wheel_values: list[float]) -> tuple[float, float, float]:
+        """Return the robot's displacement for wheel angles in rad, or its velocity for wheel velocities in rad/s."""
+        return self._drive_train.motion(*wheel_values)
 
     def _move(self) -> None:
-        before, self._angles = self._angles, self._states(0)
-        self._place.advance(*self._robot_motion([new - old for new, old in zip(self._angles, before, strict=True)]))
-        self.hold(*self._robot_motion(self._states(1)))
+        old_angles, self._angles = self._angles, self._wheel_states(0)
+        self._place.advance(
+            *self._robot_motion(
+                [new_angle - old_angle for new_angle, old_angle in zip(self._angles, old_angles, strict=True)]
+            )
+        )
+        self.hold(*self._robot_motion(self._wheel_states(1)))
 
     def _publish(self) -> None:
-        self._topics.publish(self.stamp(), self._place.transform, *self._robot_motion(self._states(1)))
+        self._topics.publish(self.stamp(), self._place.transform, *self._robot_motion(self._wheel_states(1)))

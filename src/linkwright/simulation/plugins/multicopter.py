@@ -1,8 +1,8 @@
 """Multicopters: ``gz-sim-multicopter-motor-model-system`` and ``gz-sim-multicopter-control-system``.
 
 The thrust of a rotor acts along the z axis of its link and grows with the square of its speed. The rotor exerts a
-reaction torque on its parent link, and has drag in the air through which it moves. The controller tilts the model so
-that it reaches the commanded velocity.
+reaction torque on its parent link, and air drag acts on a rotor that moves across its axis. The controller tilts the
+model so that it reaches the commanded velocity.
 
 Source: gz-sim (parameters, topics, formulas); T. Lee, M. Leok, N. H. McClamroch, "Geometric tracking control of a
 quadrotor UAV on SE(3)", 2010.
@@ -30,8 +30,8 @@ from linkwright.xmltree import Element
 Array = npt.NDArray[np.float64]
 
 _SPIN_GAIN = 1e-3
-"""Torque in N m for each rad/s of a rotor's speed error; only its visible rotation depends on it, not its pull."""
-_PARALLEL = 1e-3
+"""The torque in N m per rad/s of speed error; it affects only the visible rotation of a rotor, not its thrust."""
+_MIN_SQUARED_SINE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +57,7 @@ class MotorParameters:
 class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     """A rotor that follows the speed commands of a controller or a topic, with the delay of a motor.
 
-    The topic carries the speeds of all rotors, in rad/s. In a model with a controller, the controller's commands apply.
+    The topic contains the speeds of all rotors in rad/s. The commands of a controller in the model take precedence.
 
     Attributes:
         wanted: the commanded speed, in rad/s.
@@ -85,7 +85,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         joint = self.joint(parameters.joint_name)
         self._parent = self.simulation.scene.joints[joint].parent
         self._sign = -1.0 if parameters.turning_direction.strip().lower() == "cw" else 1.0
-        self._spin = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
+        self._motor = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
         self.simulation.keep_awake(self._link)
         self.reset()
         namespace = _text(self.place.element, "robotNamespace").strip("/") or self.place.path
@@ -105,21 +105,22 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     def _apply_thrust(self) -> None:
         parameters, simulation = self.parameters, self.simulation
         wanted = min(max(self.wanted, 0.0), parameters.max_rot_velocity)
-        constant = parameters.time_constant_up if wanted > self.speed else parameters.time_constant_down
-        share = exp(-simulation.step / NANOSECONDS_PER_SECOND / constant) if constant > 0.0 else 0.0
-        self.speed = share * self.speed + (1.0 - share) * wanted
+        time_constant = parameters.time_constant_up if wanted > self.speed else parameters.time_constant_down
+        old_weight = exp(-simulation.step / NANOSECONDS_PER_SECOND / time_constant) if time_constant > 0.0 else 0.0
+        self.speed = old_weight * self.speed + (1.0 - old_weight) * wanted
         thrust = parameters.motor_constant * self.speed**2
         axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]
         velocity, _ = simulation.link_velocity(self._link)
-        across = self.speed * (velocity - velocity @ axis * axis)
-        force = thrust * axis - parameters.rotor_drag_coefficient * across
+        cross_velocity = self.speed * (velocity - velocity @ axis * axis)
+        force = thrust * axis - parameters.rotor_drag_coefficient * cross_velocity
         torque = (
-            -self._sign * thrust * parameters.moment_constant * axis - parameters.rolling_moment_coefficient * across
+            -self._sign * thrust * parameters.moment_constant * axis
+            - parameters.rolling_moment_coefficient * cross_velocity
         )
-        me = self.place.name + parameters.joint_name
-        simulation.push(self._link, force.tolist(), by=me)
-        simulation.push(self._parent, (0.0, 0.0, 0.0), torque.tolist(), by=me)
-        self._spin.target = self._sign * self.speed / parameters.slowdown
+        push_name = self.place.name + parameters.joint_name
+        simulation.push(self._link, force.tolist(), by=push_name)
+        simulation.push(self._parent, (0.0, 0.0, 0.0), torque.tolist(), by=push_name)
+        self._motor.target = self._sign * self.speed / parameters.slowdown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,13 +166,17 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._rotors: dict[str, GzMulticopterMotor] = {}
         self.reset()
         namespace = _text(element, "robotNamespace").strip("/")
-        start = f"/{namespace}/" if namespace else "/"
-        commander = self.node.commander(self._rest)
-        twist = "geometry_msgs/msg/Twist"
+        topic_prefix = f"/{namespace}/" if namespace else "/"
+        commander = self.node.commander(self._stop_motion)
+        twist_type = "geometry_msgs/msg/Twist"
         self.node.subscribe(
-            twist, start + parameters.command_topic, self._receive, commander=commander, rest=self._rest
+            twist_type,
+            topic_prefix + parameters.command_topic,
+            self._receive,
+            commander=commander,
+            rest=self._stop_motion,
         )
-        self.node.subscribe("std_msgs/msg/Bool", start + parameters.enable_topic, self._enable)
+        self.node.subscribe("std_msgs/msg/Bool", topic_prefix + parameters.enable_topic, self._on_enable)
         self.every(0.0, self._command_rotors)
 
     def reset(self) -> None:
@@ -180,47 +185,54 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._is_enabled = True
 
     def _find_rotors(self, element: Element | None) -> None:
-        """Find the rotors, and compute the gains and the matrix for their speeds.
+        """Find the rotors, and compute the gains and the matrix that gives the rotor speeds.
 
-        The matrix gives the squared speeds of the rotors for an angular acceleration and a thrust.
+        The matrix gives the squared speeds of the rotors from an angular acceleration and a thrust.
         """
         simulation = self.simulation
         configuration = None if element is None else element.first("rotorConfiguration")
         rotors = [] if configuration is None else list(configuration.elements("rotor"))
-        place = np.array(simulation.link_pose(self._body))
-        turn = rotation_matrix(place[3:])
+        body_pose = np.array(simulation.link_pose(self._body))
+        body_rotation = rotation_matrix(body_pose[3:])
         columns = []
         self._joints = []
         for rotor in rotors:
             joint = self.joint(_text(rotor, "jointName"))
-            at = turn.T @ (np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - place[:3])
+            rotor_position = body_rotation.T @ (
+                np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - body_pose[:3]
+            )
             force, moment = self._number(rotor, "forceConstant"), self._number(rotor, "momentConstant")
             direction = self._number(rotor, "direction")
-            arm = hypot(at[0], at[1])
-            across = (at[1], -at[0]) if arm else (0.0, 0.0)
-            columns.append((force * across[0], force * across[1], -direction * force * moment, force))
+            arm = hypot(rotor_position[0], rotor_position[1])
+            moment_arm = (rotor_position[1], -rotor_position[0]) if arm else (0.0, 0.0)
+            columns.append((force * moment_arm[0], force * moment_arm[1], -direction * force * moment, force))
             self._joints.append(joint)
         allocation = np.array(columns).T
         if len(rotors) < 4 or np.linalg.matrix_rank(allocation) < 4:
             raise self.parameter_error(
-                phrase("plugin '{plugin}': its rotors cannot hold the model", plugin=self.place.name)
+                phrase(
+                    ("plugin '{plugin}': its rotors cannot control thrust and all three torques"),
+                    plugin=self.place.name,
+                )
             )
-        self._mass, inertia = self._inertial()
+        self._mass, inertia = self._mass_and_inertia()
         inertias = np.eye(4)
         inertias[:3, :3] = inertia
-        self._speeds_of = np.linalg.pinv(allocation) @ inertias
-        inverse = np.linalg.inv(inertia)
-        self._attitude_gain = np.array(self.parameters.attitude_gain) @ inverse
-        self._rate_gain = np.array(self.parameters.angular_rate_gain) @ inverse
+        self._allocation = np.linalg.pinv(allocation) @ inertias
+        inverse_inertia = np.linalg.inv(inertia)
+        self._attitude_gain = np.array(self.parameters.attitude_gain) @ inverse_inertia
+        self._rate_gain = np.array(self.parameters.angular_rate_gain) @ inverse_inertia
 
     def _number(self, rotor: Element, tag: str) -> float:
         try:
             return float(_text(rotor, tag))
         except ValueError as error:
-            message = phrase("plugin '{plugin}': a <rotor> has no number in <{tag}>", plugin=self.place.name, tag=tag)
+            message = phrase(
+                ("plugin '{plugin}': each <rotor> needs a number in <{tag}>"), plugin=self.place.name, tag=tag
+            )
             raise self.parameter_error(message) from error
 
-    def _inertial(self) -> tuple[float, Array]:
+    def _mass_and_inertia(self) -> tuple[float, Array]:
         """Return the model's mass in kg, and its inertia tensor in kg m2.
 
         The tensor is about the centre of mass, in the axes of the body.
@@ -229,32 +241,32 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         model, data = simulation.model, simulation.data
         body = simulation.body(self._body)
         root = int(model.body_rootid[body])
-        parts = [index for index in range(model.nbody) if int(model.body_rootid[index]) == root]
-        masses = model.body_mass[parts]
-        centre = masses @ data.xipos[parts] / masses.sum()
+        bodies = [index for index in range(model.nbody) if int(model.body_rootid[index]) == root]
+        masses = model.body_mass[bodies]
+        centre = masses @ data.xipos[bodies] / masses.sum()
         total = np.zeros((3, 3))
-        for part in parts:
+        for part in bodies:
             axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - centre
             total += axes @ np.diag(model.body_inertia[part]) @ axes.T
             total += model.body_mass[part] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
-        turn = data.xmat[body].reshape(3, 3)
-        return float(masses.sum()), turn.T @ total @ turn
+        rotation = data.xmat[body].reshape(3, 3)
+        return float(masses.sum()), rotation.T @ total @ rotation
 
     def _receive(self, twist: Any) -> None:
-        most = np.array(self.parameters.max_linear)
-        angular = self.parameters.max_angular[2]
-        linear = np.clip(np.array(numbers(twist.linear)), -most, most)
-        self._wanted = (linear, min(max(float(twist.angular.z), -angular), angular))
+        max_linear = np.array(self.parameters.max_linear)
+        max_yaw_rate = self.parameters.max_angular[2]
+        linear = np.clip(np.array(numbers(twist.linear)), -max_linear, max_linear)
+        self._wanted = (linear, min(max(float(twist.angular.z), -max_yaw_rate), max_yaw_rate))
 
-    def _rest(self) -> bool:
-        """Command hovering if there is a command; return whether a motion was commanded."""
-        before = self._wanted
-        if before is None:
+    def _stop_motion(self) -> bool:
+        """Replace the command, if there is one, by hovering; return whether a motion was commanded."""
+        old_command = self._wanted
+        if old_command is None:
             return False
         self._wanted = (np.zeros(3), 0.0)
-        return bool(before[0].any()) or before[1] != 0.0
+        return bool(old_command[0].any()) or old_command[1] != 0.0
 
-    def _enable(self, message: Any) -> None:
+    def _on_enable(self, message: Any) -> None:
         self._is_enabled = bool(message.data)
 
     def _command_rotors(self) -> None:
@@ -268,11 +280,11 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
                     motors[joint].wanted = float(speed)
 
     def _motors(self) -> dict[str, GzMulticopterMotor]:
-        """Return the motors of the model that have started, by joint."""
+        """Return the motors of the model that have started, by the names of their joints."""
         if len(self._rotors) < len(self._joints):  # the other motors have not started yet
-            found = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
+            plugins = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
             motors = [
-                simulated_plugin for simulated_plugin in found if isinstance(simulated_plugin, GzMulticopterMotor)
+                simulated_plugin for simulated_plugin in plugins if isinstance(simulated_plugin, GzMulticopterMotor)
             ]
             self._rotors = {self.joint(motor.parameters.joint_name): motor for motor in motors}
         return self._rotors
@@ -280,31 +292,33 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
     def _speeds(self, linear: Array, yaw_rate: float) -> Array:
         """Return the target speed of each rotor, in rad/s, for a commanded velocity."""
         parameters, simulation = self.parameters, self.simulation
-        turn = rotation_matrix(simulation.link_pose(self._body)[3:])
+        rotation = rotation_matrix(simulation.link_pose(self._body)[3:])
         velocity, rates = simulation.link_velocity(self._body)
-        error = (velocity - turn @ linear) * np.array(parameters.velocity_gain) / self._mass
-        most = np.array(parameters.max_acceleration)
-        acceleration = np.clip(error, -most, most) + simulation.model.opt.gravity
-        wanted = _attitude(turn, acceleration)
-        skew = 0.5 * (wanted.T @ turn - turn.T @ wanted)
+        error = (velocity - rotation @ linear) * np.array(parameters.velocity_gain) / self._mass
+        max_acceleration = np.array(parameters.max_acceleration)
+        acceleration = np.clip(error, -max_acceleration, max_acceleration) + simulation.model.opt.gravity
+        target_attitude = _attitude(rotation, acceleration)
+        skew = 0.5 * (target_attitude.T @ rotation - rotation.T @ target_attitude)
         tilt = np.array((skew[2, 1], skew[0, 2], skew[1, 0]))
-        rate_error = turn.T @ rates - turn.T @ wanted @ np.array((0.0, 0.0, yaw_rate))
+        rate_error = rotation.T @ rates - rotation.T @ target_attitude @ np.array((0.0, 0.0, yaw_rate))
         angular = -tilt * self._attitude_gain - rate_error * self._rate_gain
-        thrust = -self._mass * float(acceleration @ turn[:, 2])
-        squares: Array = self._speeds_of @ np.array((*angular, thrust))
+        thrust = -self._mass * float(acceleration @ rotation[:, 2])
+        squares: Array = self._allocation @ np.array((*angular, thrust))
         speeds: Array = np.sqrt(np.maximum(squares, 0.0))
         return speeds
 
 
-def _attitude(turn: Array, acceleration: Array) -> Array:
+def _attitude(rotation: Array, acceleration: Array) -> Array:
     """Return the rotation matrix whose z axis is opposite to an acceleration, keeping the heading."""
     up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
-    ahead = next((item for item in turn.T if np.sum(np.cross(item, up) ** 2) >= _PARALLEL), turn[:, 0])
-    left = np.cross(up, ahead)
+    heading = next(
+        (axis for axis in rotation.T if np.sum(np.cross(axis, up) ** 2) >= _MIN_SQUARED_SINE), rotation[:, 0]
+    )
+    left = np.cross(up, heading)
     left /= np.linalg.norm(left)
     return np.column_stack((np.cross(left, up), left, up))
 
 
 def _text(element: Element | None, tag: str) -> str:
-    found = None if element is None else element.first(tag)
-    return "" if found is None else found.text().strip()
+    child = None if element is None else element.first(tag)
+    return "" if child is None else child.text().strip()

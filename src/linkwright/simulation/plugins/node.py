@@ -1,4 +1,4 @@
-"""The part of the ROS graph that belongs to a plugin."""
+"""The node with the topics and services of a plugin."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from linkwright.simulation.plugins.bridged import BridgedTopics, hidden_gz_topic
 from linkwright.simulation.plugins.ros_element import overridden
 from linkwright.xmltree import Element
 
-_NO_TOPIC = re.compile(r"[^A-Za-z0-9_/~]")
-_FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
+_INVALID_CHARACTERS = re.compile(r"[^A-Za-z0-9_/~]")
+_BEFORE_LEADING_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
 class PluginNode(SteppedNode):
     """The node of a plugin: a separate node for Gazebo classic, the simulation's node for gz.
 
     Args:
-        node: the node.
-        exchange: the exchange of the simulation.
-        owned: whether the node belongs to the plugin alone, and ends with it.
+        node: the ROS node that owns the endpoints.
+        exchange: passes messages between the graph and the simulation's thread.
+        owned: whether the node belongs only to this plugin, and is destroyed with it.
         qos: overrides of QoS profiles (`NodeDescription.qos`).
-        usual: the default topic names that are still free; None if topics are only published under their own names.
-        bridged: for plugins of gz, the topics that a bridge offers under another type.
+        usual: the usual topic names that are in use; None if topics are published only under their own names.
+        bridged: for plugins of gz, the topics that a bridge offers with another type; None for other plugins.
         now_ns: returns the simulated time in nanoseconds; by default the time of the node's clock.
         calls: calls the node's callbacks; by default an error in a callback is logged.
     """
@@ -52,8 +52,8 @@ class PluginNode(SteppedNode):
         self._qos = {(node.handle.resolve_topic_name(topic), side): policy for (topic, side), policy in qos.items()}
         self._usual = usual
         self._bridged = bridged
-        self._forgetting: list[Callable[[], None]] = []
-        self._names: list[str] = []
+        self._unregister_functions: list[Callable[[], None]] = []
+        self._usual_names: list[str] = []
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, usual: str = "") -> Output:
         """Create a publisher for a topic.
@@ -65,7 +65,7 @@ class PluginNode(SteppedNode):
             usual: for topics of gz, the usual name on robots. The topic is also published under this name if the
                 simulation has this option enabled and no other plugin uses the name.
         """
-        return self._create_output(msg_type, self._both(topic, usual), qos)
+        return self._create_output(msg_type, self._topic_names(topic, usual), qos)
 
     def subscribe(
         self,
@@ -80,38 +80,38 @@ class PluginNode(SteppedNode):
     ) -> None:
         """Subscribe to a topic; the arguments are those of `publisher` and of `SteppedNode.subscribe`."""
         received = self._make_callback(topic, callback, rest, commander)
-        self._subscribe_to(msg_type, self._both(topic, usual), received, qos, commander)
+        self._subscribe_to(msg_type, self._topic_names(topic, usual), received, qos, commander)
 
     def close(self) -> None:
         """Remove all endpoints of the plugin from the graph."""
-        for forget in self._forgetting:
-            forget()
+        for unregister in self._unregister_functions:
+            unregister()
         super().close()
         if self._usual is not None:
-            self._usual.difference_update(self._names)
+            self._usual.difference_update(self._usual_names)
 
-    def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Subscribe to a topic, and switch to its hidden name if a bridge offers it under another type."""
+    def _listen(self, topic: str, create_subscription: Callable[[str], Endpoint]) -> None:
+        """Subscribe to a topic, and switch to its hidden name when a bridge offers the topic with another type."""
         bridged = self._bridged
         if bridged is None or bridged.has(topic):
-            listen(topic if bridged is None else hidden_gz_topic(topic))
+            create_subscription(topic if bridged is None else hidden_gz_topic(topic))
             return
-        subscription = listen(topic)
+        subscription = create_subscription(topic)
 
         def move() -> None:
             self._endpoints.remove(subscription)
             subscription.destroy()
-            listen(hidden_gz_topic(topic))
+            create_subscription(hidden_gz_topic(topic))
 
         bridged.notify(topic, move)
-        self._forgetting.append(partial(bridged.forget, topic, move))
+        self._unregister_functions.append(partial(bridged.forget, topic, move))
 
-    def _both(self, topic: str, usual: str) -> list[str]:
-        topic = _FIRST_DIGIT.sub("_", _NO_TOPIC.sub("_", topic))
+    def _topic_names(self, topic: str, usual: str) -> list[str]:
+        topic = _BEFORE_LEADING_DIGIT.sub("_", _INVALID_CHARACTERS.sub("_", topic))
         names = [topic]
         if usual and self._usual is not None and topic != usual and usual not in self._usual:
             self._usual.add(usual)
-            self._names.append(usual)
+            self._usual_names.append(usual)
             names.append(usual)
         return names
 

@@ -1,4 +1,4 @@
-"""Parameters of plugins, declared by a dataclass with their names, types and defaults.
+"""Parameters of plugins; a dataclass declares their names, types and defaults.
 
     @dataclass(frozen=True, kw_only=True)
     class Parameters:
@@ -26,14 +26,14 @@ from linkwright.xmltree import Element
 P = TypeVar("P")
 
 _ALIASES = "aliases"
-_COMMON = frozenset(
+_COMMON_ELEMENTS = frozenset(
     (
         *("ros", "robotNamespace", "robot_namespace"),
         *("alwaysOn", "always_on", "rosDebugLevel", "legacyMode", "legacyModeNS", "gui"),
     )
 )
-"""Elements that any plugin may contain; the first three describe its node, the rest had a meaning once."""
-_TRUTHS = {"true": True, "1": True, "false": False, "0": False}
+"""Elements that any plugin may contain: the first three describe its node, the others are obsolete."""
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class NoParameters:
 
 
 def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
-    """Return the field of a parameter, with its default and its names in older simulators.
+    """Return a dataclass field for a parameter, with its default and its names in older simulators.
 
     A parameter without a default is required.
     """
@@ -50,14 +50,14 @@ def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
 
 
 def parameters_from(
-    table: type[P], element: Element | None, ignored: Collection[str] = ()
+    parameter_class: type[P], element: Element | None, ignored: Collection[str] = ()
 ) -> tuple[P, list[Diagnostic]]:
     """Read the parameters of a plugin from its element.
 
     Args:
-        table: the dataclass of the parameters, as described in this module.
+        parameter_class: the dataclass that declares the parameters, as described in this module.
         element: the element of the plugin; None for a sensor without a plugin.
-        ignored: names that are known but have no effect here.
+        ignored: the names of parameters that have no effect here and give no warning.
 
     Returns:
         The parameters, and warnings for unknown names and for invalid values, which are replaced by their defaults.
@@ -66,23 +66,23 @@ def parameters_from(
         LinkwrightError: SIM132, a parameter without a default is missing.
     """
     findings: list[Diagnostic] = []
-    given: dict[str, list[Element]] = {}
+    children_by_name: dict[str, list[Element]] = {}
     for child in element.elements() if element is not None else ():
-        given.setdefault(child.tag, []).append(child)
+        children_by_name.setdefault(child.tag, []).append(child)
     values: dict[str, Any] = {}
     names: dict[str, None] = {}
-    kinds = _types(table)  # type: ignore[arg-type]  # a class is hashable
-    for declared in fields(table):  # type: ignore[arg-type]  # a dataclass is asked for
-        spellings = (declared.name, *declared.metadata.get(_ALIASES, ()))
-        names |= dict.fromkeys(spellings)
-        written = next((given[name] for name in spellings if name in given), [])
-        value = _read(declared, kinds[declared.name], written, findings)
+    types = _types(parameter_class)  # type: ignore[arg-type]  # a class is hashable
+    for declared_field in fields(parameter_class):  # type: ignore[arg-type]  # a dataclass is asked for
+        accepted_names = (declared_field.name, *declared_field.metadata.get(_ALIASES, ()))
+        names |= dict.fromkeys(accepted_names)
+        elements = next((children_by_name[name] for name in accepted_names if name in children_by_name), [])
+        value = _read(declared_field, types[declared_field.name], elements, findings)
         if value is not None:
-            values[declared.name] = value
-        elif declared.default is MISSING:
-            raise LinkwrightError(_missing(declared, element))
-    for name, children in given.items():
-        if name not in names and name not in _COMMON and name not in ignored and ":" not in name:
+            values[declared_field.name] = value
+        elif declared_field.default is MISSING:
+            raise LinkwrightError(_missing_parameter(declared_field, element))
+    for name, children in children_by_name.items():
+        if name not in names and name not in _COMMON_ELEMENTS and name not in ignored and ":" not in name:
             findings.append(
                 _warning(
                     "SIM130",
@@ -91,7 +91,7 @@ def parameters_from(
                     did_you_mean(name, names),
                 )
             )
-    return table(**values), findings
+    return parameter_class(**values), findings
 
 
 @cache
@@ -99,34 +99,34 @@ def _types(table: Hashable) -> Mapping[str, Any]:
     return get_type_hints(table)
 
 
-def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[Diagnostic]) -> Any:
+def _read(declared_field: Field[Any], kind: Any, elements: list[Element], findings: list[Diagnostic]) -> Any:
     """Return the value of a parameter, or None if there is no valid value.
 
     A finding is added for each invalid value.
     """
-    many = kind in (tuple[str, ...], tuple[float, ...])
+    is_list = kind in (tuple[str, ...], tuple[float, ...])
     convert = _CONVERTERS[str if kind == tuple[str, ...] else float if kind == tuple[float, ...] else kind]
     values = []
-    for child in written if many else written[:1]:
+    for child in elements if is_list else elements[:1]:
         text = child.text().strip()
         try:
             values.append(convert(text))
         except ValueError:
-            message = phrase("'{text}' is not a valid value of '{name}'", text=text, name=known.name)
+            message = phrase("'{text}' is not a valid value of '{name}'", text=text, name=declared_field.name)
             findings.append(_warning("SIM131", message, child, phrase("the default is used")))
     if not values:
         return None
-    return tuple(values) if many else values[0]
+    return tuple(values) if is_list else values[0]
 
 
-def _truth(text: str) -> bool:
+def _parse_bool(text: str) -> bool:
     try:
-        return _TRUTHS[text.lower()]
+        return _BOOLEANS[text.lower()]
     except KeyError:
         raise ValueError(text) from None
 
 
-def _vector(text: str) -> Vector3:
+def _parse_vector(text: str) -> Vector3:
     x, y, z = (float(item) for item in text.split())
     return x, y, z
 
@@ -135,16 +135,16 @@ _CONVERTERS: dict[Any, Callable[[str], Any]] = {
     str: str,
     float: float,
     int: int,
-    bool: _truth,
-    bool | None: _truth,
+    bool: _parse_bool,
+    bool | None: _parse_bool,
     float | None: float,
-    Vector3: _vector,
-    Vector3 | None: _vector,
+    Vector3: _parse_vector,
+    Vector3 | None: _parse_vector,
 }
 
 
-def _missing(known: Field[Any], element: Element | None) -> Diagnostic:
-    message = phrase("the plugin needs the parameter '{name}'", name=known.name)
+def _missing_parameter(declared_field: Field[Any], element: Element | None) -> Diagnostic:
+    message = phrase("the plugin needs the parameter '{name}'", name=declared_field.name)
     if element is None:
         return Diagnostic("SIM132", message)
     return Diagnostic("SIM132", message, span=element.span(), source=element.source)

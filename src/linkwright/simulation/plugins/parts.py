@@ -17,7 +17,7 @@ Pose = Callable[[], Transform]
 
 
 class PartKind(Enum):
-    """The kind of a part."""
+    """The kind of a part of a model."""
 
     MODEL = auto()
     NESTED_MODEL = auto()
@@ -45,67 +45,67 @@ class Part:
 
 
 def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
-    """Yield the parts of a model of a simulation, each model and link before its own parts.
+    """Yield the parts of a model of a simulation; each model and link precedes its own parts.
 
     Args:
         simulation: the simulation that contains the model.
         model: the model, with its includes resolved.
-        path: the model's name in the world; a nested model such as ``robot::arm`` does not yield itself.
+        path: the name of the model in the world; no part is yielded for a nested model such as ``robot::arm`` itself.
     """
-    place = _frame_of(simulation, model, path)
+    frame_pose = _frame_of(simulation, model, path)
     if SEPARATOR not in path:
-        yield Part(PartKind.MODEL, path, simulation.world.name, place)
-    yield from _parts(simulation, model, path, Frames(model), place)
+        yield Part(PartKind.MODEL, path, simulation.world.name, frame_pose)
+    yield from _parts(simulation, model, path, Frames(model), frame_pose)
 
 
 def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
     """Return a function that returns the current pose of a model's frame in the world."""
-    top, _, inside = path.partition(SEPARATOR)
-    whole = simulation.scene.models[top]
-    if not whole.structure.links:  # no part of the model moves
-        return partial(_same, whole.pose)
-    if not inside or not model.links:
-        return lambda: simulation.model_pose(top)
-    first = model.links[0].name
-    return _pose_on_link(simulation, f"{path}{SEPARATOR}{first}", Frames(model).pose(first))
+    top_name, _, nested_path = path.partition(SEPARATOR)
+    top_model = simulation.scene.models[top_name]
+    if not top_model.structure.links:  # no part of the model moves
+        return partial(_constant_pose, top_model.pose)
+    if not nested_path or not model.links:
+        return lambda: simulation.model_pose(top_name)
+    first_link = model.links[0].name
+    return _pose_on_link(simulation, f"{path}{SEPARATOR}{first_link}", Frames(model).pose(first_link))
 
 
 def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
     """Return a function that returns the current pose in the world of a frame that is fixed to a link.
 
-    `place` is the pose of the link in this frame.
+    `link_pose` is the pose of the link in this frame.
     """
-    back = invert(place)
-    return lambda: compose(simulation.link_pose(link), back)
+    frame_in_link = invert(place)
+    return lambda: compose(simulation.link_pose(link), frame_in_link)
 
 
 def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
-    """Yield the parts of a model; `place` returns the pose of the model's frame in the world."""
+    """Yield the parts of a model; `frame_pose` returns the pose of the model's frame in the world."""
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"
-        yield Part(PartKind.LINK, name, path, partial(_between, place, partial(simulation.link_pose, name)))
-        for kind, fixed in (
+        yield Part(PartKind.LINK, name, path, partial(_relative_pose, place, partial(simulation.link_pose, name)))
+        for kind, items in (
             (PartKind.VISUAL, link.visuals),
             (PartKind.COLLISION, link.collisions),
             (PartKind.SENSOR, link.sensors),
         ):
-            for item in fixed:
+            for item in items:
                 pose = frames.in_link(item.pose, link.name)
-                yield Part(kind, f"{name}{SEPARATOR}{item.name}", name, partial(_same, pose))
-    for inner in model.models:
-        name, inside = f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name)
-        first = next((link.name for link in inner.links), "")
-        if not first:
+                yield Part(kind, f"{name}{SEPARATOR}{item.name}", name, partial(_constant_pose, pose))
+    for nested_model in model.models:
+        name, nested_frames = f"{path}{SEPARATOR}{nested_model.name}", frames.inside(nested_model.name)
+        first_link = next((link.name for link in nested_model.links), "")
+        if not first_link:
             continue
-        deeper = _pose_on_link(simulation, f"{name}{SEPARATOR}{first}", inside.pose(first))
-        yield Part(PartKind.NESTED_MODEL, name, path, partial(_between, place, deeper))
-        yield from _parts(simulation, inner, name, inside, deeper)
+        nested_pose = _pose_on_link(simulation, f"{name}{SEPARATOR}{first_link}", nested_frames.pose(first_link))
+        yield Part(PartKind.NESTED_MODEL, name, path, partial(_relative_pose, place, nested_pose))
+        yield from _parts(simulation, nested_model, name, nested_frames, nested_pose)
 
 
-def _same(pose: Transform) -> Transform:
+def _constant_pose(pose: Transform) -> Transform:
     return pose
 
 
-def _between(outer: Pose, inner: Pose) -> Transform:
-    """Return the pose of one part in the frame of another."""
+def _relative_pose(outer: Pose, inner: Pose) -> Transform:
+    """Return the pose of the frame `inner` in the frame `outer`."""
     return compose(invert(outer()), inner())

@@ -27,18 +27,18 @@ class Pid:
 
     def __init__(self, gains: Gains) -> None:
         self._gains = gains
-        self._sum = 0.0
+        self._integral = 0.0
         self._before: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
-        """Return the force in N m (N) for an error; `seconds` is the time since the last call."""
+        """Return the force in N m (or N) for an error; `seconds` is the time since the last call."""
         gains = self._gains
-        self._sum = _bounded(self._sum + gains.i * error * seconds, gains.i_min, gains.i_max)
+        self._integral = _clip(self._integral + gains.i * error * seconds, gains.i_min, gains.i_max)
         change = 0.0 if self._before is None else (error - self._before) / seconds
         self._before = error
-        force = gains.cmd_offset + gains.p * error + self._sum + gains.d * change
-        return _bounded(force, gains.cmd_min, gains.cmd_max)
+        force = gains.cmd_offset + gains.p * error + self._integral + gains.d * change
+        return _clip(force, gains.cmd_min, gains.cmd_max)
 
 
-def _bounded(value: float, least: float, greatest: float) -> float:
-    return min(max(value, least), greatest) if least <= greatest else value
+def _clip(value: float, lower: float, upper: float) -> float:
+    return min(max(value, lower), upper) if lower <= upper else value

@@ -1,4 +1,4 @@
-"""Collects the plugins and sensors of a model or world, each with its place."""
+"""The plugins and sensors of a model or world, with the elements that contain them."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from linkwright.simulation.plugins.registry import is_built_in
 
 
 def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
-    """Yield the plugins that belong to a world and not to one of its models.
+    """Yield the plugins that are direct children of a world.
 
     Args:
-        world: the world, as it was read.
-        systems: the plugins of a world that does not declare any.
+        world: the world as it was read from SDF.
+        systems: the plugins to use if the world does not declare any.
     """
     for plugin in world.plugins or systems:
         yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
 
 
 def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
-    """Yield the plugins of a model and of its sensors, and the sensors that no plugin publishes.
+    """Yield the plugins of a model and its sensors, and the sensors without a publishing plugin.
 
     The plugins and sensors of nested models follow.
 
@@ -37,20 +37,22 @@ def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginPlace
         path: the model's name in the world.
     """
     frames = Frames(model)
-    yield from _of_model(world, model, path, frames)
+    yield from _plugins_in_model(world, model, path, frames)
 
 
-def _of_model(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginPlace]:
+def _plugins_in_model(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginPlace]:
     for plugin in model.plugins:
         yield PluginPlace(plugin.name or plugin.filename, plugin, world, model, path, None)
-    for placed in _sensors(model, path, frames):
-        plugins = placed.sensor.plugins
+    for placed_sensor in _sensors(model, path, frames):
+        plugins = placed_sensor.sensor.plugins
         for plugin in plugins:
-            yield PluginPlace(plugin.name or placed.sensor.name, plugin, world, model, path, placed)
+            yield PluginPlace(plugin.name or placed_sensor.sensor.name, plugin, world, model, path, placed_sensor)
         if all(is_built_in(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
-            yield PluginPlace(placed.sensor.name, None, world, model, path, placed)
-    for inner in model.models:
-        yield from _of_model(world, inner, f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name))
+            yield PluginPlace(placed_sensor.sensor.name, None, world, model, path, placed_sensor)
+    for nested_model in model.models:
+        yield from _plugins_in_model(
+            world, nested_model, f"{path}{SEPARATOR}{nested_model.name}", frames.inside(nested_model.name)
+        )
 
 
 def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:

@@ -1,7 +1,7 @@
 """Motion in a plane: ``libgazebo_ros_planar_move.so``, including its names in ROS 1.
 
 Source: gazebo_ros_pkgs (parameters, topics, defaults). Unlike in gazebo_ros_pkgs, the velocity is set after each step.
-Wheels with grip therefore hardly slow the robot down, and the robot still falls and tilts freely.
+Wheels with grip therefore hardly slow the robot down, and gravity still makes it fall and tilt.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
     """A plugin that sets the velocity of a model in its horizontal plane."""
 
     def require_free_model(self) -> None:
-        """Check that the model can move, and keep it awake.
+        """Raise if the model cannot move; otherwise prevent it from sleeping.
 
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.
@@ -55,15 +55,17 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
             )
         self.simulation.keep_awake(self.first_link)
 
-    def hold(self, forward: float, sideways: float, yaw_rate: float) -> None:
+    def hold(self, forward: float, left: float, yaw_rate: float) -> None:
         """Set the planar velocities in m/s and rad/s for the next step.
 
         The vertical velocity and the roll and pitch rates remain unchanged.
         """
         yaw = yaw_of(self.simulation.model_pose(self.place.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
-        along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
-        self.simulation.set_model_velocity(self.place.path, along, (float(angular[0]), float(angular[1]), yaw_rate))
+        world_velocity = (forward * cos(yaw) - left * sin(yaw), forward * sin(yaw) + left * cos(yaw), float(linear[2]))
+        self.simulation.set_model_velocity(
+            self.place.path, world_velocity, (float(angular[0]), float(angular[1]), yaw_rate)
+        )
 
 
 class PlanarMove(PlanarDrive[PlanarMoveParameters]):
@@ -90,25 +92,25 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
-        commander = node.commander(self._rest)
+        commander = node.commander(self._stop_motion)
         node.subscribe(
             "geometry_msgs/msg/Twist",
             parameters.command_topic,
-            self._commanded,
+            self._on_command,
             1,
             commander=commander,
-            rest=self._rest,
+            rest=self._stop_motion,
         )
         self.every(0.0, self._move)
         if odometry is not None or transforms is not None:
             self.every(parameters.publish_rate, self._publish)
 
-    def _commanded(self, twist: Any) -> None:
+    def _on_command(self, twist: Any) -> None:
         self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
-    def _rest(self) -> bool:
-        before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
-        return before != self._wanted
+    def _stop_motion(self) -> bool:
+        old_command, self._wanted = self._wanted, (0.0, 0.0, 0.0)
+        return old_command != self._wanted
 
     def _move(self) -> None:
         self.hold(*self._wanted)
@@ -121,4 +123,4 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
 
     def reset(self) -> None:
         """Stop the robot."""
-        self._rest()
+        self._stop_motion()

@@ -74,14 +74,14 @@ class PlacedSensor:
 
 @dataclass(frozen=True, slots=True)
 class PluginPlace:
-    """The place of a plugin, or of a sensor without a plugin, in a model or world.
+    """The elements that contain a plugin, or a sensor without a plugin.
 
     Attributes:
         name: the name of the plugin, or of the sensor without a plugin.
-        plugin: the plugin as written; None for a sensor without one.
+        plugin: the plugin as written in the SDF; None for a sensor without a plugin.
         world: the world, as it was read.
         model: the model that contains the plugin; None for a plugin of the world.
-        path: the name of that model, ``robot`` or ``robot::arm``; empty for the world.
+        path: the name of the model that contains the plugin, ``robot`` or ``robot::arm``; empty for the world.
         sensor: the sensor that contains the plugin, or the sensor without a plugin; None for other plugins.
     """
 
@@ -113,10 +113,10 @@ class Environment(Protocol):
 
     @property
     def left(self) -> dict[str, Any]:
-        """The values that plugins store by name for their successors when a model is changed."""
+        """The values that plugins store by name for later instances, which read them after a model is changed."""
 
     def random(self, name: str) -> np.random.Generator:
-        """Return a random number generator for a name, determined only by the name and the seed."""
+        """Return a random number generator that depends only on the seed and a name."""
 
     def plugins(self, model: str) -> tuple[SimulatedPlugin[Any], ...]:
         """Return the running plugins and sensors of a model."""
@@ -127,12 +127,12 @@ class SimulatedPlugin(Generic[P]):
 
     Attributes:
         PARAMETERS: the dataclass with its parameters.
-        IGNORED: names of parameters that are known but have no effect here.
-        CARRIED: names of the attributes that are passed on to an unchanged plugin when its model is replaced.
-        place: its place in the world.
-        node: its part of the ROS graph.
-        parameters: its parameters.
-        simulation: the simulation.
+        IGNORED: the names of parameters that have no effect here and give no warning.
+        CARRIED: the names of the attributes that `resume` copies from the previous instance.
+        place: the elements that contain the plugin, and its name.
+        node: creates the plugin's topics and services.
+        parameters: the values of the parameters, an instance of `PARAMETERS`.
+        simulation: the simulation in which the plugin runs.
         gazebo_mistakes: whether to reproduce known mistakes of Gazebo; each is documented where it is reproduced.
     """
 
@@ -162,20 +162,20 @@ class SimulatedPlugin(Generic[P]):
         """Restore the initial state, because simulated time restarts."""
 
     def resume(self, before: SimulatedPlugin[P]) -> None:
-        """Take over the state of a predecessor with the same parameters.
+        """Take over the state of the previous instance, which has the same parameters.
 
         The simulation calls this after `start` when it has replaced a model.
 
         Args:
-            before: the predecessor, which has ended.
+            before: the previous instance, which has ended.
         """
         for name in self.CARRIED:
             setattr(self, name, getattr(before, name))
 
     def is_like(self, other: SimulatedPlugin[Any]) -> bool:
         """Return whether another plugin has the same class, place in its model and parameters."""
-        one, two = self.place, other.place
-        same_place = (one.path, one.name) == (two.path, two.name)
+        own_place, other_place = self.place, other.place
+        same_place = (own_place.path, own_place.name) == (other_place.path, other_place.name)
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
@@ -183,14 +183,14 @@ class SimulatedPlugin(Generic[P]):
 
     @property
     def left(self) -> dict[str, Any]:
-        """The values that predecessors stored by name before the model was changed."""
+        """The values that previous instances stored by name before the model was changed."""
         return self._environment.left
 
     # --- methods for plugins to call ----------------------------------------------------------------------------------
 
     @property
     def sensor(self) -> PlacedSensor:
-        """The sensor itself, for a plugin that is a sensor or belongs to one."""
+        """The sensor that the plugin is or belongs to; only for sensors and their plugins."""
         assert self.place.sensor is not None
         return self.place.sensor
 
@@ -231,8 +231,8 @@ class SimulatedPlugin(Generic[P]):
     @property
     def first_link(self) -> str:
         """The full name of the first link of the plugin's top-level model, with which the model moves."""
-        top, _, _ = self.place.path.partition(SEPARATOR)
-        return self.simulation.scene.models[top].structure.links[0].link.name
+        top_model, _, _ = self.place.path.partition(SEPARATOR)
+        return self.simulation.scene.models[top_model].structure.links[0].link.name
 
     def parameter_error(self, message: Phrase) -> LinkwrightError:
         """Return the error (SIM160) to raise in `start` if the parameters contradict each other or the model."""
@@ -251,26 +251,28 @@ class SimulatedPlugin(Generic[P]):
         self.node.calls.close(self.stop, on_error)
         self.node.close()
 
-    def _found(self, name: str, known: Collection[str], code: str) -> str:
-        """Return the full name in `known` for a name that may omit the model or nested models.
+    def _found(self, name: str, known_names: Collection[str], code: str) -> str:
+        """Return the full name in `known_names` for a name that may omit the model or nested models.
 
         Raises:
             LinkwrightError: the error `code`, there is no such name, or several nested models have it.
         """
-        begin = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
-        mine = [name for name in known if name.startswith(begin)]
-        for candidate in (f"{begin}{name}", name):
-            if candidate in mine:
+        prefix = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
+        model_names = [name for name in known_names if name.startswith(prefix)]
+        for candidate in (f"{prefix}{name}", name):
+            if candidate in model_names:
                 return candidate
-        ending = [item for item in mine if item.endswith(f"{SEPARATOR}{name}")]
-        if len(ending) == 1:
-            return ending[0]
+        matches = [full_name for full_name in model_names if full_name.endswith(f"{SEPARATOR}{name}")]
+        if len(matches) == 1:
+            return matches[0]
         element = self.place.element
-        names = [item.removeprefix(begin) for item in mine]
+        names = [item.removeprefix(prefix) for item in model_names]
         if code == "SIM133":
             message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
         else:
-            message = phrase("plugin '{plugin}': no joint '{name}' moves", plugin=self.place.name, name=name)
+            message = phrase(
+                ("plugin '{plugin}': there is no movable joint '{name}'"), plugin=self.place.name, name=name
+            )
         span, source = (element.span(), element.source) if element is not None else (None, None)
         raise LinkwrightError(Diagnostic(code, message, span, hint=did_you_mean(name, names), source=source))
 

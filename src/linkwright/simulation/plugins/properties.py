@@ -22,10 +22,10 @@ from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.scene.bodies import set_coefficient
 
-_TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
-"""The joint types of GetJointProperties."""
-_FAR = 1e9
-"""A limit in rad (m) that no joint reaches."""
+_JOINT_TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
+"""The joint types of ``GetJointProperties``, by their names in SDF."""
+_UNREACHABLE_LIMIT = 1e9
+"""A joint limit in rad (or m) that is never reached."""
 
 
 class ClassicProperties(SimulatedPlugin[NoParameters]):
@@ -35,25 +35,25 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         """Create the services that get and set properties."""
         self._entities = Entities(self.simulation)
         for name, callback in (
-            ("GetModelProperties", self._model),
+            ("GetModelProperties", self._get_model),
             ("GetLinkProperties", self._link),
             ("GetJointProperties", self._joint),
             ("SetLinkProperties", self._set_link),
             ("SetJointProperties", self._set_joint),
-            ("GetPhysicsProperties", self._physics),
+            ("GetPhysicsProperties", self._get_physics),
             ("SetPhysicsProperties", self._set_physics),
         ):
             verb, kind = name[:3].lower(), name[3:].removesuffix("Properties").lower()
             self.node.service(f"gazebo_msgs/srv/{name}", f"{verb}_{kind}_properties", callback)
 
-    def _model(self, request: Any, response: Any) -> Any:
+    def _get_model(self, request: Any, response: Any) -> Any:
         def read() -> str:
             scene_model = self.simulation.scene.models[self._entities.model(request.model_name)]
-            model, begin = scene_model.model, f"{scene_model.name}{SEPARATOR}"
-            response.canonical_link_name = begin + (
+            model, prefix = scene_model.model, f"{scene_model.name}{SEPARATOR}"
+            response.canonical_link_name = prefix + (
                 model.canonical_link or next((link.name for link in model.links), "")
             )
-            response.link_names = [begin + link.name for link in model.links]
+            response.link_names = [prefix + link.name for link in model.links]
             response.collision_names = [collision.name for link in model.links for collision in link.collisions]
             response.joint_names = [joint.name for joint in model.joints]
             response.child_model_names = [nested.name for nested in model.models]
@@ -65,11 +65,11 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
     def _link(self, request: Any, response: Any) -> Any:
         def read() -> str:
             simulation = self.simulation
-            number = simulation.body(self._entities.link(request.link_name))
-            body = simulation.model.body(number)
+            index = simulation.body(self._entities.link(request.link_name))
+            body = simulation.model.body(index)
             w, x, y, z = body.iquat.tolist()
             response.com = pose_message((*body.ipos.tolist(), x, y, z, w))
-            response.gravity_mode = bool(simulation.model.body_gravcomp[number] == 0.0)
+            response.gravity_mode = bool(simulation.model.body_gravcomp[index] == 0.0)
             response.mass = float(body.mass[0])
             response.ixx, response.iyy, response.izz = body.inertia.tolist()
             return "GetLinkProperties: got properties"
@@ -79,12 +79,12 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
     def _joint(self, request: Any, response: Any) -> Any:
         def read() -> str:
             simulation = self.simulation
-            placed = simulation.scene.joints[self._entities.joint(request.joint_name)]
-            response.type = _TYPES.get(placed.joint.type, 0)
-            if len(placed.axes) == 1:
-                position, velocity = simulation.joint_state(placed.name)
+            scene_joint = simulation.scene.joints[self._entities.joint(request.joint_name)]
+            response.type = _JOINT_TYPES.get(scene_joint.joint.type, 0)
+            if len(scene_joint.axes) == 1:
+                position, velocity = simulation.joint_state(scene_joint.name)
                 response.position, response.rate = [position], [velocity]
-                response.damping = [float(simulation.model.joint(placed.name).damping[0])]
+                response.damping = [float(simulation.model.joint(scene_joint.name).damping[0])]
             return "GetJointProperties: got properties"
 
         return fill_response(response, read)
@@ -94,7 +94,15 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             link = self._entities.link(request.link_name)
             moments = (request.ixx, request.iyy, request.izz, request.ixy, request.ixz, request.iyz)
             if not (0.0 < request.mass < inf and _is_possible(*moments)):
-                raise LinkwrightError(Diagnostic("SIM111", phrase("this mass or inertia is not physically possible")))
+                raise LinkwrightError(
+                    Diagnostic(
+                        "SIM111",
+                        phrase(
+                            "this mass or inertia is not physically possible; give a positive mass and moments that "
+                            "fulfil the triangle inequality"
+                        ),
+                    )
+                )
             centre = numbers(request.com.position)
             body = self.simulation.scene.spec.body(link)
             body.explicitinertial, body.mass, body.ipos = True, request.mass, list(centre)
@@ -112,10 +120,17 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
         def put() -> str:
             self.simulation.refresh()
-            placed = self.simulation.scene.joints[self._entities.joint(request.joint_name)]
+            scene_joint = self.simulation.scene.joints[self._entities.joint(request.joint_name)]
             config = request.ode_joint_config
-            joint, now = self.simulation.scene.spec.joint(placed.name), self.simulation.model.joint(placed.name)
-            lower, upper = now.range.tolist() if self.simulation.model.jnt_limited[now.id] else (-_FAR, _FAR)
+            joint, compiled_joint = (
+                self.simulation.scene.spec.joint(scene_joint.name),
+                self.simulation.model.joint(scene_joint.name),
+            )
+            lower, upper = (
+                compiled_joint.range.tolist()
+                if self.simulation.model.jnt_limited[compiled_joint.id]
+                else (-_UNREACHABLE_LIMIT, _UNREACHABLE_LIMIT)
+            )
             if len(config.lo_stop) or len(config.hi_stop):
                 joint.range = [next(iter(config.lo_stop), lower), next(iter(config.hi_stop), upper)]
                 joint.limited = True
@@ -126,7 +141,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
         return fill_response(response, put)
 
-    def _physics(self, _: Any, response: Any) -> Any:
+    def _get_physics(self, _: Any, response: Any) -> Any:
         self.simulation.refresh()
         response.time_step = self.simulation.step / NANOSECONDS_PER_SECOND
         response.max_update_rate = physics_of(self.place.world).real_time_update_rate

@@ -1,4 +1,4 @@
-"""Finds the classes that simulate plugins and sensors, through entry points.
+"""Lookup of the classes that simulate plugins and sensors, through entry points.
 
 There are two groups of entry points, in this package and in others. Each entry point names a subclass of
 `linkwright.simulation.plugins.plugin.SimulatedPlugin`:
@@ -36,32 +36,34 @@ _SENSORS_OF_SYSTEMS = {
     "logical-camera": ("logical_camera",),
     "cpu-lidar": ("lidar",),
 }
-"""The systems of gz that publish measurements, and the types of their sensors; each is simulated."""
+"""The systems of gz that publish measurements, and the types of the sensors that they measure."""
 _OWN_SYSTEMS = ("physics", "user-commands", "label")
-"""The systems of gz for features of the simulation itself: moving, spawning and deleting models, labels."""
-_NONE = ("", "__default__")
-"""Values of ``filename`` for no library, in files that programs wrote."""
+"""The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
+_NO_LIBRARY = ("", "__default__")
+"""The values of ``filename`` that mean "no library" in files that programs wrote."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
     )
 )
-"""Plugins of other simulators whose work this one does itself; other plugins that are not simulated are reported."""
+"""Plugins of other simulators whose work the simulation does itself, so they are not reported as unsupported."""
 
 
-SYSTEMS_OF_GZ = tuple(Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster"))
-"""The systems that gz gives a world that names none."""
+DEFAULT_GZ_SYSTEMS = tuple(
+    Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster")
+)
+"""The systems that gz loads for a world without plugins."""
 
 
-def is_of_gz(filename: str) -> bool:
+def is_gz_library(filename: str) -> bool:
     """Return whether a library belongs to gz, whose plugins do not have separate nodes."""
     return library_name(filename).startswith("gz-sim-")
 
 
 def is_built_in(filename: str) -> bool:
-    """Return whether the simulation itself does the work of a library, or no library is named."""
-    return filename in _NONE or library_name(filename) in _BUILT_IN
+    """Return whether the simulation itself does the work of a library, or no library is given."""
+    return filename in _NO_LIBRARY or library_name(filename) in _BUILT_IN
 
 
 def plugin_class(library: str) -> PluginClass | None:
@@ -70,7 +72,7 @@ def plugin_class(library: str) -> PluginClass | None:
     Raises:
         LinkwrightError: SIM136, the class cannot be imported.
     """
-    return _loaded(PLUGINS, library)
+    return _find_class(PLUGINS, library)
 
 
 def sensor_class(kind: str) -> PluginClass | None:
@@ -79,10 +81,10 @@ def sensor_class(kind: str) -> PluginClass | None:
     Raises:
         LinkwrightError: SIM136, the class cannot be imported.
     """
-    return _loaded(SENSORS, kind)
+    return _find_class(SENSORS, kind)
 
 
-def _loaded(group: str, name: str) -> PluginClass | None:
+def _find_class(group: str, name: str) -> PluginClass | None:
     entry = extensions(group).get(name)
     return None if entry is None else _load(entry)
 
@@ -90,9 +92,9 @@ def _loaded(group: str, name: str) -> PluginClass | None:
 @cache
 def _load(entry: EntryPoint) -> PluginClass:
     try:
-        found: PluginClass = entry.load()
+        class_: PluginClass = entry.load()
     except Exception as error:
         message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
-        hint = phrase("'{place}' provides it: {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase("it is part of '{place}': {problem}", place=entry.distribution, problem=foreign(error))
         raise LinkwrightError(Diagnostic("SIM136", message, hint=hint)) from error
-    return found
+    return class_

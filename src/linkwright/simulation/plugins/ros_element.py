@@ -15,8 +15,8 @@ from linkwright.graph.names.rules import Remappings, absolute_namespace, join
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.xmltree import Element
 
-_NO_NAME = re.compile(r"[^A-Za-z0-9_]")
-_NUMBERS = {"int": int, "double": float, "float": float}
+_INVALID_NAME_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
+_NUMBER_TYPES = {"int": int, "double": float, "float": float}
 
 
 @dataclass(slots=True)
@@ -27,8 +27,8 @@ class NodeDescription:
         name: the node's name.
         namespace: the node's namespace.
         parameters: the values of parameters, by name.
-        remappings: rules ``(from, to)``.
-        qos: the elements that override QoS policies, by topic as written and ``publisher`` or ``subscriber``.
+        remappings: the rules, as pairs of the original and the new name.
+        qos: the elements that override QoS policies, by topic name in ``<ros>`` and ``publisher`` or ``subscriber``.
     """
 
     name: str
@@ -39,7 +39,7 @@ class NodeDescription:
 
     @property
     def full_name(self) -> str:
-        """The full name of the node, after remapping."""
+        """The fully qualified name of the node, after remapping."""
         rules = Remappings(self.remappings)
         return join(absolute_namespace(rules.namespace(self.namespace, self.name)), rules.node_name(self.name))
 
@@ -49,70 +49,74 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
 
     Args:
         name: the name of the plugin; characters that a node name cannot contain become underscores.
-        element: the element of the plugin.
-        namespace: the default namespace.
+        element: the element of the plugin; None if it has no element.
+        namespace: the namespace if the element declares none.
 
     Raises:
         LinkwrightError: an ``<argument>`` is not a ROS argument.
     """
-    node = NodeDescription(_as_name(name), _namespace(element) or namespace)
+    node = NodeDescription(_node_name(name), _namespace(element) or namespace)
     ros = element.first("ros") if element is not None else None
     if ros is None:
         return node
-    given = ["--ros-args"]
+    arguments = ["--ros-args"]
     for argument in ros.elements("argument"):
-        words = argument.text().split()
-        given += ["-r", *words] if len(words) == 1 and ":=" in words[0] else [w for w in words if w != "--ros-args"]
+        tokens = argument.text().split()
+        arguments += (
+            ["-r", *tokens]
+            if len(tokens) == 1 and ":=" in tokens[0]
+            else [item for item in tokens if item != "--ros-args"]
+        )
     for rule in ros.elements("remapping"):
-        given += ["-r", rule.text().strip()]
-    read = parse(given)
-    node.remappings = read.remappings_for(node.name)
+        arguments += ["-r", rule.text().strip()]
+    parsed_arguments = parse(arguments)
+    node.remappings = parsed_arguments.remappings_for(node.name)
     node.parameters = {element.attributes.get("name", ""): _value(element) for element in ros.elements("parameter")}
-    node.parameters |= read.parameters_for(node.full_name)
+    node.parameters |= parsed_arguments.parameters_for(node.full_name)
     for topic in (element for qos in ros.elements("qos") for element in qos.elements("topic")):
-        for side in ("publisher", "subscriber", "subscription"):
-            override = topic.first(side)
+        for endpoint in ("publisher", "subscriber", "subscription"):
+            override = topic.first(endpoint)
             if override is not None:
-                node.qos[topic.attributes.get("name", ""), side.replace("subscription", "subscriber")] = override
+                node.qos[topic.attributes.get("name", ""), endpoint.replace("subscription", "subscriber")] = override
     return node
 
 
 def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
-    """Return a copy of a QoS profile with the settings of an element; unknown values have no effect."""
+    """Return a copy of a QoS profile with the policies that an element sets; invalid values have no effect."""
     result = QoSProfile(profile.depth, profile.reliability, profile.durability, profile.history)
     for child in element.elements():
-        word = child.text().strip().upper()
-        if child.tag == "reliability" and word in ReliabilityPolicy.__members__:
-            result.reliability = ReliabilityPolicy[word]
-        elif child.tag == "durability" and word in DurabilityPolicy.__members__:
-            result.durability = DurabilityPolicy[word]
-        elif child.tag == "history" and word in HistoryPolicy.__members__:
-            result.history = HistoryPolicy[word]
+        value = child.text().strip().upper()
+        if child.tag == "reliability" and value in ReliabilityPolicy.__members__:
+            result.reliability = ReliabilityPolicy[value]
+        elif child.tag == "durability" and value in DurabilityPolicy.__members__:
+            result.durability = DurabilityPolicy[value]
+        elif child.tag == "history" and value in HistoryPolicy.__members__:
+            result.history = HistoryPolicy[value]
         if child.tag == "history" and child.attributes.get("depth", "").isdigit():
             result.depth = int(child.attributes["depth"])
     return result
 
 
 def _namespace(element: Element | None) -> str:
-    """Return the namespace of ``<ros>``, or of the plugin itself as in ROS 1; empty if there is none."""
-    for text in _namespaces(element):
-        if text.strip("/ "):
-            return "/" + text.strip("/ ")
+    """Return the namespace in ``<ros>``, or in the plugin's element as in ROS 1; empty if neither declares one."""
+    for namespace in _declared_namespaces(element):
+        if namespace.strip("/ "):
+            return "/" + namespace.strip("/ ")
     return ""
 
 
-def _namespaces(element: Element | None) -> Iterator[str]:
+def _declared_namespaces(element: Element | None) -> Iterator[str]:
     if element is None:
         return
-    for inside in element.elements("ros"):
-        yield from (element.text() for element in inside.elements("namespace"))
+    for ros in element.elements("ros"):
+        yield from (element.text() for element in ros.elements("namespace"))
     for tag in ("robotNamespace", "robot_namespace"):
         yield from (child.text() for child in element.elements(tag))
 
 
-def _as_name(name: str) -> str:
-    plain = _NO_NAME.sub("_", name) or "plugin"
-    return f"_{plain}" if plain[0].isdigit() else plain
+def _node_name(name: str) -> str:
+    valid_name = _INVALID_NAME_CHARACTER.sub("_", name) or "plugin"
+    return f"_{valid_name}" if valid_name[0].isdigit() else valid_name
 
 
 def _value(element: Element) -> Any:
@@ -120,6 +124,6 @@ def _value(element: Element) -> Any:
     if kind == "bool":
         return text.lower() in ("true", "1")
     try:
-        return _NUMBERS[kind](text) if kind in _NUMBERS else text
+        return _NUMBER_TYPES[kind](text) if kind in _NUMBER_TYPES else text
     except ValueError:
         return text

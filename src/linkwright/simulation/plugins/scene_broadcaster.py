@@ -1,9 +1,9 @@
 """Poses of all entities in a world: ``gz-sim-scene-broadcaster-system``.
 
-Source: gz-sim (topics, their order and rates, parameters). Entities have their local names, without the names of the
-models that contain them, and poses relative to their parents. As with a bridge, ``frame_id`` stays empty. A tf listener
-that receives these topics ignores such transforms, because otherwise the frames of links would have two parents
-(decision 0096).
+Source: gz-sim (topics, the order of entities, rates, parameters). Entities have their local names, without the names of
+the models that contain them, and poses relative to their parents. As with a bridge, ``frame_id`` stays empty. A tf
+listener that receives these topics ignores such transforms, because otherwise the frames of links would have two
+parents (decision 0096).
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parts import PartKind, Pose, parts_of
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_ALL_RATE = 60.0
-"""How often all poses are published, in Hz."""
-_ORDER = (
+_ALL_POSES_RATE = 60.0
+"""The rate in Hz at which the poses of all entities are published."""
+_KIND_ORDER = (
     {PartKind.MODEL, PartKind.NESTED_MODEL},
     {PartKind.LINK},
     {PartKind.VISUAL},
@@ -43,7 +43,7 @@ class _Entities:
 
     Attributes:
         names: the names of the entities.
-        poses: a constant pose for each static entity, and a function that returns the pose for each other entity.
+        poses: the pose of each static entity, and a function that returns the current pose of each other entity.
     """
 
     names: tuple[str, ...]
@@ -57,27 +57,27 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
     IGNORED = ("state_hertz",)
 
     def start(self) -> None:
-        """Create the topic of all poses and the topic of the poses of moving entities."""
-        begin = f"/world/{self.place.world.name}"
+        """Create the topics for the poses of all entities and of moving entities."""
+        world_topic = f"/world/{self.place.world.name}"
         self._revision = -1
         self._all = self._dynamic = _Entities((), ())
-        everything = self.node.publisher("tf2_msgs/msg/TFMessage", f"{begin}/pose/info")
-        dynamic = self.node.publisher("tf2_msgs/msg/TFMessage", f"{begin}/dynamic_pose/info")
-        self.every(_ALL_RATE, lambda: self._publish(everything, dynamic=False))
-        self.every(max(self.parameters.dynamic_pose_hertz, 0.0), lambda: self._publish(dynamic, dynamic=True))
+        all_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/pose/info")
+        dynamic_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/dynamic_pose/info")
+        self.every(_ALL_POSES_RATE, lambda: self._publish(all_output, dynamic=False))
+        self.every(max(self.parameters.dynamic_pose_hertz, 0.0), lambda: self._publish(dynamic_output, dynamic=True))
 
     def _publish(self, output: Output, *, dynamic: bool) -> None:
         if not output.is_wanted:
             return
         if self._revision != self.simulation.revision:
-            self._collect()
+            self._collect_entities()
         entities = self._dynamic if dynamic else self._all
         poses = np.array([pose() if callable(pose) else pose for pose in entities.poses], dtype=float).reshape(-1, 7)
         count = len(entities.names)
         output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
 
-    def _collect(self) -> None:
-        """Update the lists of all and of moving entities; static entities get constant poses."""
+    def _collect_entities(self) -> None:
+        """Update the list of all entities and the list of moving entities; static entities get constant poses."""
         self.simulation.refresh()
         self._revision = self.simulation.revision
         models = self.simulation.scene.models.values()
@@ -86,7 +86,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
             for model in models
             for part in parts_of(self.simulation, model.model, model.name)
         ]
-        ordered = [(part, static) for kinds in _ORDER for part, static in parts if part.kind in kinds]
+        ordered = [(part, static) for kinds in _KIND_ORDER for part, static in parts if part.kind in kinds]
         world = self.simulation.world
         lights = [(light.name, Frames(world).placed(light.pose)) for light in world.lights]
         self._all = _Entities(

@@ -24,7 +24,7 @@ class StateParameters:
 
 
 class ClassicState(SimulatedPlugin[StateParameters]):
-    """The substitute for ``libgazebo_ros_state.so``, a plugin of a world."""
+    """The substitute for the world plugin ``libgazebo_ros_state.so``."""
 
     PARAMETERS = StateParameters
 
@@ -36,8 +36,8 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         self._links = node.publisher("gazebo_msgs/msg/LinkStates", "link_states", 1)
         if node.name.count("/") > 1:  # Without a namespace, these are the simulator's own services.
             node.service("gazebo_msgs/srv/GetEntityState", "get_entity_state", self._get)
-            node.service("gazebo_msgs/srv/SetEntityState", "set_entity_state", self._set)
-        node.service("gazebo_msgs/srv/SetModelConfiguration", "set_joint_positions", self._set_joints)
+            node.service("gazebo_msgs/srv/SetEntityState", "set_entity_state", self._set_entity_state)
+        node.service("gazebo_msgs/srv/SetModelConfiguration", "set_joint_positions", self._set_joint_positions)
         self.every(self.parameters.update_rate, self._publish)
 
     def _publish(self) -> None:
@@ -45,7 +45,7 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         if self._models.is_wanted:
             self._models.publish(self._message("gazebo_msgs/msg/ModelStates", list(models)))
         if self._links.is_wanted:
-            links = [held.link.name for model in models.values() for held in model.structure.links]
+            links = [placed_link.link.name for model in models.values() for placed_link in model.structure.links]
             self._links.publish(self._message("gazebo_msgs/msg/LinkStates", links))
 
     def _message(self, kind: str, names: list[str]) -> Any:
@@ -53,12 +53,12 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         return get_message(kind)(names, [state.pose for state in states], [state.twist for state in states])
 
     def _get(self, request: Any, response: Any) -> Any:
-        return self._entities.answer_get("get_entity_state", request, response, self.node.logger.error)
+        return self._entities.fill_get_response("get_entity_state", request, response, self.node.logger.error)
 
-    def _set(self, request: Any, response: Any) -> Any:
-        return self._entities.answer_set("set_entity_state", request, response, self.node.logger.error)
+    def _set_entity_state(self, request: Any, response: Any) -> Any:
+        return self._entities.fill_set_response("set_entity_state", request, response, self.node.logger.error)
 
-    def _set_joints(self, request: Any, response: Any) -> Any:
+    def _set_joint_positions(self, request: Any, response: Any) -> Any:
         if len(request.joint_names) != len(request.joint_positions):
             response.status_message = "set_joint_positions: joint name and position list have different lengths"
             return response

@@ -1,6 +1,6 @@
-"""A model that moves with a commanded velocity: ``gz-sim-velocity-control-system``.
+"""Moves a model with a commanded velocity: ``gz-sim-velocity-control-system``.
 
-Source: gz-sim (parameters, topic; velocities are in the axes of the model, and apply until the next message).
+Source: gz-sim (parameters, topic; velocities are in the frame of the model and apply until the next message).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class VelocityControlParameters:
 
 
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
-    """The substitute for ``gz-sim-velocity-control-system``, which controls models but not single links."""
+    """The substitute for ``gz-sim-velocity-control-system``; it controls models but not single links."""
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
@@ -45,7 +45,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.every(0.0, self._move)
 
     def reset(self) -> None:
-        """Restore the initial velocity of the parameters."""
+        """Set the commanded velocity to the initial velocity in the parameters, or to none."""
         parameters = self.parameters
         self._wanted: tuple[Vector3, Vector3] | None = None
         if parameters.initial_linear is not None or parameters.initial_angular is not None:
@@ -55,13 +55,13 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self._wanted = (numbers(twist.linear), numbers(twist.angular))
 
     def _rest(self) -> bool:
-        still = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        before, self._wanted = self._wanted, still
-        return before != still
+        zero_velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        previous_velocity, self._wanted = self._wanted, zero_velocity
+        return previous_velocity != zero_velocity
 
     def _move(self) -> None:
         if self._wanted is None:
             return
-        turn = self.simulation.model_pose(self.place.path)[3:]
-        linear, angular = (rotate(turn, item) for item in self._wanted)
+        orientation = self.simulation.model_pose(self.place.path)[3:]
+        linear, angular = (rotate(orientation, velocity) for velocity in self._wanted)
         self.simulation.set_model_velocity(self.place.path, linear, angular)

@@ -17,8 +17,8 @@ from linkwright.simulation.rendering.ray_casters import Caster, Hits
 from linkwright.simulation.rendering.renderer import Channels, RenderedImage, axes_of
 from linkwright.simulation.simulation import Simulation
 
-_UNSET = (0.5, 0.5, 0.5, 1.0)
-"""The colour in MuJoCo of a geom that has the colour of its material."""
+_DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)
+"""MuJoCo's default colour, which a geom has if its material determines its colour."""
 
 
 class RayRenderer:
@@ -34,7 +34,7 @@ class RayRenderer:
         self._simulation = simulation
         self._caster = caster
         self._colours: Any = None
-        self._paints: tuple[Any, ...] = ()
+        self._known_paints: tuple[Any, ...] = ()
         self._revision = -1
 
     def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:
@@ -42,74 +42,80 @@ class RayRenderer:
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
         hits = self._caster.cast(View(optics, origin, axes, rays), normals=Channels.COLOUR in channels)
-        unseen = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
-        np.copyto(hits.distances, np.inf, where=unseen)
-        np.copyto(hits.geoms, -1, where=unseen)
+        is_clipped = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
+        np.copyto(hits.distances, np.inf, where=is_clipped)
+        np.copyto(hits.geoms, -1, where=is_clipped)
         shape = optics.height, optics.width
         return RenderedImage(
-            self._shaded(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Channels.COLOUR in channels else None,
+            self._shade(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Channels.COLOUR in channels else None,
             hits.distances.reshape(shape) if Channels.DEPTH in channels else None,
             hits.geoms.reshape(shape) if Channels.GEOMS in channels else None,
         )
 
     def close(self) -> None:
-        """Do nothing: the renderer does not hold system resources."""
+        """Do nothing, because the renderer holds no system resources."""
 
-    def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
+    def _shade(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
-        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a data set varies them for each image
-        if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
+        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # these vary with each image of a data set
+        if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._known_paints)):
             self._colours = geom_colours(simulation.model)
-            self._paints = tuple(paint.copy() for paint in paints)
+            self._known_paints = tuple(paint.copy() for paint in paints)
             self._revision = simulation.revision
         scene = simulation.world.scene
-        turned = np.where(np.einsum("ij,ij->i", hits.normals, rays) > 0, np.float32(-1), np.float32(1))
+        facing_signs = np.where(np.einsum("ij,ij->i", hits.normals, rays) > 0, np.float32(-1), np.float32(1))
         light = np.empty_like(hits.normals)
         light[:] = scene.ambient[:3]
         for placed_light in lights_of(simulation, forwards):
-            share = _share(placed_light, hits, turned, origin, rays)
+            received = _received_light(placed_light, hits, facing_signs, origin, rays)
             for channel, strength in enumerate(placed_light.colour.astype(np.float32)):
-                light[:, channel] += share * strength
+                light[:, channel] += received * strength
         light *= self._colours.take(hits.geoms, axis=0, mode="wrap")
         np.minimum(light, 1.0, out=light)
         light *= 255
         rendered = light.astype(np.uint8)
-        np.copyto(rendered, _background(scene.background), where=(hits.geoms < 0)[:, None])
+        np.copyto(rendered, _background_colour(scene.background), where=(hits.geoms < 0)[:, None])
         return rendered
 
 
-def _background(colour: Sequence[float]) -> Any:
+def _background_colour(colour: Sequence[float]) -> Any:
     return np.round(np.clip(np.array(colour[:3]), 0, 1) * 255).astype(np.uint8)
 
 
-def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: Any) -> Any:
-    """Return the fraction of a light's brightness that each hit surface receives, shape (n,)."""
-    if placed.light.type == "directional":
-        share = (hits.normals @ -placed.direction.astype(np.float32)) * turned
-        return np.maximum(share, 0, out=share)
+def _received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, origin: Array, rays: Any) -> Any:
+    """Return the fraction of a light's intensity that the surface at each hit receives, shape (n,)."""
+    if placed_light.light.type == "directional":
+        fractions = (hits.normals @ -placed_light.direction.astype(np.float32)) * facing_signs
+        return np.maximum(fractions, 0, out=fractions)
     with np.errstate(invalid="ignore"):  # Rays without a hit have infinite distances.
-        away = placed.position.astype(np.float32) - (origin.astype(np.float32) + rays * hits.distances[:, None])
-        distance = np.linalg.norm(away, axis=1)
-        away /= np.maximum(distance, 1e-9)[:, None]
-        fading = placed.light.attenuation
-        share = np.maximum(np.einsum("ij,ij->i", hits.normals, away) * turned, 0)
-        share /= np.maximum(fading.constant + fading.linear * distance + fading.quadratic * distance**2, 1e-3)
-        share[~(distance <= fading.range)] = 0
-        if placed.light.type == "spot" and placed.light.spot is not None:
-            outside = away @ -placed.direction.astype(np.float32) < cos(placed.light.spot.outer_angle / 2)
-            share[outside] = 0
-    return share
+        to_light = placed_light.position.astype(np.float32) - (
+            origin.astype(np.float32) + rays * hits.distances[:, None]
+        )
+        distance = np.linalg.norm(to_light, axis=1)
+        to_light /= np.maximum(distance, 1e-9)[:, None]
+        attenuation = placed_light.light.attenuation
+        fractions = np.maximum(np.einsum("ij,ij->i", hits.normals, to_light) * facing_signs, 0)
+        fractions /= np.maximum(
+            attenuation.constant + attenuation.linear * distance + attenuation.quadratic * distance**2, 1e-3
+        )
+        fractions[~(distance <= attenuation.range)] = 0
+        if placed_light.light.type == "spot" and placed_light.light.spot is not None:
+            is_outside_cone = to_light @ -placed_light.direction.astype(np.float32) < cos(
+                placed_light.light.spot.outer_angle / 2
+            )
+            fractions[is_outside_cone] = 0
+    return fractions
 
 
 def geom_colours(model: Any) -> Any:
     """Return the colours of all geoms, from 0 to 1, shape (geoms, 3), float32.
 
-    The colour of a textured geom is multiplied by the mean colour of its texture.
+    The colour of a textured geom is multiplied by the mean colour of the texture.
     """
     colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
     for geom in np.nonzero(model.geom_matid >= 0)[0]:
         material = model.geom_matid[geom]
-        if (model.geom_rgba[geom] == _UNSET).all():
+        if (model.geom_rgba[geom] == _DEFAULT_RGBA).all():
             colours[geom] = model.mat_rgba[material, :3]
         for texture in np.atleast_1d(model.mat_texid[material]):
             if texture >= 0:

@@ -15,12 +15,12 @@ from linkwright.sdf.optics import Optics
 
 Pixels = np.ndarray[Any, np.dtype[Any]]
 
-_INTO_LINK = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-"""The axes of images in those of links: cameras look along x, with z up."""
+_IMAGE_AXES = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""The axes of images in the frame of the camera as columns: cameras look along x, with z up."""
 
 
 class Channels(Flag):
-    """The channels of an image that can be requested."""
+    """The channels of a rendered image, of which a caller requests some."""
 
     COLOUR = auto()
     DEPTH = auto()
@@ -32,10 +32,10 @@ class RenderedImage:
     """A rendered image; channels that were not requested are None.
 
     Attributes:
-        colour: red, green, blue: shape (height, width, 3), uint8.
-        depth: distance along the optical axis in m, inf where there is nothing nearer than `far`: shape (height,
-            width).
-        geoms: the index of the geom in MuJoCo's model, -1 for none: shape (height, width).
+        colour: the red, green and blue of each pixel, shape (height, width, 3), uint8.
+        depth: the distance along the optical axis in m, shape (height, width); inf if nothing is nearer than the far
+            clip plane.
+        geoms: the index of the visible geom in MuJoCo's model, shape (height, width); -1 for none.
     """
 
     colour: Pixels | None
@@ -44,10 +44,10 @@ class RenderedImage:
 
 
 class Renderer(Protocol):
-    """The interface of renderers, which are used in the thread of the simulation."""
+    """The interface of renderers; all methods are called in the thread of the simulation."""
 
     way: Phrase
-    """How it does so, for people."""
+    """The method of rendering, as a phrase for log messages."""
 
     def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:
         """Render the current view of a camera.
@@ -55,7 +55,7 @@ class Renderer(Protocol):
         Args:
             optics: the projection of the camera.
             pose: the pose of the camera in the world; the camera looks along x, with z up.
-            channels: the requested channels.
+            channels: the channels to render.
         """
 
     def close(self) -> None:
@@ -63,6 +63,6 @@ class Renderer(Protocol):
 
 
 def axes_of(pose: Transform) -> Array:
-    """Return the image axes of a camera in the world as columns: right, down, forwards."""
-    axes: Array = rotation_matrix(np.array(pose[3:])) @ _INTO_LINK
+    """Return the image axes of a camera in the world as columns: right, down, forwards; shape (3, 3)."""
+    axes: Array = rotation_matrix(np.array(pose[3:])) @ _IMAGE_AXES
     return axes

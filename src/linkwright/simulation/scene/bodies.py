@@ -1,4 +1,4 @@
-"""Converts links to bodies of MuJoCo: mass, joints, collision geoms and visual geoms."""
+"""Conversion of links to MuJoCo bodies: mass, joints, collision geoms and visual geoms."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.simulation.scene.surfaces import apply_surface, grip_of
 from linkwright.xmltree import Element
 
-_FLAT = 1e-9
-"""The least principal moment of inertia, as a share of the largest, that MuJoCo accepts for flat bodies."""
+_MIN_MOMENT_RATIO = 1e-9
+"""The minimum ratio of the least to the largest principal moment of inertia that MuJoCo accepts."""
 COLLISION_GROUP, VISUAL_GROUP = 3, 2
-"""MuJoCo's groups of shapes that touch, and of those that are seen."""
+"""MuJoCo's groups of collision geoms and of visual geoms."""
 SECOND_AXIS = "#2"
 """The suffix of the name of a joint's second axis."""
 
-_LEAST_MASS = 1e-6
-"""The least mass in kg: MuJoCo does not move bodies without mass."""
-_LEAST_INERTIA = 1e-9
-"""The least inertia in kg m2."""
-_LEAST_MOMENT = 1e-12
-"""The least moment of inertia in kg m2: MuJoCo takes less than 1e-14 for none."""
-_USUAL_INERTIAL = Inertial()
+_MIN_MASS = 1e-6
+"""The minimum mass in kg, because MuJoCo does not move bodies without mass."""
+_MIN_INERTIA = 1e-9
+"""The minimum inertia in kg m2 that replaces an impossible inertia."""
+_MIN_MOMENT = 1e-12
+"""The minimum moment of inertia in kg m2, because MuJoCo treats moments below 1e-14 as zero."""
+_DEFAULT_INERTIAL = Inertial()
 _GREY: Color = (0.7, 0.7, 0.7, 1.0)
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
-"""The colour of a textured visual without one."""
-_WATER = 1000.0
+"""The colour of a textured visual that has no colour."""
+_DEFAULT_DENSITY = 1000.0
 """The default density, in kg/m3."""
 
 
@@ -57,7 +57,7 @@ class BodyWriter:
         meshes: the library of meshes.
 
     Attributes:
-        diagnostics: findings on parts that cannot be simulated.
+        diagnostics: the findings on values and shapes that cannot be simulated.
         unspecified: names of the colliding geoms whose friction is not specified.
         grips: the friction that geoms have when a motor turns them, by geom name.
     """
@@ -74,27 +74,31 @@ class BodyWriter:
 
         Impossible values are replaced and reported.
         """
-        inertial = link.inertial or _USUAL_INERTIAL
+        inertial = link.inertial or _DEFAULT_INERTIAL
         if inertial.auto:
-            inertial = _inertial_from_shapes(link, frames) or _USUAL_INERTIAL
-        placed = transform_of(inertial.pose.pose)
-        turn = rotation_matrix(placed[3:])
-        about = inertial.inertia
+            inertial = _inertial_from_shapes(link, frames) or _DEFAULT_INERTIAL
+        inertial_pose = transform_of(inertial.pose.pose)
+        rotation = rotation_matrix(inertial_pose[3:])
+        inertia = inertial.inertia
         tensor = np.array(
-            [[about.ixx, about.ixy, about.ixz], [about.ixy, about.iyy, about.iyz], [about.ixz, about.iyz, about.izz]]
+            [
+                [inertia.ixx, inertia.ixy, inertia.ixz],
+                [inertia.ixy, inertia.iyy, inertia.iyz],
+                [inertia.ixz, inertia.iyz, inertia.izz],
+            ]
         )
         with np.errstate(invalid="ignore", over="ignore"):
-            tensor = turn @ tensor @ turn.T
+            tensor = rotation @ tensor @ rotation.T
         mass = inertial.mass
-        if not (isfinite(mass) and mass >= _LEAST_MASS):
+        if not (isfinite(mass) and mass >= _MIN_MASS):
             message = phrase(
                 "link '{name}' has a mass of {mass} kg, but is simulated with {least} kg",
                 name=link.name,
                 mass=mass,
-                least=_LEAST_MASS,
+                least=_MIN_MASS,
             )
             self._warn("SIM110", message, inertial.element or link.element)
-            mass = _LEAST_MASS
+            mass = _MIN_MASS
         if not np.isfinite(tensor).all() or not is_positive_definite(tensor):
             if not (np.isfinite(tensor).all() and not tensor.any()):
                 message = phrase(
@@ -102,7 +106,7 @@ class BodyWriter:
                     name=link.name,
                 )
                 self._warn("SIM111", message, inertial.element or link.element)
-            tensor = np.eye(3) * max(mass * 1e-4, _LEAST_INERTIA)
+            tensor = np.eye(3) * max(mass * 1e-4, _MIN_INERTIA)
         excess = triangle_excess(tensor)
         if excess > TOLERANCE:
             message = phrase(
@@ -110,46 +114,48 @@ class BodyWriter:
                 name=link.name,
             )
             self._warn("SIM111", message, inertial.element or link.element)
-        elif excess > -_FLAT:  # With a rounding error, MuJoCo would use the mean moment.
-            tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _FLAT)
-        least = float(np.linalg.eigvalsh(tensor)[0])
-        if least < _LEAST_MOMENT:
-            tensor = tensor + np.eye(3) * (_LEAST_MOMENT - least)
+        elif excess > -_MIN_MOMENT_RATIO:  # With a rounding error, MuJoCo would use the mean moment.
+            tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _MIN_MOMENT_RATIO)
+        min_moment = float(np.linalg.eigvalsh(tensor)[0])
+        if min_moment < _MIN_MOMENT:
+            tensor = tensor + np.eye(3) * (_MIN_MOMENT - min_moment)
         body.explicitinertial = True
         body.mass = mass
-        body.ipos = list(placed[:3])
+        body.ipos = list(inertial_pose[:3])
         body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
 
-    def add_joint(self, body: Any, placed: PlacedJoint, child: Transform) -> None:
+    def add_joint(self, body: Any, scene_joint: PlacedJoint, child: Transform) -> None:
         """Add the MuJoCo joints that represent a joint to the body of the joint's child.
 
         Args:
             body: the body of the child link.
-            placed: the joint.
+            scene_joint: the joint.
             child: the pose of the child link in the world.
         """
-        kinds = self._mujoco.mjtJoint
-        in_child = compose(invert(child), placed.pose)
-        kind = placed.joint.type
+        joint_types = self._mujoco.mjtJoint
+        in_child = compose(invert(child), scene_joint.pose)
+        kind = scene_joint.joint.type
         if kind == "fixed":
             return
         if kind == "ball":
-            body.add_joint(name=placed.name, type=kinds.mjJNT_BALL, pos=list(in_child[:3]))
+            body.add_joint(name=scene_joint.name, type=joint_types.mjJNT_BALL, pos=list(in_child[:3]))
             return
         prismatic = kind == "prismatic"
         count = 2 if kind in ("universal", "revolute2") else 1
-        for axis, direction in placed.axes[:count]:
-            name = placed.name if axis is placed.joint.axis else placed.name + SECOND_AXIS
+        for axis, direction in scene_joint.axes[:count]:
+            name = scene_joint.name if axis is scene_joint.joint.axis else scene_joint.name + SECOND_AXIS
             joint = body.add_joint(
                 name=name,
-                type=kinds.mjJNT_SLIDE if prismatic else kinds.mjJNT_HINGE,
+                type=joint_types.mjJNT_SLIDE if prismatic else joint_types.mjJNT_HINGE,
                 pos=list(in_child[:3]),
                 axis=list(rotate(in_child[3:], direction)),
             )
             self._limit(joint, axis, endless=kind == "continuous")
             if kind == "screw":
-                place, along = list(in_child[:3]), list(rotate(in_child[3:], direction))
-                body.add_joint(name=placed.name + THREAD, type=kinds.mjJNT_SLIDE, pos=place, axis=along)
+                anchor, direction_in_child = list(in_child[:3]), list(rotate(in_child[3:], direction))
+                body.add_joint(
+                    name=scene_joint.name + THREAD, type=joint_types.mjJNT_SLIDE, pos=anchor, axis=direction_in_child
+                )
 
     def _limit(self, joint: Any, axis: Axis, *, endless: bool) -> None:
         limit, dynamics = axis.limit, axis.dynamics
@@ -194,26 +200,26 @@ class BodyWriter:
                     self.unspecified.add(geom.name)
 
     def _geoms(
-        self, body: Any, part: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
+        self, body: Any, item: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
     ) -> Iterable[Any]:
-        """Add the geoms of a visual or collision to a body, name and return them.
+        """Add the geoms of a visual or collision to a body, name them, and return them.
 
         `counts` counts the geoms per name, because names must be unique in a body.
         """
-        collision = isinstance(part, Collision)
-        geoms = [] if isinstance(part, Collision) else self._meshes.wrapped(body, part, pose)
-        simple = None if geoms else add_shape(body, part.geometry, pose, fixed=fixed)
-        if simple is not None:
-            geoms = [simple]
-        elif isinstance(part, Collision):
-            geoms = self._meshes.collisions(body, part.geometry, pose, part.element, fixed=fixed)
+        collision = isinstance(item, Collision)
+        geoms = [] if isinstance(item, Collision) else self._meshes.wrapped(body, item, pose)
+        simple_geom = None if geoms else add_shape(body, item.geometry, pose, fixed=fixed)
+        if simple_geom is not None:
+            geoms = [simple_geom]
+        elif isinstance(item, Collision):
+            geoms = self._meshes.collisions(body, item.geometry, pose, item.element, fixed=fixed)
         elif not geoms:
-            geoms = self._meshes.visuals(body, part.geometry, pose, part.element)
+            geoms = self._meshes.visuals(body, item.geometry, pose, item.element)
         for geom in geoms:
-            index = counts[part.name]
-            counts[part.name] += 1
+            index = counts[item.name]
+            counts[item.name] += 1
             suffix = f"#{index}" if index else ""
-            geom.name = f"{body.name}::{part.name}#{'collision' if collision else 'visual'}{suffix}"
+            geom.name = f"{body.name}::{item.name}#{'collision' if collision else 'visual'}{suffix}"
         return geoms
 
     def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
@@ -225,31 +231,31 @@ class BodyWriter:
 def _inertial_from_shapes(link: Link, frames: Frames) -> Inertial | None:
     """Return the mass properties of a link's simple collision shapes; None if they have no mass."""
     assert link.inertial is not None
-    parts = []
+    properties = []
     for collision in link.collisions:
         if isinstance(collision.geometry, Box | Capsule | Cylinder | Sphere):
-            density = collision.density or link.inertial.density or _WATER
+            density = collision.density or link.inertial.density or _DEFAULT_DENSITY
             pose = pose_of(frames.in_link(collision.pose, link.name))
-            parts.append(shape_properties(collision.geometry, density).moved(pose))
-    whole = combine(parts)
-    if not whole.mass > 0:
+            properties.append(shape_properties(collision.geometry, density).moved(pose))
+    total = combine(properties)
+    if not total.mass > 0:
         return None
-    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = whole.inertia.tolist()
-    x, y, z = whole.center.tolist()
-    return Inertial(whole.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
+    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = total.inertia.tolist()
+    x, y, z = total.center.tolist()
+    return Inertial(total.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
 
 
-def _colour(visual: Visual, usual: Color) -> list[float]:
+def _colour(visual: Visual, default: Color) -> list[float]:
     material = visual.material
-    red, green, blue, alpha = (material.diffuse if material is not None else None) or usual
+    red, green, blue, alpha = (material.diffuse if material is not None else None) or default
     return [min(max(value, 0.0), 1.0) for value in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 
 def set_coefficient(element: Any, name: str, value: float) -> None:
     """Set a scalar attribute of an element, or the first term if MuJoCo 4 stores a polynomial."""
-    held = getattr(element, name)
-    if np.ndim(held):
-        held[0] = value
+    current_value = getattr(element, name)
+    if np.ndim(current_value):
+        current_value[0] = value
     else:
         setattr(element, name, value)
 

@@ -1,4 +1,4 @@
-"""Compiles a scene to MuJoCo's model, and finds the models that MuJoCo rejects."""
+"""Compilation of a scene to MuJoCo's model, and detection of the models that MuJoCo rejects."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
-_MANY_LINKS, MOST_LINKS = 1000, 10_000
-"""From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
-_BYTES_A_PAIR, _BYTES = 3, 1 << 28
+_MEMORY_THRESHOLD, MOST_LINKS = 1000, 10_000
+"""The number of links above which MuJoCo gets memory for all pairs of links, and the maximum number of links."""
+_BYTES_PER_PAIR, _BASE_BYTES = 3, 1 << 28
 
 
 def count_links(models: Iterable[Model]) -> int:
-    """Return the number of links of models, after checking it against the maximum.
+    """Return the number of links in models, or raise if there are too many.
 
     Raises:
         LinkwrightError: SIM105, there are too many links.
     """
-    count = sum(_links_in(model) for model in models)
+    count = sum(_count_model_links(model) for model in models)
     if count > MOST_LINKS:
         message = phrase("the world has {count} links, more than can be simulated", count=count)
         raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
@@ -40,16 +40,16 @@ def too_many_links_hint() -> Phrase:
     return phrase("use at most {most} links; put shapes that never move into one link", most=MOST_LINKS)
 
 
-def _links_in(model: Model) -> int:
-    return len(model.links) + sum(_links_in(inner) for inner in model.models)
+def _count_model_links(model: Model) -> int:
+    return len(model.links) + sum(_count_model_links(nested_model) for nested_model in model.models)
 
 
-def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
+def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
     """Compile a scene, and return MuJoCo's model and data.
 
     Args:
         scene: the simulated scene.
-        before: the previous model and data, whose state is kept.
+        previous: the previous model and data, whose state is kept; None for a first compilation.
 
     Raises:
         LinkwrightError: SIM104, MuJoCo rejects the scene; SIM105, there are too many links.
@@ -57,13 +57,13 @@ def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[
     mujoco = load_mujoco()
     scene.settle()
     count = count_links(model.model for model in scene.models.values())
-    if count > _MANY_LINKS:
-        scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
+    if count > _MEMORY_THRESHOLD:
+        scene.spec.memory = _BYTES_PER_PAIR * count * count + _BASE_BYTES
     try:
         with catch_warnings():
             simplefilter("ignore")  # `check` and the simulation report the relevant warnings of MuJoCo
-            if before is not None:
-                model, data = scene.spec.recompile(*before)
+            if previous is not None:
+                model, data = scene.spec.recompile(*previous)
                 return model, data
             model = scene.spec.compile()
             return model, mujoco.MjData(model)
@@ -81,11 +81,11 @@ def rejected_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
         world: the world, with its includes resolved and as it was saved.
         finder: the finder of mesh files.
     """
-    found = {model.name: _refusal(replace(world, models=(model,)), finder) for model in world.models}
-    return {name: why for name, why in found.items() if why is not None}
+    messages = {model.name: _rejection_message(replace(world, models=(model,)), finder) for model in world.models}
+    return {name: message for name, message in messages.items() if message is not None}
 
 
-def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
+def _rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
     """Return the message if a world cannot be compiled; None otherwise."""
     try:
         compile_scene(Scene(world, MeshLibrary(finder)))
@@ -107,6 +107,6 @@ def step_in_nanoseconds(step: float, world: World) -> int:
         element = physics.element if physics.max_step_size == step else None
         if element is None:
             raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))
-        place = element.first("max_step_size") or element
-        raise LinkwrightError(Diagnostic("SIM106", message, place.span(), hint=hint, source=place.source))
+        step_element = element.first("max_step_size") or element
+        raise LinkwrightError(Diagnostic("SIM106", message, step_element.span(), hint=hint, source=step_element.source))
     return round(step * NANOSECONDS_PER_SECOND)

@@ -13,7 +13,7 @@ from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World
-from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, is_below, placed_joint, structure_of
+from linkwright.simulation.scene.structure import PlacedJoint, Structure, TreeLink, is_below, placed_joint, structure_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Connections:
     """The joints of a world that connect its models.
 
     Attributes:
-        hanging: joints that attach models to their parents, by the names of the child links.
+        attaching_joints: joints that attach models to their parents, by the names of the child links.
         loops: joints between links that already have a parent.
         poses: the poses of the connected models' frames in the world.
     """
@@ -30,7 +30,7 @@ class Connections:
     loops: tuple[PlacedJoint, ...]
     poses: dict[str, Transform]
 
-    def of(self, structure: Structure, name: str, pose: Transform, others: Iterable[str]) -> Connected:
+    def of(self, structure: Structure, name: str, pose: Transform, earlier_models: Iterable[str]) -> Connected:
         """Return a model with the joints that connect it to earlier models.
 
         Args:
@@ -38,40 +38,42 @@ class Connections:
             name: the model's name in the world.
             pose: the pose of the model's frame in the world; a model that is not at its pose in `poses` is not
                 connected.
-            others: the names of the earlier models.
+            earlier_models: the names of the earlier models.
         """
         if self.poses.get(name) != pose:
             return Connected(structure, (), frozenset())
-        there = {WORLD, name, *others}
+        available_models = {WORLD, name, *earlier_models}
         joints = (*self.hanging.values(), *self.loops)
-        own = [joint for joint in joints if name in _models(joint) and _models(joint) <= there]
-        hung = {
+        own_joints = [joint for joint in joints if name in _models(joint) and _models(joint) <= available_models]
+        attaching_joints = {
             joint.child: joint
-            for joint in own
+            for joint in own_joints
             if self.hanging.get(joint.child) is joint and model_of(joint.child) == name
         }
-        links = tuple(HeldLink(held.link, hung.get(held.link.name, held.joint)) for held in structure.links)
-        loops = tuple(joint for joint in own if hung.get(joint.child) is not joint)
-        hangs_on = frozenset(model for joint in own for model in _models(joint)) - {WORLD, name}
+        links = tuple(TreeLink(held.link, attaching_joints.get(held.link.name, held.joint)) for held in structure.links)
+        loops = tuple(joint for joint in own_joints if attaching_joints.get(joint.child) is not joint)
+        hangs_on = frozenset(model for joint in own_joints for model in _models(joint)) - {WORLD, name}
         return Connected(replace(structure, links=links), loops, hangs_on)
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Return model names in the given order, but each after the models to which it is attached."""
-        above: dict[str, list[str]] = {}
+        """Return model names in the given order, except that each follows the models to which it is attached."""
+        parents: dict[str, list[str]] = {}
         for joint in self.hanging.values():
-            above.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
-        wanted = set(names)
+            parents.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
+        selected_names = set(names)
         ordered: dict[str, None] = {}
-        begun: set[str] = set()  # joints may connect the models in a cycle
+        visited: set[str] = set()  # joints may connect the models in a cycle
         pending = list(reversed(names))
         while pending:
             name = pending[-1]
-            missing = (
-                [] if name in begun else [each for each in above.get(name, ()) if each in wanted and each not in begun]
+            missing_parents = (
+                []
+                if name in visited
+                else [parent for parent in parents.get(name, ()) if parent in selected_names and parent not in visited]
             )
-            begun.add(name)
-            if missing:
-                pending += missing
+            visited.add(name)
+            if missing_parents:
+                pending += missing_parents
             else:
                 ordered[pending.pop()] = None
         return list(ordered)
@@ -81,10 +83,10 @@ class Connections:
 class Connected:
     """A model with the joints that connect it to other models.
 
-    Attributes:
+    structure: the links, each attached by a joint of the model or of the world.
         structure: the links, attached by their own joints or by joints of the world.
         loops: joints of the world that close loops with links of other models, or within the model.
-        hangs_on: names of the models to which these joints connect the model.
+        hangs_on: the names of the models to which joints of the world connect this model.
     """
 
     structure: Structure
@@ -101,10 +103,10 @@ def connections_of(world: World) -> Connections:
     if not world.joints:
         return Connections({}, (), {})
     frames = Frames(world)
-    placed = _placed(world, frames)
+    placed = _placed_joints(world, frames)
     models = {model for joint in placed for model in _models(joint)}
     poses: dict[str, Transform] = {}
-    held: dict[str, HeldLink] = {}
+    held_links: dict[str, TreeLink] = {}
     for model in world.models:
         if model.name in models - poses.keys():
             try:
@@ -112,26 +114,30 @@ def connections_of(world: World) -> Connections:
             except FrameError:
                 continue  # The scene reports this model.
             poses[model.name] = frames.pose(model.name)
-            held |= {link.link.name: link for link in structure.links}
+            held_links |= {link.link.name: link for link in structure.links}
 
-    holding = {name: each.joint for name, each in held.items() if each.joint is not None}
-    moving = {name for name, each in held.items() if not each.link.static}
-    free = {name for name in moving - holding.keys() if not held[name].link.link.kinematic}
+    joints_by_child = {name: each.joint for name, each in held_links.items() if each.joint is not None}
+    moving_links = {name for name, each in held_links.items() if not each.link.static}
+    free_links = {name for name in moving_links - joints_by_child.keys() if not held_links[name].link.link.kinematic}
     hanging: dict[str, PlacedJoint] = {}
     loops: list[PlacedJoint] = []
     for joint in placed:
-        there = held.keys() | {WORLD}
-        if not {joint.parent, joint.child} <= there or not {joint.parent, joint.child} & moving:
+        known_links = held_links.keys() | {WORLD}
+        if not {joint.parent, joint.child} <= known_links or not {joint.parent, joint.child} & moving_links:
             continue
         can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # A model orders its own links.
-        ways = (joint, _reversed_joint(joint)) if can_hang else ()
-        fit = (way for way in ways if way.child in free and not is_below(holding, way.child, way.parent))
-        hung = next(fit, None)
-        if hung is None:
+        candidates = (joint, _reversed_joint(joint)) if can_hang else ()
+        suitable_joints = (
+            candidate
+            for candidate in candidates
+            if candidate.child in free_links and not is_below(joints_by_child, candidate.child, candidate.parent)
+        )
+        attaching_joint = next(suitable_joints, None)
+        if attaching_joint is None:
             loops.append(joint)
         else:
-            free.discard(hung.child)
-            hanging[hung.child] = holding[hung.child] = hung
+            free_links.discard(attaching_joint.child)
+            hanging[attaching_joint.child] = joints_by_child[attaching_joint.child] = attaching_joint
     return Connections(hanging, tuple(loops), poses)
 
 
@@ -144,16 +150,16 @@ def _models(joint: PlacedJoint) -> set[str]:
     return {model_of(joint.parent), model_of(joint.child)}
 
 
-def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
-    found: dict[str, PlacedJoint] = {}
+def _placed_joints(world: World, frames: Frames) -> list[PlacedJoint]:
+    joints_by_name: dict[str, PlacedJoint] = {}
     for joint in world.joints:
         try:
             placed = placed_joint(joint, frames, IDENTITY, "")
         except FrameError:
             continue  # `check` reports this joint.
-        if placed.name not in found and placed.parent != placed.child:
-            found[placed.name] = placed
-    return list(found.values())
+        if placed.name not in joints_by_name and placed.parent != placed.child:
+            joints_by_name[placed.name] = placed
+    return list(joints_by_name.values())
 
 
 def _reversed_joint(joint: PlacedJoint) -> PlacedJoint:

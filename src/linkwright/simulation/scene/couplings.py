@@ -11,8 +11,8 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.structure import PlacedJoint
 
 THREAD = "#thread"
-"""The suffix of the name of the joint along which a screw moves while it turns."""
-_STEPS = 4.0
+"""The suffix of the name of the joint for the translation of a screw."""
+_TIME_CONSTANT_STEPS = 4.0
 """The time constant of joint couplings, in steps."""
 
 
@@ -34,30 +34,32 @@ def gearbox_coupling(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]
     Args:
         spec: the specification.
         gear: the gearbox.
-        joints: the joints that move; both links of the gearbox turn about one of these joints.
+        joints: the movable joints, which include those that move the parent and child links of the gearbox.
     """
-    holding = {joint.child: joint for joint in joints if joint.axes}
-    parent, child = holding.get(gear.parent), holding.get(gear.child)
+    joint_of_link = {joint.child: joint for joint in joints if joint.axes}
+    parent, child = joint_of_link.get(gear.parent), joint_of_link.get(gear.child)
     if parent is None or child is None or not gear.axes:
         return
-    first, second = gear.axes[0], gear.axes[-1]
-    along = _sign(_in_world(gear, first[1]), parent) * _sign(_in_world(gear, second[1]), child)
-    yield _add_coupling(spec, child.name, parent.name, -gear.joint.gearbox_ratio * along)
+    parent_axis, child_axis = gear.axes[0], gear.axes[-1]
+    axis_sign = _axis_sign(_rotate_to_world(gear, parent_axis[1]), parent) * _axis_sign(
+        _rotate_to_world(gear, child_axis[1]), child
+    )
+    yield _add_coupling(spec, child.name, parent.name, -gear.joint.gearbox_ratio * axis_sign)
 
 
 def _add_coupling(spec: Any, follower: str, leader: str, factor: float) -> Any:
     equality = spec.add_equality(type=load_mujoco().mjtEq.mjEQ_JOINT)
     equality.name1, equality.name2 = follower, leader
     equality.data[:5] = [0.0, factor, 0.0, 0.0, 0.0]
-    equality.solref = [_STEPS * spec.option.timestep, 1.0]
+    equality.solref = [_TIME_CONSTANT_STEPS * spec.option.timestep, 1.0]
     return equality
 
 
-def _in_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
+def _rotate_to_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
     return rotate(joint.pose[3:], direction)
 
 
-def _sign(direction: Vector3, joint: PlacedJoint) -> float:
-    """Return 1 if a joint's axis points along a direction, or -1 if the axis points the opposite way."""
-    axis = _in_world(joint, joint.axes[0][1])
+def _axis_sign(direction: Vector3, joint: PlacedJoint) -> float:
+    """Return 1 if a joint's axis points in a direction in the world, or -1 if it points in the opposite direction."""
+    axis = _rotate_to_world(joint, joint.axes[0][1])
     return -1.0 if sum(a * b for a, b in zip(axis, direction, strict=True)) < 0.0 else 1.0

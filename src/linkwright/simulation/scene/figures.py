@@ -1,4 +1,4 @@
-"""Walking actors and roads, which are visible but have no contacts."""
+"""Actors and roads, which are visible but have no contacts."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.reader import parse_file
 
 T = TypeVar("T", Actor, Model)
-_OF_GZ = ("gz-sim", "ignition-gazebo")
-"""Prefixes of the names of gz's libraries."""
-_INVERSE = "INV_BIND_MATRIX"
-_NUMBERS_OF_A_MATRIX = 16
-_FLAT = 1e-12
-"""A matrix whose determinant is not greater cannot be inverted."""
+_GZ_LIBRARIES = ("gz-sim", "ignition-gazebo")
+"""Strings that the file names of gz's plugins contain."""
+_BIND_MATRIX_SEMANTIC = "INV_BIND_MATRIX"
+_MATRIX_SIZE = 16
+_MIN_DETERMINANT = 1e-12
+"""The determinant up to which a matrix counts as not invertible."""
 
 
 @dataclass(slots=True)
@@ -38,11 +38,11 @@ class Figure:
     """An actor or a road of a scene.
 
     Attributes:
-        model: the model that determines the appearance.
-        pose: the pose of the model at time 0.
-        walk: the path of an actor; None for a static figure.
-        origin: the pose in the world of the frame in which the points of `walk` are given.
-        links: the links of the model, placed in the frame of the model.
+        model: the model with the visuals of the figure.
+        pose: the pose of the model in the world at time 0.
+        walk: the walk of an actor; None for a static figure.
+        origin: the pose in the world of the frame to which the points of `walk` refer.
+        links: the links of the model, with poses in the frame of the model.
     """
 
     model: Model
@@ -59,18 +59,18 @@ class Figure:
 def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
     """Return the actors and roads of a world.
 
-    Actors that cannot be placed are left out; `check` reports them. In a world for gz, the points of walks are in the
-    frame of the actor; in a world for Gazebo classic, they are in the frame of the world.
+    Actors whose pose is not defined are left out; `check` reports them. The waypoints of an actor are in the frame of
+    the actor in a world for gz, and in the frame of the world in a world for Gazebo classic.
 
     Args:
         world: the world, with its includes resolved.
-        meshes: the library of meshes, which finds skins.
+        meshes: the library of meshes, which finds the files of skins.
     """
-    relative = any(library in plugin.filename for plugin in world.plugins for library in _OF_GZ)
-    frames, found = Frames(world), []
-    taken = {model.name for model in world.models}
+    is_gz_world = any(library in plugin.filename for plugin in world.plugins for library in _GZ_LIBRARIES)
+    frames, figures = Frames(world), []
+    used_names = {model.name for model in world.models}
     for actor in world.actors:
-        actor = _with_free_name(actor, taken)
+        actor = _with_free_name(actor, used_names)
         try:
             pose = frames.placed(actor.pose)
             model = actor_model(actor, _skin_origin(actor, meshes))
@@ -78,31 +78,31 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
         except FrameError:
             continue
         walk = Walk(actor.script)
-        origin = pose if relative else IDENTITY
-        begin = compose(origin, walk.pose(0.0)) if walk.has_waypoints else pose
-        found.append(Figure(model, begin, walk if walk.has_waypoints else None, origin, links))
+        origin = pose if is_gz_world else IDENTITY
+        initial_pose = compose(origin, walk.pose(0.0)) if walk.has_waypoints else pose
+        figures.append(Figure(model, initial_pose, walk if walk.has_waypoints else None, origin, links))
     for road in world.roads:
-        model = _with_free_name(road_model(road), taken)
+        model = _with_free_name(road_model(road), used_names)
         links = tuple(links_of(model, Frames(model), IDENTITY, model.name))
-        found.append(Figure(model, IDENTITY, None, IDENTITY, links))
-    return found
+        figures.append(Figure(model, IDENTITY, None, IDENTITY, links))
+    return figures
 
 
-def _with_free_name(item: T, taken: set[str]) -> T:
-    """Return an actor or road under a name that is not in `taken`, and add the name to `taken`."""
-    while item.name in taken:
+def _with_free_name(item: T, used_names: set[str]) -> T:
+    """Return an actor or road with a name that was not in use, and add this name to the names in use."""
+    while item.name in used_names:
         item = replace(item, name=f"{item.name}~")
-    taken.add(item.name)
+    used_names.add(item.name)
     return item
 
 
-def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
+def add_figure(figure: Figure, spec: Any, writer: BodyWriter) -> None:
     """Add the links of a figure to a MuJoCo specification, as bodies without contacts or dynamics."""
-    for placed in figure.links:
-        body = spec.worldbody.add_body(name=placed.name, mocap=figure.walk is not None)
-        set_pose(body, compose(figure.pose, placed.pose))
+    for placed_link in figure.links:
+        body = spec.worldbody.add_body(name=placed_link.name, mocap=figure.walk is not None)
+        set_pose(body, compose(figure.pose, placed_link.pose))
         body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]
-        writer.add_visuals(body, placed.link, placed.frames, fixed=True)
+        writer.add_visuals(body, placed_link.link, placed_link.frames, fixed=True)
 
 
 def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
@@ -111,25 +111,25 @@ def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float
         if figure.walk is None:
             continue
         pose = figure.pose_at(seconds)
-        for placed in figure.links:
-            _put(int(model.body(placed.name).mocapid[0]), compose(pose, placed.pose), data)
+        for placed_link in figure.links:
+            _put(int(model.body(placed_link.name).mocapid[0]), compose(pose, placed_link.pose), data)
 
 
 def set_kinematic_poses(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
-    """Set the poses of a model's kinematic links in MuJoCo's data; return whether there are any.
+    """Set the poses of a model's kinematic links in MuJoCo's data; return whether the model has such links.
 
     Args:
         structure: the links of the model.
-        moved: the transform from the initial frame of the links to the new one.
+        moved: the transform in the world that moves the model from its initial pose to its new pose.
         model: MuJoCo's model.
         data: MuJoCo's data.
     """
-    links = [held.link for held in structure.links]
-    driven = {int(model.body(link.name).mocapid[0]): link for link in links}
-    driven.pop(-1, None)
-    for place, link in driven.items():
-        _put(place, compose(moved, link.pose), data)
-    return bool(driven)
+    links = [tree_link.link for tree_link in structure.links]
+    kinematic_links = {int(model.body(link.name).mocapid[0]): link for link in links}
+    kinematic_links.pop(-1, None)
+    for mocap_id, link in kinematic_links.items():
+        _put(mocap_id, compose(moved, link.pose), data)
+    return bool(kinematic_links)
 
 
 def _put(place: int, pose: Transform, data: Any) -> None:
@@ -139,9 +139,9 @@ def _put(place: int, pose: Transform, data: Any) -> None:
 
 
 def _skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
-    """Return the origin of a skin's skeleton in m; None if the mesh file is missing.
+    """Return the origin of the skeleton of an actor's skin in m; None if the mesh file is missing.
 
-    The origin is zero if there is no skeleton.
+    The origin is zero if the actor has no skin, or the skin has no skeleton.
     """
     if actor.skin is None:
         return (0.0, 0.0, 0.0)
@@ -171,20 +171,20 @@ def skeleton_origin(path: Path) -> Vector3:
 
 
 def _first_matrix(skin: Element) -> Any:
-    """Return the first invertible bind matrix of a skeleton; None if there is none."""
-    named = (
+    """Return the first inverse bind matrix of a skin; None if it is missing or not invertible."""
+    source_references = (
         element.attributes.get("source", "")
         for element in skin.walk()
-        if element.attributes.get("semantic") == _INVERSE
+        if element.attributes.get("semantic") == _BIND_MATRIX_SEMANTIC
     )
-    wanted = next(named, "").removeprefix("#")
-    source = next((element for element in skin.elements("source") if element.attributes.get("id") == wanted), None)
+    source_id = next(source_references, "").removeprefix("#")
+    source = next((element for element in skin.elements("source") if element.attributes.get("id") == source_id), None)
     array = None if source is None else source.first("float_array")
     try:
-        numbers = [float(item) for item in array.text().split()[:_NUMBERS_OF_A_MATRIX]] if array is not None else []
+        numbers = [float(token) for token in array.text().split()[:_MATRIX_SIZE]] if array is not None else []
     except ValueError:
         return None
-    if len(numbers) < _NUMBERS_OF_A_MATRIX or not np.isfinite(numbers).all():
+    if len(numbers) < _MATRIX_SIZE or not np.isfinite(numbers).all():
         return None
     matrix = np.array(numbers).reshape(4, 4)
-    return matrix if abs(np.linalg.det(matrix)) > _FLAT else None
+    return matrix if abs(np.linalg.det(matrix)) > _MIN_DETERMINANT else None

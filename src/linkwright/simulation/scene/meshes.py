@@ -15,7 +15,7 @@ from linkwright.geometry.decomposition import convex_pieces, thicken
 from linkwright.geometry.mesh_files import BadMeshError, declared_triangles, file_resolver
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
-from linkwright.geometry.polygon import triangulated
+from linkwright.geometry.polygon import triangulate
 from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.images.heights import read_heights
 from linkwright.sdf.links import Visual
@@ -26,26 +26,27 @@ from linkwright.simulation.scene.shapes import cone_corners, set_pose
 from linkwright.simulation.scene.wrapping import textured_mesh
 from linkwright.xmltree import Element
 
-_MOST_PIECES = 300
-"""The greatest number of a mesh's convex pieces; each costs a little in every step."""
+_MAX_PIECES = 300
+"""The maximum number of convex pieces of a mesh; each piece costs time in every step."""
 _MOST_TRIANGLES = 1_000_000
-"""A mesh with more is left out: it would take gigabytes without improving a contact or an image."""
-_MOST_HULL_CORNERS = 64
-"""The greatest number of corners of a moving body's hull."""
-_LEAST_AREA = 1e-12
-"""The least area in m2 of a triangle: smaller ones are not visible, and MuJoCo refuses them."""
+"""The maximum number of triangles; larger meshes need gigabytes without improving contacts or images."""
+_MAX_HULL_VERTICES = 64
+"""The maximum number of vertices of a convex hull."""
+_MIN_AREA = 1e-12
+"""The total area in m2 up to which the triangles of a visual are left out: invisible, and rejected by MuJoCo."""
 
 
 class MeshLibrary:
-    """Reads each mesh that worlds name once, and reports each unusable mesh once.
+    """Reads each mesh of a world once, and reports each unusable mesh once.
 
     Args:
-        finder: the finder of mesh files.
+        finder: finds mesh files and images.
 
     Attributes:
         spec: the specification to which the meshes are added.
         diagnostics: findings on meshes and images that cannot be used.
-        used: the files requested since `used` was last cleared, with their modification times in ns since the epoch.
+        used: the mesh files requested since this attribute was last cleared, with their modification times in ns since
+            the epoch.
     """
 
     def __init__(self, finder: ResourceFinder) -> None:
@@ -57,7 +58,7 @@ class MeshLibrary:
         self._assets: dict[Hashable, list[str]] = {}
         self._textures: dict[bytes, str] = {}  # texture names, by PNG image
         self._reported: set[str] = set()
-        self._mapped: set[str] = set()  # meshes of the specification that have texture coordinates
+        self._textured_meshes: set[str] = set()  # meshes of the specification that have texture coordinates
 
     def set_finder(self, finder: ResourceFinder) -> None:
         """Set the finder of mesh files; missing files are searched for again."""
@@ -67,28 +68,28 @@ class MeshLibrary:
     def collisions(
         self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
     ) -> list[Any]:
-        """Add a collision to a body as convex pieces, and return the added geoms.
+        """Add a collision to a body as convex pieces or a heightmap, and return the added geoms.
 
-        The list is empty for a mesh that cannot be used.
+        The list is empty if the shape cannot be used.
 
         Args:
             body: the body of the specification.
             shape: a mesh, cone, polygon or heightmap.
             pose: the pose of the shape in the frame of the body.
-            element: the element of the shape in the file.
-            fixed: whether the body never moves; the mesh of a moving body is replaced by its hull.
+            element: the element of the shape in the file; None if there is no file.
+            fixed: whether the body never moves; on a movable body, a mesh is replaced by its convex hull.
         """
         if isinstance(shape, Heightmap):
             return self._add_heightmap(body, shape, pose, element)
         key = ("collision", shape, _version(self._path(shape, element)), fixed)
         if key not in self._assets:
-            self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=fixed)]
+            self._assets[key] = [self._add_hull(corners) for corners in self._pieces(shape, element, fixed=fixed)]
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
-        """Add a visual, with the materials of its mesh file, to a body, and return the added geoms.
+        """Add a visual with the materials of its mesh file to a body, and return the added geoms.
 
-        The arguments are those of `collisions`.
+        The arguments are the same as in `collisions`.
         """
         if isinstance(shape, Heightmap):
             return self._add_heightmap(body, shape, pose, element)
@@ -96,9 +97,9 @@ class MeshLibrary:
         key = ("visual", shape, _version(path))
         if key not in self._assets:
             if isinstance(shape, Mesh):
-                self._assets[key] = [] if path is None else list(self._drawn(shape, path, element))
+                self._assets[key] = [] if path is None else list(self._add_visual_meshes(shape, path, element))
             else:
-                self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=True)]
+                self._assets[key] = [self._add_hull(corners) for corners in self._pieces(shape, element, fixed=True)]
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def _add_geom(self, body: Any, pose: Transform, mesh: str) -> Any:
@@ -110,7 +111,7 @@ class MeshLibrary:
         return geom
 
     def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
-        """Return the vertices of the convex pieces of a shape; an empty list if it cannot be used."""
+        """Return the vertices of each convex piece of a shape; an empty list if the shape cannot be used."""
         if isinstance(shape, Cone):
             return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
         if isinstance(shape, Polyline):
@@ -121,24 +122,24 @@ class MeshLibrary:
         if not isinstance(shape, Mesh) or path is None:
             return []
         try:
-            _bounded(path, declared_triangles(path) or 0)
+            _check_triangle_count(path, declared_triangles(path) or 0)
             if shape.submesh is not None:
                 parts = [part.triangles for part in self._parts(shape, path)]
-                vertices, faces = _joined(parts)
+                vertices, faces = _join_triangles(parts)
             else:
-                whole = read_mesh(path)
-                vertices, faces = whole.vertices, whole.faces
-            _bounded(path, len(faces))
+                mesh = read_mesh(path)
+                vertices, faces = mesh.vertices, mesh.faces
+            _check_triangle_count(path, len(faces))
         except LinkwrightError as error:
             self._warn(error.diagnostics[0], element)
             return []
         vertices = vertices * np.asarray(shape.scale)
         if np.prod(shape.scale) < 0:
             faces = faces[:, ::-1]
-        pieces = convex_pieces(vertices, faces, _MOST_PIECES) if fixed else [vertices[np.unique(faces)]]
+        pieces = convex_pieces(vertices, faces, _MAX_PIECES) if fixed else [vertices[np.unique(faces)]]
         return [thicken(corners) for corners in pieces]
 
-    def _drawn(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:
+    def _add_visual_meshes(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:
         try:
             parts = self._parts(shape, path)
         except LinkwrightError as error:
@@ -148,28 +149,28 @@ class MeshLibrary:
             triangles = part.triangles
             faces: NDArray[np.int64] = triangles.indices.reshape(-1, 3)
             positions = triangles.positions * np.asarray(shape.scale)
-            if _area(positions, faces) <= _LEAST_AREA:
+            if _area(positions, faces) <= _MIN_AREA:
                 continue
             faces = faces[:, ::-1] if np.prod(shape.scale) < 0 else faces
-            name = self._seen(positions, faces, triangles.coordinates)
+            name = self._add_visual_mesh(positions, faces, triangles.coordinates)
             self._add_material(name, part)
             yield name
 
-    def _seen(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
-        """Add a mesh asset for a visual, with any texture coordinates, and return its name."""
+    def _add_visual_mesh(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
+        """Add a mesh asset for a visual to the specification, and return the name of the asset."""
         name = f"mesh {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
-        mesh.uservert = _flat(_pad_to_four(positions))
-        mesh.userface = _flat(faces, np.int32)
+        mesh.uservert = _flat_list(_pad_to_four(positions))
+        mesh.userface = _flat_list(faces, np.int32)
         if coordinates is not None:
-            mesh.usertexcoord = _flat(_pad_to_four(coordinates))
-            self._mapped.add(name)
+            mesh.usertexcoord = _flat_list(_pad_to_four(coordinates))
+            self._textured_meshes.add(name)
         return name
 
     def wrapped(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
         """Add a textured simple shape to a body as a mesh, and return the added geoms.
 
-        The list is empty for a visual without a texture and for a shape that cannot be textured.
+        The list is empty if the visual has no texture, or its shape cannot be textured.
         """
         shape = visual.geometry
         triangles = textured_mesh(shape) if self.material_of(visual) else None
@@ -178,23 +179,23 @@ class MeshLibrary:
         key = ("wrapped", shape)
         if key not in self._assets:
             faces = triangles.indices.reshape(-1, 3)
-            self._assets[key] = [self._seen(triangles.positions, faces, triangles.coordinates)]
+            self._assets[key] = [self._add_visual_mesh(triangles.positions, faces, triangles.coordinates)]
         if isinstance(shape, Plane):
             pose = compose(pose, (0.0, 0.0, 0.0, *rotation_from_z(shape.normal)))
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def _add_material(self, mesh: str, part: MeshPart) -> None:
-        if part.own is None:
+        if part.file_material is None:
             return
         material = self.spec.add_material(name=f"{mesh} look")
-        material.rgba = [*part.own.color, 1.0]
-        if part.own.image is not None and part.triangles.coordinates is not None:
-            self._add_texture(material, part.own.image)
+        material.rgba = [*part.file_material.color, 1.0]
+        if part.file_material.image is not None and part.triangles.coordinates is not None:
+            self._add_texture(material, part.file_material.image)
 
     def _add_texture(self, material: Any, image: bytes) -> None:
         """Add a PNG texture to a material of MuJoCo.
 
-        Equal images share one texture, because each compilation decodes every texture.
+        Equal images share one texture, because each compilation of the specification decodes every texture.
         """
         mujoco = load_mujoco()
         if image not in self._textures:
@@ -206,12 +207,12 @@ class MeshLibrary:
 
     def has_texture_coordinates(self, geom: Any) -> bool:
         """Return whether a geom is a mesh with texture coordinates."""
-        return geom.meshname in self._mapped
+        return geom.meshname in self._textured_meshes
 
     def material_of(self, visual: Visual) -> str:
-        """Return the name of the MuJoCo material with the texture of a visual; empty if it has no texture.
+        """Return the name of a MuJoCo material with the texture of a visual; empty if the visual has no texture.
 
-        An emissive map replaces a missing colour map.
+        If there is no albedo map, the emissive map is used.
         """
         workflow = (
             visual.material and visual.material.pbr and (visual.material.pbr.metal or visual.material.pbr.specular)
@@ -221,47 +222,47 @@ class MeshLibrary:
         path = self._image(workflow.albedo_map or workflow.emissive_map, visual.element)
         if path is None:
             return ""
-        glows = not workflow.albedo_map
-        key = ("image", path, changed_at(path), glows)
+        is_emissive = not workflow.albedo_map
+        key = ("image", path, modification_time(path), is_emissive)
         if key not in self._assets:
             self._assets[key] = []
             image = read_png(path)
             if image is not None:
-                material = self.spec.add_material(name=f"image {len(self.spec.materials)}", emission=float(glows))
+                material = self.spec.add_material(name=f"image {len(self.spec.materials)}", emission=float(is_emissive))
                 self._add_texture(material, image)
                 self._assets[key] = [material.name]
         return "".join(self._assets[key])
 
     def _image(self, uri: str, element: Element | None) -> Path | None:
         source = element.source if element is not None else None
-        found = self._finder.file(uri, Path(source.name).parent if source is not None else Path()) if uri else None
-        if isinstance(found, Missing):
-            message = phrase("an image is left out: {reason}", reason=found.reason)
-            self._report(Diagnostic("SIM112", message, severity=Severity.WARNING, hint=found.hint), element)
+        image_file = self._finder.file(uri, Path(source.name).parent if source is not None else Path()) if uri else None
+        if isinstance(image_file, Missing):
+            message = phrase("an image is left out: {reason}", reason=image_file.reason)
+            self._report(Diagnostic("SIM112", message, severity=Severity.WARNING, hint=image_file.hint), element)
             return None
-        return found
+        return image_file
 
     def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
-        _bounded(path, declared_triangles(path) or 0)
+        _check_triangle_count(path, declared_triangles(path) or 0)
         try:
             parts = read_parts(path, resolver=file_resolver(str(path)))
         except BadMeshError as error:
-            raise unreadable(path, error.why) from None
-        _bounded(path, sum(len(part.triangles.indices) // 3 for part in parts))
+            raise unreadable(path, error.reason) from None
+        _check_triangle_count(path, sum(len(part.triangles.indices) // 3 for part in parts))
         if shape.submesh is None:
             return parts
-        wanted = shape.submesh
-        chosen = [part for part in parts if wanted.name in part.names]
-        if wanted.center and chosen:
-            positions = np.concatenate([part.triangles.positions for part in chosen])
-            middle = (positions.min(axis=0) + positions.max(axis=0)) / 2
-            chosen = [part.moved(-middle) for part in chosen]
-        return chosen
+        submesh = shape.submesh
+        selected = [part for part in parts if submesh.name in part.names]
+        if submesh.center and selected:
+            positions = np.concatenate([part.triangles.positions for part in selected])
+            centre = (positions.min(axis=0) + positions.max(axis=0)) / 2
+            selected = [part.moved(-centre) for part in selected]
+        return selected
 
-    def _hull(self, corners: Array) -> str:
+    def _add_hull(self, corners: Array) -> str:
         name = f"hull {len(self.spec.meshes)}"
-        mesh = self.spec.add_mesh(name=name, maxhullvert=_MOST_HULL_CORNERS)
-        mesh.uservert = _flat(corners)
+        mesh = self.spec.add_mesh(name=name, maxhullvert=_MAX_HULL_VERTICES)
+        mesh.uservert = _flat_list(corners)
         return name
 
     def _add_heightmap(self, body: Any, shape: Heightmap, pose: Transform, element: Element | None) -> list[Any]:
@@ -280,9 +281,9 @@ class MeshLibrary:
             x, y, z = shape.size
             rows, columns = heights.values.shape
             span = float(np.ptp(heights.values))
-            field = self.spec.add_hfield(name=name, nrow=rows, ncol=columns)
-            field.size = [x / 2, y / 2, max(span * z, 1e-3), 1.0]
-            field.userdata = _flat(heights.values)
+            height_field = self.spec.add_hfield(name=name, nrow=rows, ncol=columns)
+            height_field.size = [x / 2, y / 2, max(span * z, 1e-3), 1.0]
+            height_field.userdata = _flat_list(heights.values)
             self._assets[key] = [name]
         for name in self._assets[key]:
             geom = body.add_geom(type=load_mujoco().mjtGeom.mjGEOM_HFIELD, hfieldname=name)
@@ -292,95 +293,95 @@ class MeshLibrary:
         return []
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
-        """Return the file of a mesh or heightmap; None for other shapes and for a missing file.
+        """Return the file of a mesh or heightmap, and record its use; None for other shapes and for a missing file.
 
         A missing file is reported once.
         """
         path = self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
         if path is not None:
-            self.used[path] = changed_at(path)
+            self.used[path] = modification_time(path)
         return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
-        """Return the file with a URI; None if there is none, which is reported once."""
+        """Return the file to which a URI refers; None if it is missing, which is reported once."""
         if not uri:
             return None
         source = element.source if element is not None else None
         folder = Path(source.name).parent if source is not None else Path()
         key = (uri, folder)
         if key not in self._files:
-            found = self._finder.file(uri, folder)
-            if isinstance(found, Missing):
-                self._warn(Diagnostic("SIM112", found.reason, hint=found.hint), element)
+            resolved = self._finder.file(uri, folder)
+            if isinstance(resolved, Missing):
+                self._warn(Diagnostic("SIM112", resolved.reason, hint=resolved.hint), element)
                 self._files[key] = None
             else:
-                self._files[key] = found
+                self._files[key] = resolved
         return self._files[key]
 
-    def _warn(self, found: Diagnostic, element: Element | None) -> None:
-        message = phrase("a shape is left out: {reason}", reason=found.message)
-        self._report(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
+    def _warn(self, finding: Diagnostic, element: Element | None) -> None:
+        message = phrase("a shape is left out: {reason}", reason=finding.message)
+        self._report(Diagnostic(finding.code, message, severity=Severity.WARNING, hint=finding.hint), element)
 
-    def _report(self, found: Diagnostic, element: Element | None) -> None:
-        """Add a finding on an element, unless a finding with the same message was added before."""
-        if found.message in self._reported:
+    def _report(self, finding: Diagnostic, element: Element | None) -> None:
+        """Add a finding on an element, unless there is already a finding with the same message."""
+        if finding.message in self._reported:
             return
-        self._reported.add(found.message)
+        self._reported.add(finding.message)
         span = element.span() if element is not None else None
         source = element.source if element is not None else None
-        self.diagnostics.append(found.with_changes(span=span, source=source))
+        self.diagnostics.append(finding.with_changes(span=span, source=source))
 
 
-def _bounded(path: Path, count: int) -> None:
-    """Check that a mesh does not have too many triangles.
+def _check_triangle_count(path: Path, count: int) -> None:
+    """Raise an error if a mesh has too many triangles.
 
     Raises:
-        LinkwrightError: SIM115, there are too many triangles.
+        LinkwrightError: SIM115, the mesh has more than `_MOST_TRIANGLES` triangles.
     """
     if count > _MOST_TRIANGLES:
         values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
-        message = phrase("the mesh '{path}' has {count} triangles, but at most {most} can be simulated", **values)
-        hint = phrase("simplify it, or use a simple shape for the collision")
+        message = phrase("mesh '{path}' has {count} triangles, but the maximum is {most}", **values)
+        hint = phrase("simplify the mesh, or use a simple shape for the collision")
         raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))
 
 
 def _prisms(polyline: Polyline) -> Iterator[Array]:
     points = np.array(polyline.points, dtype=np.float64).reshape(-1, 2)
-    for triangle in triangulated(polyline.points):
+    for triangle in triangulate(polyline.points):
         base = points[list(triangle)]
         yield np.concatenate([np.insert(base, 2, height, axis=1) for height in (0.0, polyline.height)])
 
 
 def _area(positions: Array, faces: Any) -> float:
     """Return the total area of triangles in m2."""
-    one, two, three = (positions[faces[:, corner]] for corner in range(3))
+    first, second, third = (positions[faces[:, corner]] for corner in range(3))
     with np.errstate(over="ignore", invalid="ignore"):
-        return float(np.linalg.norm(np.cross(two - one, three - one), axis=1).sum() / 2)
+        return float(np.linalg.norm(np.cross(second - first, third - first), axis=1).sum() / 2)
 
 
 def _pad_to_four(corners: Array) -> Array:
-    """Return vertices, padded to at least four by repeating the last one, as MuJoCo requires."""
+    """Return at least four vertices, as MuJoCo requires, by repeating the last one."""
     return np.concatenate([corners, np.repeat(corners[-1:], max(4 - len(corners), 0), axis=0)])
 
 
-def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
+def _join_triangles(parts: Sequence[Triangles]) -> tuple[Array, Any]:
     counts = np.cumsum([0, *(len(part.positions) for part in parts)])
     vertices = np.concatenate([np.zeros((0, 3)), *(part.positions for part in parts)])
     faces = [part.indices.reshape(-1, 3) + count for part, count in zip(parts, counts, strict=False)]
     return vertices, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces])
 
 
-def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
+def _flat_list(values: Any, kind: Any = np.float32) -> list[Any]:
     with np.errstate(over="ignore"):  # MuJoCo rejects and reports numbers that are too large.
         return list(np.asarray(values, dtype=kind).ravel().tolist())
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """Return a cache key for a file, which changes when the file is saved."""
-    return path, 0 if path is None else changed_at(path)
+    """Return a cache key for a file that changes when the file is saved."""
+    return path, 0 if path is None else modification_time(path)
 
 
-def changed_at(path: Path) -> int:
+def modification_time(path: Path) -> int:
     """Return the modification time of a file, in ns since the epoch; 0 for a missing file."""
     try:
         return path.stat().st_mtime_ns

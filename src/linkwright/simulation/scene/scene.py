@@ -1,4 +1,4 @@
-"""A world as a MuJoCo specification, with a body for each link, a joint for each joint, and geoms for the shapes."""
+"""The MuJoCo specification of a world: a body for each link, a joint for each movable joint, and geoms for shapes."""
 
 from __future__ import annotations
 
@@ -21,30 +21,31 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
 from linkwright.simulation.scene.connections import Connected, connections_of, model_of
 from linkwright.simulation.scene.couplings import gearbox_coupling, screw_coupling
-from linkwright.simulation.scene.figures import draw, figures_of
-from linkwright.simulation.scene.meshes import MeshLibrary, changed_at
+from linkwright.simulation.scene.figures import add_figure, figures_of
+from linkwright.simulation.scene.meshes import MeshLibrary, modification_time
 from linkwright.simulation.scene.shapes import set_pose
-from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
+from linkwright.simulation.scene.structure import PlacedJoint, Structure, TreeLink, structure_of
 from linkwright.simulation.scene.wheels import SKIDDING_GRIP, make_omnidirectional, make_rolling, make_sliding
 from linkwright.xmltree import Element
 
-_USUAL_STEP = 0.001
+_DEFAULT_STEP = 0.001
 """The default time step in s."""
-_ANCHORS_APART = 0.1
-"""The distance in m of the two points that hold the axis of a hinge which closes a loop."""
+_ANCHOR_DISTANCE = 0.1
+"""The distance in m between the two points that hold the axis of a hinge that closes a loop."""
 _LOOP_STEPS = 4.0
-"""The time constant of constraints that close a loop, in steps."""
-_WHEELS_THAT_ROLL = 2
-"""The greatest number of rolling wheels on a link: with more, some slip in every turn."""
-_GREATEST_JUMP = 1.0
-"""The greatest change of a wheel's speed in the air within a step, by a motor at its greatest torque, in rad/s.
+"""The time constant of constraints that close a loop, in time steps."""
+_MAX_ROLLING_WHEELS = 2
+"""The maximum number of driven wheels on a link that can roll; with more, some wheels slip in every turn."""
+_MAX_SPEED_CHANGE = 1.0
+"""The maximum change in rad/s of a free wheel's speed within a step, caused by a motor at its maximum torque.
 
-A wheel alone weighs so little that 5 N m would turn it 14 rad/s faster in 1 ms, past the target, and back in the
-next: it slips, leaves the ground and stays away from it. Motors with gears have rotors that weigh more than wheels.
+The inertia of the wheel alone is so low that 5 N m change its speed by 14 rad/s in 1 ms. The speed would overshoot the
+target in alternate directions, and the wheel would slip and leave the ground. The rotor of a real geared motor has
+more effective inertia than the wheel.
 """
 SERVO = "#servo"
-"""The separator of a joint's name and a number in the names of servo constraints."""
-_SERVO_TIME = 0.02
+"""The separator between the joint's name and a number in the name of a servo constraint."""
+_SERVO_TIME_CONSTANT = 0.02
 """The time constant of a servo in s."""
 
 
@@ -55,12 +56,12 @@ class SceneModel:
     Attributes:
         name: the name of the model in the world.
         model: the parsed model.
-        pose: the pose of the model's frame in the world when the model was added.
+        pose: the initial pose of the model's frame in the world.
         structure: the links and joints of the model.
-        parts: the parts of the model in the specification, in the order in which they were added: root bodies,
-            constraints and actuators.
-        files: the mesh files of the model and their modification times, in ns since the epoch.
-        hangs_on: the earlier models to which joints of the world connect the model.
+        parts: the elements of the specification to delete with the model, in the order in which they were added: root
+            bodies, constraints, contact exclusions and actuators.
+        files: the modification times of the model's mesh files when the model was added, in ns since the epoch.
+        hangs_on: the names of the earlier models to which joints of the world connect the model.
     """
 
     name: str
@@ -74,27 +75,27 @@ class SceneModel:
     @property
     def is_outdated(self) -> bool:
         """Whether a mesh file has changed since the model was added."""
-        return any(changed_at(path) != changed for path, changed in self.files.items())
+        return any(modification_time(path) != modification_time_ns for path, modification_time_ns in self.files.items())
 
 
 class Scene:
-    """A world as a MuJoCo specification.
+    """The MuJoCo specification of a world, to which models can be added and from which they can be removed.
 
-    Bodies and joints are named as in the world: ``robot::arm::tip``. The second axis of a joint has the suffix ``#2``,
-    and the free joint of a body has the name of the body with the suffix ``#free``.
+    Bodies and joints have their names in the world, such as ``robot::arm::tip``. The second axis of a joint has the
+    suffix ``#2``, and the free joint of a body has the name of the body with the suffix ``#free``.
 
     Args:
-        world: the world, with its includes resolved and as it was saved (`linkwright.sdf.saved`).
+        world: the world, with its includes resolved and its saved state applied (`linkwright.sdf.saved`).
         meshes: the library of meshes.
-        step: the time step in s; by default the time step of the world.
-        refused: names of models that are left out, and the reasons.
+        step: the time step in s; None for the time step of the world.
+        exclusion_reasons: the reasons for which models are left out, by model name.
 
     Attributes:
         spec: the specification.
         step: the time step in s.
         models: the models by name, in the order in which they were added.
         joints: the movable joints of models, by name.
-        bodies: the bodies of the specification, by the names of the links.
+        bodies: the bodies of the specification, by link name.
         figures: actors and roads, which are visible but have no contacts.
     """
 
@@ -103,7 +104,7 @@ class Scene:
         world: World,
         meshes: MeshLibrary,
         step: float | None = None,
-        refused: Mapping[str, Phrase] = MappingProxyType({}),
+        exclusion_reasons: Mapping[str, Phrase] = MappingProxyType({}),
     ) -> None:
         self._findings: list[Diagnostic] = []
         self.step = step or self.step_of(world)
@@ -115,9 +116,9 @@ class Scene:
         meshes.spec = self.spec
         self._writer = BodyWriter(meshes)
         self._meshes = meshes
-        self._motors = 0
-        self._driven: dict[str, dict[str, float]] = {}  # by model: the driven joints and their rotor inertias
-        self._unsettled: set[str] = set()
+        self._actuator_count = 0
+        self._rotor_inertias: dict[str, dict[str, float]] = {}  # by model: the driven joints and their rotor inertias
+        self._unsettled_models: set[str] = set()
         self.spec.modelname = world.name or WORLD
         self.spec.compiler.degree = False
         self.spec.compiler.balanceinertia = True
@@ -125,41 +126,43 @@ class Scene:
         self._set_options(world)
         frames = Frames(world)
         self._connections = connections_of(world)
-        for model in self._in_order(world.models):
-            if model.name in refused:
-                message = phrase("model '{name}' is left out: {why}", name=model.name, why=refused[model.name])
+        for model in self._sort_models(world.models):
+            if model.name in exclusion_reasons:
+                message = phrase(
+                    "model '{name}' is left out: {why}", name=model.name, why=exclusion_reasons[model.name]
+                )
                 self._warn("SIM117", message, model.element)
             elif model.name not in self.models:  # `check` reports duplicate names
                 self._add_or_report(model, frames)
         self.figures = figures_of(world, meshes)
         for figure in self.figures:
-            draw(figure, self.spec, self._writer)
+            add_figure(figure, self.spec, self._writer)
 
-    def _in_order(self, models: Iterable[Model]) -> list[Model]:
-        """Return models ordered so that each follows the models to which it is attached."""
+    def _sort_models(self, models: Iterable[Model]) -> list[Model]:
+        """Return models in an order in which each follows the models to which it is attached."""
         models = list(models)
-        place = {name: number for number, name in enumerate(self.in_order([model.name for model in models]))}
-        return sorted(models, key=lambda model: place[model.name])
+        positions = {name: index for index, name in enumerate(self.in_order([model.name for model in models]))}
+        return sorted(models, key=lambda model: positions[model.name])
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Return model names ordered so that each follows the models to which it is attached."""
+        """Return model names in an order in which each model follows the models to which it is attached."""
         return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
-        """Return the time step of a world in s; if it is 0, report this and return one millisecond."""
+        """Return the time step of a world in s; if it is 0, report a finding and return the default time step."""
         physics = physics_of(world)
         if physics.max_step_size:
             return physics.max_step_size
-        message = phrase("the time step is 0 s; the world is simulated in steps of {step} s", step=_USUAL_STEP)
+        message = phrase("the time step is 0 s; the world is simulated in steps of {step} s", step=_DEFAULT_STEP)
         self._warn("SIM106", message, physics.element)
-        return _USUAL_STEP
+        return _DEFAULT_STEP
 
     def _add_or_report(self, model: Model, frames: Frames) -> None:
         try:
             self.add(model, model.name, frames.pose(model.name))
         except FrameError as error:
             values = {"name": model.name, "frame": error.name}
-            message = phrase("model '{name}' is left out: the pose of '{frame}' in it is not defined", **values)
+            message = phrase("model '{name}' is left out: the pose of its frame '{frame}' is not defined", **values)
             self._warn("SIM116", message, model.element)
 
     def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
@@ -168,7 +171,7 @@ class Scene:
         self._findings.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
     def set_physics(self, world: World, step: float) -> None:
-        """Adopt gravity and the joints between models from another world, and set the time step in s.
+        """Set the time step in s, and adopt the gravity and the joints between models of another world.
 
         The models do not change.
         """
@@ -177,14 +180,14 @@ class Scene:
         if step == self.step:
             return
         self.step = self.spec.option.timestep = step
-        self._unsettled |= self._driven.keys()
-        loops = (self._mujoco.mjtEq.mjEQ_WELD, self._mujoco.mjtEq.mjEQ_CONNECT)
+        self._unsettled_models |= self._rotor_inertias.keys()
+        loop_constraints = (self._mujoco.mjtEq.mjEQ_WELD, self._mujoco.mjtEq.mjEQ_CONNECT)
         for equality in self.spec.equalities:
-            if equality.type in loops:
+            if equality.type in loop_constraints:
                 equality.solref = [_LOOP_STEPS * step, 1.0]
 
     def _set_options(self, world: World) -> None:
-        """Set MuJoCo's options to values found by experiments with wheels, casters and resting bodies.
+        """Set MuJoCo's options to values from experiments with wheels, casters and resting bodies.
 
         See decision 0042.
         """
@@ -212,37 +215,39 @@ class Scene:
             pose: the pose of the model's frame in the world.
 
         Raises:
-            FrameError: a link of the model cannot be placed.
+            FrameError: the pose of a link is not defined.
             LinkwrightError: SIM102, there is already a model with this name.
         """
         if name in self.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
         connected = self._connections.of(structure_of(model, name, pose), name, pose, self.models)
         structure = connected.structure
-        added = self.models[name] = SceneModel(name, model, pose, structure, hangs_on=connected.hangs_on)
+        scene_model = self.models[name] = SceneModel(name, model, pose, structure, hangs_on=connected.hangs_on)
         poses = {
             held.link.name: held.link.pose
-            for each in (name, *connected.hangs_on)
-            for held in self.models[each].structure.links
+            for model_name in (name, *connected.hangs_on)
+            for held in self.models[model_name].structure.links
         }
-        own = {held.link.name for held in structure.links}
+        own_links = {held.link.name for held in structure.links}
         self._meshes.used.clear()
-        for held in structure.links:
-            body = self._add_link(held, poses)
-            if body.parent == self.spec.worldbody or body.parent.name not in own:
-                added.parts.append(body)
-        added.files = dict(self._meshes.used)
-        for held in structure.links:
-            added.parts += self._mimic_constraints(held.joint)
-            if held.joint is not None and held.joint.name in self.joints:
-                added.parts += screw_coupling(self.spec, held.joint)
+        for tree_link in structure.links:
+            body = self._add_link(tree_link, poses)
+            if body.parent == self.spec.worldbody or body.parent.name not in own_links:
+                scene_model.parts.append(body)
+        scene_model.files = dict(self._meshes.used)
+        for tree_link in structure.links:
+            scene_model.parts += self._mimic_constraints(tree_link.joint)
+            if tree_link.joint is not None and tree_link.joint.name in self.joints:
+                scene_model.parts += screw_coupling(self.spec, tree_link.joint)
         for joint in (*structure.loops, *connected.loops):
-            added.parts += self._closed(joint, poses)
+            scene_model.parts += self._closed(joint, poses)
             if joint.joint.type == "gearbox":
-                added.parts += gearbox_coupling(self.spec, joint, self._moving((name, *connected.hangs_on)))
-        added.parts += self._strangers(structure)
-        added.parts += self._neighbour_exclusions(connected)
-        return added
+                scene_model.parts += gearbox_coupling(
+                    self.spec, joint, self._movable_joints((name, *connected.hangs_on))
+                )
+        scene_model.parts += self._strangers(structure)
+        scene_model.parts += self._neighbour_exclusions(connected)
+        return scene_model
 
     def place(self, name: str, pose: Transform) -> None:
         """Set the initial pose of a model.
@@ -253,17 +258,17 @@ class Scene:
 
         Raises:
             KeyError: there is no model with this name.
-            FrameError: a link of the model cannot be placed.
+            FrameError: the pose of a link is not defined.
         """
-        placed = self.models[name]
-        placed.structure = structure_of(placed.model, name, pose)
-        placed.pose = pose
-        for held in placed.structure.links:
-            body = self.bodies[held.link.name]
+        scene_model = self.models[name]
+        scene_model.structure = structure_of(scene_model.model, name, pose)
+        scene_model.pose = pose
+        for tree_link in scene_model.structure.links:
+            body = self.bodies[tree_link.link.name]
             if body.parent == self.spec.worldbody:
-                set_pose(body, held.link.pose)
-            if held.joint is not None and held.joint.name in self.joints:
-                self.joints[held.joint.name] = held.joint
+                set_pose(body, tree_link.link.pose)
+            if tree_link.joint is not None and tree_link.joint.name in self.joints:
+                self.joints[tree_link.joint.name] = tree_link.joint
 
     def remove(self, name: str) -> None:
         """Remove a model.
@@ -272,64 +277,64 @@ class Scene:
             KeyError: there is no model with this name.
             ValueError: another model is attached to this model.
         """
-        hanging = self.attached_models(name)
-        if hanging:
-            raise ValueError(f"{', '.join(hanging)} must be removed before {name}")
+        attached_models = self.attached_models(name)
+        if attached_models:
+            raise ValueError(f"{', '.join(attached_models)} must be removed before {name}")
         model = self.models.pop(name)
-        self._driven.pop(name, None)
+        self._rotor_inertias.pop(name, None)
         for part in reversed(model.parts):
             self.spec.delete(part)
-        for held in model.structure.links:
-            del self.bodies[held.link.name]
-            if held.joint is not None:
-                self.joints.pop(held.joint.name, None)
+        for tree_link in model.structure.links:
+            del self.bodies[tree_link.link.name]
+            if tree_link.joint is not None:
+                self.joints.pop(tree_link.joint.name, None)
 
     def attached_models(self, name: str) -> list[str]:
         """Return the models that joints of the world attach to a model, directly or indirectly.
 
-        The models are in the order in which they were added.
+        The result is in the order in which the models were added.
         """
-        found = {name}
+        attached = {name}
         for model in self.models.values():  # Attached models are added later.
-            if model.hangs_on & found:
-                found.add(model.name)
-        return [model for model in self.models if model in found - {name}]
+            if model.hangs_on & attached:
+                attached.add(model.name)
+        return [model for model in self.models if model in attached - {name}]
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
-        """Add a motor that holds the velocity of a joint, and let the wheel on the joint roll.
+        """Add a motor that controls the velocity of a joint, and let the wheel on the joint roll without slipping.
 
         Args:
             joint: the name of the joint.
             gain: the torque per velocity error, in N m s/rad (N s/m).
-            limit: the maximum torque in N m (N).
+            limit: the maximum torque in N m (N); infinite for no limit.
 
         Returns:
             The name of MuJoCo's actuator, whose control value is the velocity in rad/s (m/s).
         """
-        actuator = self._actuator(joint, limit)
+        actuator = self._add_actuator(joint, limit)
         actuator.set_to_velocity(kv=gain)
-        self.let_roll(joint, min(limit / _GREATEST_JUMP, gain))
+        self.let_roll(joint, min(limit / _MAX_SPEED_CHANGE, gain))
         return str(actuator.name)
 
     def speed_limit(self, joint: str) -> float:
-        """Return the speed limit of a joint with one axis in rad/s (m/s); infinite if there is none."""
+        """Return the speed limit of a joint's first axis in rad/s (m/s); infinite if there is none."""
         limit = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
         return limit if limit > 0.0 else inf
 
     def let_roll(self, joint: str, rotor: float = 0.0) -> None:
-        """Let a wheel roll without slipping.
+        """Make the wheel on a joint roll without slipping, as soon as `settle` is called.
 
         Args:
             joint: the name of the joint.
-            rotor: the inertia of the motor's rotor, in kg m2 per second of the time step.
+            rotor: the inertia of the motor's rotor in kg m2, divided by the time step in s.
         """
         model = joint.partition(SEPARATOR)[0]
-        self._unsettled.add(model)
-        rotors = self._driven.setdefault(model, {})
+        self._unsettled_models.add(model)
+        rotors = self._rotor_inertias.setdefault(model, {})
         rotors[joint] = max(rotor, rotors.get(joint, 0.0))
 
     def let_slide(self, joint: str) -> None:
-        """Let a wheel slide in all directions, as if it had rollers; its motor then has no grip."""
+        """Make the wheel on a joint slide in all directions, as if it had rollers; its motor then has no grip."""
         body = self.bodies[self.joints[joint].child]
         for geom in body.geoms:
             self._writer.grips.pop(geom.name, None)
@@ -339,25 +344,27 @@ class Scene:
         """Add a servo that holds the position of a joint with one axis against any load.
 
         Returns:
-            The name of MuJoCo's constraint, whose first data value is the position relative to the initial one.
+            The name of MuJoCo's constraint; its first data value is the position relative to the initial position.
         """
-        self._motors += 1
-        equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}{SERVO}{self._motors}")
+        self._actuator_count += 1
+        equality = self.spec.add_equality(
+            type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}{SERVO}{self._actuator_count}"
+        )
         equality.name1 = joint
         equality.data[:5] = 0.0
-        equality.solref, equality.solimp[:2] = [_SERVO_TIME, 1.0], [0.99, 0.999]
+        equality.solref, equality.solimp[:2] = [_SERVO_TIME_CONSTANT, 1.0], [0.99, 0.999]
         self.models[joint.partition(SEPARATOR)[0]].parts.append(equality)
         return str(equality.name)
 
     def weld(self, parent: str, child: str, pose: Transform) -> None:
-        """Fix a link to another one until `unweld` is called or one of the links is removed.
+        """Fix a link to another link until `unweld` is called or one of the links is removed.
 
-        The models of the two links do not collide.
+        Meanwhile, the models of the two links do not collide with each other.
 
         Args:
-            parent: the name of the link that holds the child.
-            child: the name of the link that is held.
-            pose: the pose of the child in the frame of the parent.
+            parent: the name of the parent link.
+            child: the name of the child link.
+            pose: the pose of the child link in the frame of the parent link.
         """
         name = _weld_name(parent, child)
         equality = self._add_equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
@@ -366,13 +373,15 @@ class Scene:
         equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
         models = {model_of(parent), model_of(child)}
         if len(models) > 1:
-            links = ([held.link for held in self.models[model].structure.links] for model in sorted(models))
-            touching = ([link.name for link in item if link.link.collisions] for item in links)
-            for number, (one, other) in enumerate(product(*touching)):
-                self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
+            links_by_model = ([held.link for held in self.models[model].structure.links] for model in sorted(models))
+            colliding_links = (
+                [link.name for link in model_links if link.link.collisions] for model_links in links_by_model
+            )
+            for index, (first, second) in enumerate(product(*colliding_links)):
+                self.spec.add_exclude(name=f"{name}{index}", bodyname1=first, bodyname2=second)
 
     def unweld(self, parent: str, child: str) -> None:
-        """Remove the constraint and the contact exclusions that `weld` has added."""
+        """Remove the constraint and the contact exclusions that `weld` added for these links."""
         name = _weld_name(parent, child)
         parts = (*self.spec.equalities, *self.spec.excludes)
         for part in [part for part in parts if part.name.startswith(name)]:
@@ -382,9 +391,9 @@ class Scene:
         """Return whether `weld` has fixed a child link to a parent link."""
         return self.spec.equality(_weld_name(parent, child)) is not None
 
-    def _actuator(self, joint: str, limit: float) -> Any:
-        self._motors += 1
-        actuator = self.spec.add_actuator(name=f"{joint}#motor{self._motors}", target=joint)
+    def _add_actuator(self, joint: str, limit: float) -> Any:
+        self._actuator_count += 1
+        actuator = self.spec.add_actuator(name=f"{joint}#motor{self._actuator_count}", target=joint)
         actuator.trntype = self._mujoco.mjtTrn.mjTRN_JOINT
         actuator.forcelimited = isfinite(limit)
         if actuator.forcelimited:
@@ -392,10 +401,10 @@ class Scene:
         self.models[joint.partition(SEPARATOR)[0]].parts.append(actuator)
         return actuator
 
-    def keep_awake(self, link: str, never: Any) -> None:
+    def keep_awake(self, link: str, sleep_policy: Any) -> None:
         """Prevent the bodies that move with a link from falling asleep.
 
-        A static link is ignored, because it never sleeps. `never` is MuJoCo's value for this policy.
+        A static link is ignored, because it never sleeps. `sleep_policy` is MuJoCo's value for bodies that stay awake.
 
         Raises:
             KeyError: there is no such link.
@@ -405,58 +414,58 @@ class Scene:
             root = body if len(body.joints) else root
             body = body.parent
         if root is not None:
-            root.sleep = never
+            root.sleep = sleep_policy
 
     def settle(self) -> None:
-        """Set the surfaces of wheels and casters of models with motors, after all motors were added."""
-        for name in self._unsettled & self.models.keys():
-            driven = {self.joints[joint].child: joint for joint in self._driven[name]}
-            sides = Counter(self.joints[joint].parent for joint in driven.values())
-            greatest = SKIDDING_GRIP if max(sides.values(), default=0) > _WHEELS_THAT_ROLL else inf
-            for held in self.models[name].structure.links:
-                body = self.bodies[held.link.name]
-                if held.link.name in driven:
-                    joint = self.spec.joint(driven[held.link.name])
-                    joint.armature = self._driven[name][joint.name] * self.step
-                    make_rolling(self.spec, body, joint, self.step, self._writer.grips, greatest)
+        """Set the surfaces of the wheels and casters of models with new motors; call this after adding motors."""
+        for name in self._unsettled_models & self.models.keys():
+            wheel_joints = {self.joints[joint].child: joint for joint in self._rotor_inertias[name]}
+            wheel_counts = Counter(self.joints[joint].parent for joint in wheel_joints.values())
+            max_grip = SKIDDING_GRIP if max(wheel_counts.values(), default=0) > _MAX_ROLLING_WHEELS else inf
+            for tree_link in self.models[name].structure.links:
+                body = self.bodies[tree_link.link.name]
+                if tree_link.link.name in wheel_joints:
+                    joint = self.spec.joint(wheel_joints[tree_link.link.name])
+                    joint.armature = self._rotor_inertias[name][joint.name] * self.step
+                    make_rolling(self.spec, body, joint, self.step, self._writer.grips, max_grip)
                 else:
                     make_sliding(body, self._writer.unspecified)
-        self._unsettled.clear()
+        self._unsettled_models.clear()
 
-    def _add_link(self, held: HeldLink, poses: dict[str, Transform]) -> Any:
-        placed = held.link
-        link, joint = placed.link, None if placed.static else held.joint
-        parent, above = self.spec.worldbody, IDENTITY
+    def _add_link(self, tree_link: TreeLink, poses: dict[str, Transform]) -> Any:
+        placed_link = tree_link.link
+        link, joint = placed_link.link, None if placed_link.static else tree_link.joint
+        parent, parent_pose = self.spec.worldbody, IDENTITY
         if joint is not None and joint.parent != WORLD:
-            parent, above = self.bodies[joint.parent], poses[joint.parent]
-        driven = joint is None and link.kinematic and not placed.static  # Forces do not move such a body.
-        body = self.bodies[placed.name] = parent.add_body(name=placed.name, mocap=driven)
-        set_pose(body, compose(invert(above), placed.pose))
-        fixed = placed.static or driven
-        if not fixed:
-            self._writer.set_mass(body, link, placed.frames)
+            parent, parent_pose = self.bodies[joint.parent], poses[joint.parent]
+        is_kinematic = joint is None and link.kinematic and not placed_link.static  # Forces do not move such a body.
+        body = self.bodies[placed_link.name] = parent.add_body(name=placed_link.name, mocap=is_kinematic)
+        set_pose(body, compose(invert(parent_pose), placed_link.pose))
+        is_fixed = placed_link.static or is_kinematic
+        if not is_fixed:
+            self._writer.set_mass(body, link, placed_link.frames)
             body.gravcomp = 0.0 if link.gravity else 1.0
             if joint is None:
-                body.add_freejoint().name = f"{placed.name}#free"
+                body.add_freejoint().name = f"{placed_link.name}#free"
             else:
-                self._writer.add_joint(body, joint, placed.pose)
+                self._writer.add_joint(body, joint, placed_link.pose)
                 self.joints[joint.name] = joint
         else:
-            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # for the rays of MuJoCo 3
-        self._writer.add_visuals(body, link, placed.frames, fixed=fixed)
-        self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
+            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # otherwise rays of MuJoCo 3 miss the body
+        self._writer.add_visuals(body, link, placed_link.frames, fixed=is_fixed)
+        self._writer.add_collisions(body, link, placed_link.frames, fixed=is_fixed)
         return body
 
-    def _moving(self, models: Iterable[str]) -> list[PlacedJoint]:
-        """Return the joints of the given models that are simulated as movable."""
-        held = (link for name in models for link in self.models[name].structure.links)
-        return [link.joint for link in held if link.joint is not None and link.joint.name in self.joints]
+    def _movable_joints(self, models: Iterable[str]) -> list[PlacedJoint]:
+        """Return the movable joints of some models."""
+        tree_links = (link for name in models for link in self.models[name].structure.links)
+        return [link.joint for link in tree_links if link.joint is not None and link.joint.name in self.joints]
 
     def _mimic_constraints(self, joint: PlacedJoint | None) -> Iterator[Any]:
-        """Yield equality constraints for the mimic axes of a joint."""
+        """Add and yield an equality constraint for each mimic axis of a joint."""
         if joint is None or joint.name not in self.joints:
             return
-        for number, (axis, _) in enumerate(joint.axes):
+        for index, (axis, _) in enumerate(joint.axes):
             if axis.mimic is None:
                 continue
             owner, separator, _ = joint.name.rpartition(SEPARATOR)
@@ -464,26 +473,26 @@ class Scene:
             if leader.removesuffix(SECOND_AXIS) not in self.joints:
                 continue  # `check` reports this axis.
             equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT)
-            equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS if number else ''}", leader
+            equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS if index else ''}", leader
             offset = axis.mimic.offset - axis.mimic.multiplier * axis.mimic.reference
             equality.data[:5] = [offset, axis.mimic.multiplier, 0.0, 0.0, 0.0]
             yield equality
 
     def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
-        """Yield the equality constraints of a joint that closes a loop.
+        """Add and yield the equality constraints of a joint that closes a loop.
 
-        A joint of a type that cannot close a loop is reported.
+        A joint whose type cannot close a loop is reported.
         """
-        kinds, ends = self._mujoco.mjtEq, (joint.child, joint.parent)
-        points = hinge_anchors(joint, _ANCHORS_APART) if joint.axes else [joint.pose[:3]]
+        kinds, link_names = self._mujoco.mjtEq, (joint.child, joint.parent)
+        points = hinge_anchors(joint, _ANCHOR_DISTANCE) if joint.axes else [joint.pose[:3]]
         if joint.joint.type == "fixed":
-            yield self._add_equality(kinds.mjEQ_WELD, ends)
+            yield self._add_equality(kinds.mjEQ_WELD, link_names)
         elif joint.joint.type in ("revolute", "hinge", "continuous", "ball"):
-            into_child = IDENTITY if joint.child == WORLD else invert(poses[joint.child])
+            world_to_child = IDENTITY if joint.child == WORLD else invert(poses[joint.child])
             for point in points[: 1 if joint.joint.type == "ball" else 2]:
-                equality = self._add_equality(kinds.mjEQ_CONNECT, ends)
-                moved = rotate(into_child[3:], point)
-                equality.data[:3] = [a + b for a, b in zip(moved, into_child[:3], strict=True)]
+                equality = self._add_equality(kinds.mjEQ_CONNECT, link_names)
+                rotated = rotate(world_to_child[3:], point)
+                equality.data[:3] = [a + b for a, b in zip(rotated, world_to_child[:3], strict=True)]
                 yield equality
         elif joint.joint.type != "gearbox":
             message = phrase(
@@ -493,32 +502,35 @@ class Scene:
             )
             self._warn("SIM118", message, joint.joint.element)
 
-    def _add_equality(self, kind: Any, ends: tuple[str, str]) -> Any:
+    def _add_equality(self, kind: Any, link_names: tuple[str, str]) -> Any:
         equality = self.spec.add_equality(type=kind, objtype=self._mujoco.mjtObj.mjOBJ_BODY)
         equality.solref = [_LOOP_STEPS * self.step, 1.0]
-        equality.name1, equality.name2 = ends[0], "" if ends[1] == WORLD else ends[1]
+        equality.name1, equality.name2 = link_names[0], "" if link_names[1] == WORLD else link_names[1]
         return equality
 
     def _strangers(self, structure: Structure) -> Iterator[Any]:
-        """Yield contact exclusions for pairs of links of a model, unless ``<self_collide>`` is set."""
-        touching = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
-        for one, other in combinations(touching, 2):
-            if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
-                yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
+        """Add and yield contact exclusions for pairs of links of a model, unless both have ``<self_collide>``."""
+        colliding_links = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
+        for first, second in combinations(colliding_links, 2):
+            if not (
+                _self_collides(first.link.self_collide, first.model)
+                and _self_collides(second.link.self_collide, second.model)
+            ):
+                yield self.spec.add_exclude(bodyname1=first.name, bodyname2=second.name)
 
     def _neighbour_exclusions(self, connected: Connected) -> Iterator[Any]:
-        """Yield contact exclusions for pairs of links that joints of the world connect."""
-        own = {held.link.name for held in connected.structure.links}
-        hung = (held.joint for held in connected.structure.links if held.joint is not None)
-        joints = (*(joint for joint in hung if joint.parent not in own), *connected.loops)
-        for one, other in {tuple(sorted((joint.parent, joint.child))): None for joint in joints}:
-            if WORLD not in (one, other):
-                yield self.spec.add_exclude(bodyname1=one, bodyname2=other)
+        """Add and yield contact exclusions for pairs of links that joints of the world connect."""
+        own_links = {held.link.name for held in connected.structure.links}
+        parent_joints = (held.joint for held in connected.structure.links if held.joint is not None)
+        joints = (*(joint for joint in parent_joints if joint.parent not in own_links), *connected.loops)
+        for first, second in {tuple(sorted((joint.parent, joint.child))): None for joint in joints}:
+            if WORLD not in (first, second):
+                yield self.spec.add_exclude(bodyname1=first, bodyname2=second)
 
 
 def _weld_name(parent: str, child: str) -> str:
     return f"{parent}#{child}#"
 
 
-def _collides(setting: bool | None, model: Model) -> bool:
+def _self_collides(setting: bool | None, model: Model) -> bool:
     return model.self_collide if setting is None else setting

@@ -12,11 +12,11 @@ from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.sdf.shapes import Cone, Ellipsoid, Plane, Shape
 from linkwright.simulation.library import load_mujoco
 
-_ENDLESS = 0.0
-"""Half the width of a plane that has no end."""
-_THICKNESS = 0.005
-"""Half the thickness of a moving plane, in m: MuJoCo's planes are static."""
-_CORNERS = 32
+_INFINITE = 0.0
+"""The half width of an infinite plane in MuJoCo."""
+_HALF_THICKNESS = 0.005
+"""Half the thickness in m of the box that replaces a plane on a movable body; MuJoCo's planes are static."""
+_BASE_VERTICES = 32
 
 
 def set_pose(element: Any, pose: Transform) -> None:
@@ -27,11 +27,11 @@ def set_pose(element: Any, pose: Transform) -> None:
 
 
 def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:
-    """Add a simple shape to a body; return the geom, or None for another or an empty shape.
+    """Add a simple shape to a body; return the geom, or None if the shape is empty or not a simple shape.
 
     Args:
         body: the body of the specification.
-        shape: the shape; `linkwright.simulation.scene.meshes` handles meshes and heightmaps.
+        shape: the shape; `linkwright.simulation.scene.meshes` adds other shapes, such as meshes and heightmaps.
         pose: the pose of the shape in the frame of the body.
         fixed: whether the body never moves.
     """
@@ -50,9 +50,9 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
         case Plane(normal, size):
             pose = compose(pose, (0.0, 0.0, 0.0, *rotation_from_z(normal)))
             if fixed:
-                kind, sizes = kinds.mjGEOM_PLANE, [_ENDLESS, _ENDLESS, 1.0]
+                kind, sizes = kinds.mjGEOM_PLANE, [_INFINITE, _INFINITE, 1.0]
             else:
-                kind, sizes = kinds.mjGEOM_BOX, [size[0] / 2, size[1] / 2, _THICKNESS]
+                kind, sizes = kinds.mjGEOM_BOX, [size[0] / 2, size[1] / 2, _HALF_THICKNESS]
         case _:
             return None
     geom = body.add_geom(type=kind, size=sizes)
@@ -61,7 +61,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
 
 
 def cone_corners(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the vertices in m of a cone whose base is approximated by a polygon, shape (n, 3)."""
-    turns = [2 * pi * index / _CORNERS for index in range(_CORNERS)]
-    ring = [(cone.radius * cos(turn), cone.radius * sin(turn), -cone.length / 2) for turn in turns]
+    """Return the vertices of a cone with a polygon as its base, in m, shape (n, 3)."""
+    angles = [2 * pi * index / _BASE_VERTICES for index in range(_BASE_VERTICES)]
+    ring = [(cone.radius * cos(angle), cone.radius * sin(angle), -cone.length / 2) for angle in angles]
     return np.array([*ring, (0.0, 0.0, cone.length / 2)])

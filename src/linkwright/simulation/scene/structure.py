@@ -1,4 +1,4 @@
-"""A model as the kinematic trees that MuJoCo requires, and the joints that close loops."""
+"""The kinematic trees of a model, which MuJoCo requires, and the joints that close loops."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
 
-_LEAST = 1e-9
-"""An axis that is no longer points nowhere."""
+_MIN_AXIS_LENGTH = 1e-9
+"""The length up to which an axis counts as having no direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,12 +20,12 @@ class PlacedJoint:
     """A joint of a model, or a joint of a world between two models.
 
     Attributes:
-        name: the name with the enclosing models, ``robot::arm::elbow``; a joint of the world has only its own name.
+        name: the name with the enclosing models, such as ``robot::arm::elbow``; a joint of the world has no prefix.
         joint: the parsed joint.
         parent: the parent link, named as in `PlacedLink`; ``world`` for the world.
         child: the link that the joint moves.
         pose: the pose of the joint's frame in the world.
-        axes: the axes of the joint, with the direction of each in the frame of the joint.
+        axes: the axes of the joint, each with its direction in the frame of the joint.
     """
 
     name: str
@@ -37,8 +37,8 @@ class PlacedJoint:
 
 
 @dataclass(frozen=True, slots=True)
-class HeldLink:
-    """A link, and the joint that connects it to its parent; the joint of a root is None."""
+class TreeLink:
+    """A link of a kinematic tree, and the joint that connects it to its parent; None for the root of a tree."""
 
     link: PlacedLink
     joint: PlacedJoint | None
@@ -50,15 +50,15 @@ class Structure:
 
     Attributes:
         links: all links, each after its parent.
-        loops: joints between links that already have parents.
+        loops: the joints that would give a link a second parent or close a cycle, and the gearboxes.
     """
 
-    links: tuple[HeldLink, ...]
+    links: tuple[TreeLink, ...]
     loops: tuple[PlacedJoint, ...]
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """Return the kinematic trees of a model, without joints whose links are missing.
+    """Return the kinematic trees of a model; joints with missing links are ignored.
 
     Args:
         model: the model, with its includes resolved.
@@ -66,31 +66,35 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
         pose: the pose of the model's frame in the world.
 
     Raises:
-        FrameError: a link cannot be placed.
+        FrameError: the pose of a link is not defined.
     """
     frames = Frames(model)
     links = {placed_link.name: placed_link for placed_link in links_of(model, frames, pose, name)}
     joints: dict[str, PlacedJoint] = {}
-    for owner, inner, place, path in _models(model, frames, pose, name):
+    for owner, owner_frames, owner_pose, path in _nested_models(model, frames, pose, name):
         for joint in owner.joints:
             try:
-                placed = placed_joint(joint, inner, place, path)
+                candidate = placed_joint(joint, owner_frames, owner_pose, path)
             except FrameError:
                 continue  # `check` reports this joint.
-            ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
-            if ends_are_there and placed.parent != placed.child:
-                while placed.name in joints:  # MuJoCo requires unique names; `check` reports duplicates
-                    placed = replace(placed, name=f"{placed.name}~")
-                joints[placed.name] = placed
-    return _trees(links, joints.values())
+            has_links = candidate.child in links and (candidate.parent in links or candidate.parent == WORLD)
+            if has_links and candidate.parent != candidate.child:
+                while candidate.name in joints:  # MuJoCo requires unique names; `check` reports duplicates
+                    candidate = replace(candidate, name=f"{candidate.name}~")
+                joints[candidate.name] = candidate
+    return _build_structure(links, joints.values())
 
 
-def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterator[tuple[Model, Frames, Transform, str]]:
-    """Yield a model and its nested models, each with its frames, its pose in the world and its name."""
+def _nested_models(
+    model: Model, frames: Frames, pose: Transform, path: str
+) -> Iterator[tuple[Model, Frames, Transform, str]]:
+    """Yield a model and its nested models, each with its frames, its pose in the world and its qualified name."""
     yield model, frames, pose, path
-    for inner in model.models:
-        place = compose(pose, frames.pose(inner.name))
-        yield from _models(inner, frames.inside(inner.name), place, f"{path}{SEPARATOR}{inner.name}")
+    for nested_model in model.models:
+        nested_pose = compose(pose, frames.pose(nested_model.name))
+        yield from _nested_models(
+            nested_model, frames.inside(nested_model.name), nested_pose, f"{path}{SEPARATOR}{nested_model.name}"
+        )
 
 
 def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
@@ -99,57 +103,57 @@ def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> Pl
     Args:
         joint: the parsed joint.
         frames: the frames of the enclosing model or world.
-        pose: the pose in the world of the origin of `frames`.
-        path: the name of the model, with its enclosing models; empty for the world.
+        pose: the pose in the world of the model or world to which `frames` belongs.
+        path: the name of the model with its enclosing models; empty for the world.
 
     Raises:
         FrameError: the pose of the joint, or one of its links, refers to a frame that does not exist.
     """
-    ends = [frames.link(end) for end in (joint.parent, joint.child)]
-    parent, child = (end if end == WORLD else _within(path, end) for end in ends)
-    given = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
-    axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in given)
-    name = _within(path, joint.name)
+    link_names = [frames.link(end) for end in (joint.parent, joint.child)]
+    parent, child = (link_name if link_name == WORLD else _qualified_name(path, link_name) for link_name in link_names)
+    declared_axes = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
+    axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in declared_axes)
+    name = _qualified_name(path, joint.name)
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
 
 
-def _within(path: str, name: str) -> str:
+def _qualified_name(path: str, name: str) -> str:
     return f"{path}{SEPARATOR}{name}" if path else name
 
 
 def _direction(axis: Vector3) -> Vector3:
-    """Return the direction of an axis; the z axis, as in libsdformat, if the direction is zero.
+    """Return the direction of an axis, or the z axis if the direction is zero, as in libsdformat.
 
-    `check` reports a zero direction.
+    `check` reports a direction that is zero.
     """
-    return axis if sum(value * value for value in axis) > _LEAST**2 else (0.0, 0.0, 1.0)
+    return axis if sum(value * value for value in axis) > _MIN_AXIS_LENGTH**2 else (0.0, 0.0, 1.0)
 
 
-def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:
-    holding: dict[str, PlacedJoint] = {}
+def _build_structure(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:
+    parent_joints: dict[str, PlacedJoint] = {}
     loops: list[PlacedJoint] = []
-    held: dict[str, list[str]] = {}
+    child_links: dict[str, list[str]] = {}
     for joint in joints:
-        is_taken = joint.child in holding or is_below(holding, joint.child, joint.parent)
-        if is_taken or joint.joint.type == "gearbox":  # A gearbox couples joints and is not a parent joint.
+        closes_loop = joint.child in parent_joints or is_below(parent_joints, joint.child, joint.parent)
+        if closes_loop or joint.joint.type == "gearbox":  # A gearbox couples joints and is not a parent joint.
             loops.append(joint)
         else:
-            holding[joint.child] = joint
-            held.setdefault(joint.parent, []).append(joint.child)
+            parent_joints[joint.child] = joint
+            child_links.setdefault(joint.parent, []).append(joint.child)
 
-    ordered = [name for name in links if name not in holding or holding[name].parent == WORLD]
+    ordered = [name for name in links if name not in parent_joints or parent_joints[name].parent == WORLD]
     for name in ordered:  # the list grows during the iteration
-        ordered += held.get(name, ())
-    return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops))
+        ordered += child_links.get(name, ())
+    return Structure(tuple(TreeLink(links[name], parent_joints.get(name)) for name in ordered), tuple(loops))
 
 
-def is_below(holding: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
+def is_below(parent_joints: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
     """Return whether `other` is `link` or one of its descendants.
 
-    `holding` maps child links to their joints.
+    `parent_joints` maps each child link to the joint that moves it.
     """
     while other != link:
-        if other not in holding:
+        if other not in parent_joints:
             return False
-        other = holding[other].parent
+        other = parent_joints[other].parent
     return True

@@ -1,7 +1,7 @@
-"""Surfaces of shapes: friction, stiffness, and the priority of their parameters in contacts.
+"""The surface of a geom: its friction, its stiffness, and the priority of these parameters in contacts.
 
-Source of the figures: measurements with MuJoCo 4.0 of a robot with differential drive (straight on, arcs, turns on the
-spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
+Source of the values: measurements with MuJoCo 4.0 of a robot with differential drive (straight lines, arcs, turns on
+the spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
 """
 
 from __future__ import annotations
@@ -10,30 +10,30 @@ from typing import Any
 
 from linkwright.sdf.surfaces import Surface
 
-_USUAL_FRICTION = 1.0
-_LEAST = 1e-5
-"""MuJoCo has no friction coefficients of less."""
-_GREATEST = 1e3
+_DEFAULT_FRICTION = 1.0
+_MIN_FRICTION = 1e-5
+"""The minimum coefficient of friction in MuJoCo."""
+_MAX_FRICTION = 1e3
 FRICTIONLESS = 0.1
-"""At and below it a shape slides: descriptions of casters use such small friction to mean none."""
-_SOFT = (0.05, 1.0)
-"""Time constant in s and damping ratio of sliding shapes: soft enough to leave the load to the wheels beside them."""
-_HARD_STEPS = 4.0
-"""The time constant of wheels, in steps; two are the least that is stable."""
+"""The coefficient below which a shape has no friction; descriptions of casters use such values to mean none."""
+_SOFT_SOLREF = (0.05, 1.0)
+"""The time constant in s and the damping ratio of sliding shapes, so soft that adjacent wheels bear the load."""
+_HARD_TIME_STEPS = 4.0
+"""The time constant of the contacts of wheels, in time steps; values below two are unstable."""
 RESTITUTION_DATA = 2
-"""The length of a bouncing geom's user data: its coefficient of restitution, and its threshold."""
-_HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
+"""The number of user values of a bouncing geom: the coefficient of restitution and the velocity threshold in m/s."""
+_HARD_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 
 
 def apply_surface(geom: Any, surface: Surface) -> None:
     """Apply the surface of a collision to a geom of MuJoCo.
 
-    In a contact, Gazebo uses the lower of the two frictions. MuJoCo uses the higher one, unless one of the two geoms
-    has priority. A geom with lower friction therefore gets a higher priority, which has the same effect as in
-    Gazebo.
+    In a contact, Gazebo uses the lower of the two coefficients of friction. MuJoCo uses the higher coefficient, unless
+    one of the two geoms has priority. Therefore a geom with lower friction gets a higher priority, so that its
+    coefficient applies as in Gazebo.
     """
     mu = friction_of(surface)
-    geom.friction = [min(max(mu, _LEAST), _GREATEST), *geom.friction[1:]]
+    geom.friction = [min(max(mu, _MIN_FRICTION), _MAX_FRICTION), *geom.friction[1:]]
     geom.priority = _priority(mu)
     if mu < FRICTIONLESS:
         make_slippery(geom)
@@ -51,27 +51,27 @@ def apply_surface(geom: Any, surface: Surface) -> None:
 
 
 def friction_of(surface: Surface) -> float:
-    """Return the lower of the two coefficients of friction of a surface, or the default.
+    """Return the lower of a surface's two coefficients of friction, or the default if it has none.
 
-    MuJoCo's friction is the same in all directions.
+    One coefficient is enough, because MuJoCo's friction is the same in all directions.
     """
     if surface.friction is not None:
         return max(min(surface.friction.mu, surface.friction.mu2), 0.0)
-    return _USUAL_FRICTION
+    return _DEFAULT_FRICTION
 
 
 def grip_of(surface: Surface) -> float:
-    """Return the higher of the two coefficients of friction of a surface, for a driven wheel.
+    """Return the higher of a surface's two coefficients of friction, or the default if it has none.
 
-    The lower coefficient is meant for side slip.
+    It is used for driven wheels, for which the lower coefficient describes side slip.
     """
     if surface.friction is not None:
         return max(surface.friction.mu, surface.friction.mu2, 0.0)
-    return _USUAL_FRICTION
+    return _DEFAULT_FRICTION
 
 
 def make_slippery(geom: Any) -> None:
-    """Make a geom frictionless and soft, so that, like a caster, it leaves the load to other geoms."""
+    """Make a geom frictionless and soft like a caster, so that other geoms bear the load."""
     geom.condim = 1
     make_soft(geom)
     geom.priority = _priority(0.0)
@@ -91,13 +91,13 @@ def make_frictionless(geom: Any, step: float) -> None:
 
 def make_soft(geom: Any) -> None:
     """Make the contact of a geom slightly soft, so that adjacent wheels bear the load."""
-    geom.solref = list(_SOFT)
+    geom.solref = list(_SOFT_SOLREF)
 
 
 def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
-    """Make the contact of a geom hard, with priority over a ground of equal friction.
+    """Make the contacts of a geom hard, with priority over a ground of equal friction.
 
-    The geom then rolls without slipping.
+    As a wheel, the geom then rolls without slipping.
 
     Args:
         geom: the geom.
@@ -105,10 +105,10 @@ def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
         grip: the coefficient of friction; None to keep the current one.
     """
     if grip is not None:
-        geom.friction = [min(max(grip, _LEAST), _GREATEST), *geom.friction[1:]]
+        geom.friction = [min(max(grip, _MIN_FRICTION), _MAX_FRICTION), *geom.friction[1:]]
         geom.priority, geom.condim = _priority(grip), max(geom.condim, 3)
-    geom.solref = [_HARD_STEPS * step, 1.0]
-    geom.solimp = list(_HARD_IMPEDANCE)
+    geom.solref = [_HARD_TIME_STEPS * step, 1.0]
+    geom.solimp = list(_HARD_SOLIMP)
     geom.priority += 1
 
 
@@ -117,9 +117,9 @@ def _priority(mu: float) -> int:
 
 
 def _contact_patch_radius(surface: Surface) -> float:
-    """Return the radius of the contact patch in m.
+    """Return the radius in m of the contact patch of a surface with torsional friction.
 
-    MuJoCo's coefficient of torsional friction is a length: SDF's coefficient multiplied by this radius.
+    MuJoCo's coefficient of torsional friction is a length, the product of SDF's coefficient and this radius.
     """
     torsional = surface.torsional
     assert torsional is not None

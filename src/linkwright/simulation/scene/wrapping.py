@@ -1,8 +1,8 @@
 """Simple shapes as triangle meshes with texture coordinates.
 
-Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on the lateral sides. On cylinders and
-spheres the image runs clockwise as seen from the end. It is upside down on a cylinder, and the poles of a sphere are
-along y.
+Source: gz-common's ``MeshManager``. Each side of a box shows the image, upright on the lateral sides. On cylinders and
+spheres, the image runs clockwise around the axis as seen from above. It is upside down on a cylinder, and the poles of
+a sphere are on the y axis.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from linkwright.geometry.mesh_parts import Triangles
 from linkwright.geometry.shapes import Box, Cylinder, Sphere
 from linkwright.sdf.shapes import Plane, Shape
 
-_SIDE, _FLOOR = 4, 16
-"""Into how many squares a side of a box and a plane are cut each way: light is computed at corners."""
-_AROUND, _DOWN = 64, 32
-"""The numbers of parts of a round shape, round its axis and along it."""
+_BOX_DIVISIONS, _PLANE_DIVISIONS = 4, 16
+"""The divisions of a box side and of a plane in each direction, because light is computed at vertices."""
+_SEGMENTS, _RINGS = 64, 32
+"""The numbers of divisions of a round shape: around its axis, and along it."""
 _SIDES = (
     ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     ((-1, 0, 0), (0, -1, 0), (0, 0, 1)),
@@ -30,11 +30,11 @@ _SIDES = (
     ((0, 0, 1), (0, -1, 0), (1, 0, 0)),
     ((0, 0, -1), (0, -1, 0), (-1, 0, 0)),
 )
-"""For each side of a box its normal, and the directions of the right and the upper edge of its image."""
+"""The normal of each side of a box, and the directions from its centre to the right and upper edges of the image."""
 
 
-_LEAST_AREA = 1e-15
-"""The least area in m2: triangles at poles without area are left out."""
+_MIN_AREA = 1e-15
+"""The minimum area of a triangle in m2; smaller triangles, at the poles, are omitted."""
 
 
 def textured_mesh(shape: Shape) -> Triangles | None:
@@ -44,10 +44,12 @@ def textured_mesh(shape: Shape) -> Triangles | None:
     """
     match shape:
         case Box(size) if min(size) > 0:
-            half = np.array(size) / 2
-            return _joined([_rectangle_mesh(np.array(side, dtype=np.float64) * half, _SIDE) for side in _SIDES])
+            half_size = np.array(size) / 2
+            return _join_meshes(
+                [_rectangle_mesh(np.array(side, dtype=np.float64) * half_size, _BOX_DIVISIONS) for side in _SIDES]
+            )
         case Plane(_, (x, y)) if min(x, y) > 0:
-            return _rectangle_mesh(np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _FLOOR)
+            return _rectangle_mesh(np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _PLANE_DIVISIONS)
         case Cylinder(radius, length) if radius > 0 and length > 0:
             end = length / 2
             tube = _revolution_mesh([(radius, -end, 0.0), (radius, end, 1.0)])
@@ -55,10 +57,10 @@ def textured_mesh(shape: Shape) -> Triangles | None:
                 _revolution_mesh([(radius, end, 1.0), (0.0, end, 0.0)]),
                 _revolution_mesh([(0.0, -end, 0.0), (radius, -end, 0.0)]),
             )
-            return _joined([tube, *caps])
+            return _join_meshes([tube, *caps])
         case Sphere(radius) if radius > 0:
-            downs = [down / _DOWN for down in reversed(range(_DOWN + 1))]
-            upright = _revolution_mesh([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
+            rows = [down / _RINGS for down in reversed(range(_RINGS + 1))]
+            upright = _revolution_mesh([(radius * sin(down * pi), radius * cos(down * pi), down) for down in rows])
             faces = upright.indices.reshape(-1, 3)[:, ::-1]  # Exchanging two axes reverses the winding.
             return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
     return None
@@ -71,10 +73,10 @@ def _rectangle_mesh(side: Array, count: int) -> Triangles:
         side: the position of the centre, and the vectors from there to the right and upper edges, shape (3, 3).
         count: the number of squares into which the rectangle is divided in each direction.
     """
-    share = np.linspace(0.0, 1.0, count + 1)
-    down, right = (array.reshape(-1, 1) for array in np.meshgrid(share, share, indexing="ij"))
-    middle, to_right, upwards = side
-    positions = middle + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
+    fractions = np.linspace(0.0, 1.0, count + 1)
+    down, right = (array.reshape(-1, 1) for array in np.meshgrid(fractions, fractions, indexing="ij"))
+    centre, to_right, upwards = side
+    positions = centre + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
     return _grid_mesh(positions, np.hstack([right, down]), count)
 
 
@@ -83,11 +85,11 @@ def _revolution_mesh(rings: Sequence[tuple[float, float, float]]) -> Triangles:
 
     `rings` has the radius, height and texture row of each ring, from the top.
     """
-    turns = np.linspace(0.0, 2 * pi, _AROUND + 1)
-    radius, height, down = (np.repeat(item, _AROUND + 1) for item in np.array(rings).T)
-    turn = np.tile(turns, len(rings))
-    positions = np.stack([radius * np.sin(turn), radius * np.cos(turn), height], axis=1)
-    return _grid_mesh(positions, np.stack([turn / (2 * pi), down], axis=1), _AROUND)
+    angles = np.linspace(0.0, 2 * pi, _SEGMENTS + 1)
+    radius, height, row = (np.repeat(item, _SEGMENTS + 1) for item in np.array(rings).T)
+    angle = np.tile(angles, len(rings))
+    positions = np.stack([radius * np.sin(angle), radius * np.cos(angle), height], axis=1)
+    return _grid_mesh(positions, np.stack([angle / (2 * pi), row], axis=1), _SEGMENTS)
 
 
 def _grid_mesh(positions: Array, coordinates: Array, columns: int) -> Triangles:
@@ -95,16 +97,16 @@ def _grid_mesh(positions: Array, coordinates: Array, columns: int) -> Triangles:
     start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
     below = start + columns + 1
     faces = np.concatenate([np.stack([start, below, start + 1], 1), np.stack([start + 1, below, below + 1], 1)])
-    one, two, three = (positions[faces[:, corner]] for corner in range(3))
-    seen = np.linalg.norm(np.cross(two - one, three - one), axis=1) > _LEAST_AREA
-    return Triangles(positions, faces[seen].ravel(), None, coordinates)
+    first, second, third = (positions[faces[:, corner]] for corner in range(3))
+    is_visible = np.linalg.norm(np.cross(second - first, third - first), axis=1) > _MIN_AREA
+    return Triangles(positions, faces[is_visible].ravel(), None, coordinates)
 
 
-def _joined(parts: Sequence[Triangles]) -> Triangles:
-    counts = np.cumsum([0, *(len(part.positions) for part in parts)])
+def _join_meshes(meshes: Sequence[Triangles]) -> Triangles:
+    counts = np.cumsum([0, *(len(part.positions) for part in meshes)])
     return Triangles(
-        np.concatenate([part.positions for part in parts]),
-        np.concatenate([part.indices + count for part, count in zip(parts, counts, strict=False)]),
+        np.concatenate([part.positions for part in meshes]),
+        np.concatenate([part.indices + count for part, count in zip(meshes, counts, strict=False)]),
         None,
-        np.concatenate([part.coordinates for part in parts if part.coordinates is not None]),
+        np.concatenate([part.coordinates for part in meshes if part.coordinates is not None]),
     )

@@ -12,12 +12,12 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of
 
-_MARK = "#collision"
+_COLLISION_MARK = "#collision"
 
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A contact of two collisions in the last step.
+    """A contact between two collisions in the last step.
 
     Attributes:
         collision1: the sensor's collision, with its link and model: ``robot::bumper::collision``.
@@ -42,7 +42,7 @@ class ContactSensor:
     """A sensor for the contacts of a link's collisions.
 
     Args:
-        mount: the mount on the link.
+        mount: the mount of the sensor on its link.
         collisions: the names of the collisions; if empty, all collisions of the link.
     """
 
@@ -50,13 +50,13 @@ class ContactSensor:
         self._mount = mount
         self._simulation = mount.simulation
         self._wanted = {f"{mount.link}{SEPARATOR}{collision.rpartition(SEPARATOR)[2]}" for collision in collisions}
-        self._mine = GeomTable(self._simulation, self._is_sensed_by_geom)
+        self._is_sensed_table = GeomTable(self._simulation, self._is_sensed_by_geom)
 
     def _is_sensed_by_geom(self, names: list[str]) -> list[float]:
         return [float(self._is_sensed(part_of(name))) for name in names]
 
     def _is_sensed(self, part: str) -> bool:
-        name, mark, _ = part.partition(_MARK)
+        name, mark, _ = part.partition(_COLLISION_MARK)
         if not mark:
             return False
         return name in self._wanted if self._wanted else name.rpartition(SEPARATOR)[0] == self._mount.link
@@ -67,30 +67,35 @@ class ContactSensor:
         Raises:
             KeyError: the link no longer exists.
         """
-        mine, origin = self._mine.array(), np.array(self._mount.simulation.link_pose(self._mount.link)[:3])
+        is_sensed, origin = (
+            self._is_sensed_table.array(),
+            np.array(self._mount.simulation.link_pose(self._mount.link)[:3]),
+        )
         model, data, mujoco = self._simulation.model, self._simulation.data, load_mujoco()
         count = data.ncon
         pairs = data.contact.geom[:count]
         touching: dict[tuple[str, str], list[Array]] = {}
-        for index in np.nonzero((mine[pairs[:, 0]] > 0) | (mine[pairs[:, 1]] > 0))[0] if count else ():
-            first = mine[pairs[index, 0]] > 0
-            own, other = (pairs[index, 0], pairs[index, 1]) if first else (pairs[index, 1], pairs[index, 0])
+        for index in np.nonzero((is_sensed[pairs[:, 0]] > 0) | (is_sensed[pairs[:, 1]] > 0))[0] if count else ():
+            is_first = is_sensed[pairs[index, 0]] > 0
+            own_geom, other_geom = (
+                (pairs[index, 0], pairs[index, 1]) if is_first else (pairs[index, 1], pairs[index, 0])
+            )
             wrench = np.zeros(6)
             mujoco.mj_contactForce(model, data, int(index), wrench)
             frame = data.contact.frame[index].reshape(3, 3)
-            side = -1.0 if first else 1.0  # frame and force both point from the first geom to the second
+            sign = -1.0 if is_first else 1.0  # frame and force both point from the first geom to the second
             position = np.array(data.contact.pos[index])
-            force = side * wrench[:3] @ frame
-            torque = side * wrench[3:] @ frame + np.cross(position - origin, force)
-            row = np.concatenate([position, side * frame[0], [max(-data.contact.dist[index], 0.0)], force, torque])
-            names = _collision(model.geom(own).name), _collision(model.geom(other).name)
+            force = sign * wrench[:3] @ frame
+            torque = sign * wrench[3:] @ frame + np.cross(position - origin, force)
+            row = np.concatenate([position, sign * frame[0], [max(-data.contact.dist[index], 0.0)], force, torque])
+            names = _collision_name(model.geom(own_geom).name), _collision_name(model.geom(other_geom).name)
             touching.setdefault(names, []).append(row)
-        return [_contact(names, np.array(rows)) for names, rows in touching.items()]
+        return [_create_contact(names, np.array(rows)) for names, rows in touching.items()]
 
 
-def _collision(geom: str) -> str:
-    return geom.partition(_MARK)[0]
+def _collision_name(geom: str) -> str:
+    return geom.partition(_COLLISION_MARK)[0]
 
 
-def _contact(names: tuple[str, str], rows: Array) -> Contact:
+def _create_contact(names: tuple[str, str], rows: Array) -> Contact:
     return Contact(*names, rows[:, :3], rows[:, 3:6], rows[:, 6], rows[:, 7:10], rows[:, 10:13])

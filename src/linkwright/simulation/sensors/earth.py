@@ -19,24 +19,24 @@ from linkwright.sdf.worlds import SphericalCoordinates
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import NoiseSource, VectorNoise
 
-_RADIUS = 6378137.0
+_EQUATORIAL_RADIUS = 6378137.0
 _FLATTENING = 1 / 298.257223563
-_E2 = _FLATTENING * (2 - _FLATTENING)
-_TURNS = 5
-"""The number of iterations for the latitude: each leaves less than a hundredth of the error."""
-_EARTH, _GRAVITY = 6356766.0, 9.80665
+_SQUARED_ECCENTRICITY = _FLATTENING * (2 - _FLATTENING)
+_ITERATIONS = 5
+"""The number of iterations for the latitude; each iteration reduces the error to less than a hundredth."""
+_ATMOSPHERE_RADIUS, _GRAVITY = 6356766.0, 9.80665
 """The standard atmosphere's radius of the earth in m, and gravity in m/s2."""
-_SEA_PRESSURE, _SEA_TEMPERATURE, _LAPSE, _AIR = 101325.0, 288.15, 0.0065, 287.05287
-"""Pressure in Pa and temperature in K at the sea, K lost with each m, and the gas constant of air in J/(kg K)."""
+_SEA_PRESSURE, _SEA_TEMPERATURE, _LAPSE_RATE, _AIR_GAS_CONSTANT = 101325.0, 288.15, 0.0065, 287.05287
+"""Pressure in Pa and temperature in K at sea level, lapse rate in K/m, and gas constant of air in J/(kg K)."""
 EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
-"""The magnetic field of worlds that do not set it, in tesla: SDFormat's default."""
+"""The magnetic field in tesla of worlds that do not set it: the default of SDFormat."""
 
 
 class Globe:
     """The position and heading of a world on earth.
 
     Args:
-        place: the coordinates of the world; None for latitude and longitude 0.
+        coordinates: the coordinates of the world; None for latitude and longitude 0.
     """
 
     def __init__(self, place: SphericalCoordinates | None) -> None:
@@ -53,9 +53,9 @@ class Globe:
         )
 
     def east_north_up(self, vector: Array) -> Array:
-        """Return a vector, given in the axes of the world, in the axes east, north and up."""
-        turned: Array = self._heading @ vector
-        return turned
+        """Return a vector of the world's axes in the axes east, north and up."""
+        rotated: Array = self._heading @ vector
+        return rotated
 
     def geodetic(self, point: Array) -> tuple[float, float, float]:
         """Return latitude and longitude in degrees, and altitude in m, of a point in the world in m.
@@ -63,21 +63,31 @@ class Globe:
         The altitude is measured from the ellipsoid.
         """
         x, y, z = self._origin + self._axes @ self.east_north_up(point)
-        across = hypot(x, y)
-        latitude = atan2(z, across * (1 - _E2))
-        for _ in range(_TURNS):
-            normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
-            latitude = atan2(z + _E2 * normal * sin(latitude), across)
-        normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
-        altitude = across * cos(latitude) + z * sin(latitude) - normal * (1 - _E2 * sin(latitude) ** 2)
+        axis_distance = hypot(x, y)
+        latitude = atan2(z, axis_distance * (1 - _SQUARED_ECCENTRICITY))
+        for _ in range(_ITERATIONS):
+            normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+            latitude = atan2(z + _SQUARED_ECCENTRICITY * normal * sin(latitude), axis_distance)
+        normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+        altitude = (
+            axis_distance * cos(latitude)
+            + z * sin(latitude)
+            - normal * (1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+        )
         return degrees(latitude), degrees(atan2(y, x)), altitude
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
     """Return a position in earth-centred coordinates, in m; angles are in rad."""
-    normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
-    across = (normal + altitude) * cos(latitude)
-    return np.array([across * cos(longitude), across * sin(longitude), (normal * (1 - _E2) + altitude) * sin(latitude)])
+    normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+    axis_distance = (normal + altitude) * cos(latitude)
+    return np.array(
+        [
+            axis_distance * cos(longitude),
+            axis_distance * sin(longitude),
+            (normal * (1 - _SQUARED_ECCENTRICITY) + altitude) * sin(latitude),
+        ]
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +107,7 @@ class Fix:
 
 
 class NavsatSensor:
-    """A satellite receiver, whose position noise in m is added in the world before conversion.
+    """A satellite receiver. The position noise in m is added before conversion to latitude and longitude.
 
     Args:
         mount: the mount of the sensor.
@@ -114,10 +124,10 @@ class NavsatSensor:
         generator: np.random.Generator,
     ) -> None:
         settings = navsat or Navsat()
-        across, up = settings.horizontal_position, settings.vertical_position
-        self.position_noise = VectorNoise(NoiseXyz(across, across, up), generator)
-        across, up = settings.horizontal_velocity, settings.vertical_velocity
-        self.velocity_noise = VectorNoise(NoiseXyz(across, across, up), generator)
+        horizontal_noise, vertical_noise = settings.horizontal_position, settings.vertical_position
+        self.position_noise = VectorNoise(NoiseXyz(horizontal_noise, horizontal_noise, vertical_noise), generator)
+        horizontal_noise, vertical_noise = settings.horizontal_velocity, settings.vertical_velocity
+        self.velocity_noise = VectorNoise(NoiseXyz(horizontal_noise, horizontal_noise, vertical_noise), generator)
         self._mount = mount
         self._globe = Globe(place)
 
@@ -189,9 +199,9 @@ class Barometer:
 
 def standard_pressure(altitude: float) -> float:
     """Return the pressure of the standard atmosphere in Pa at an altitude in m."""
-    height = _EARTH * altitude / (_EARTH + altitude)
-    warmth = max(1.0 - _LAPSE * height / _SEA_TEMPERATURE, 0.0)
-    return float(_SEA_PRESSURE * warmth ** (_GRAVITY / (_AIR * _LAPSE)))
+    height = _ATMOSPHERE_RADIUS * altitude / (_ATMOSPHERE_RADIUS + altitude)
+    temperature_ratio = max(1.0 - _LAPSE_RATE * height / _SEA_TEMPERATURE, 0.0)
+    return float(_SEA_PRESSURE * temperature_ratio ** (_GRAVITY / (_AIR_GAS_CONSTANT * _LAPSE_RATE)))
 
 
 class MagnetometerSensor:

@@ -39,16 +39,16 @@ class ForceTorqueSensor:
         self._force_noise = VectorNoise(self._settings.force, generator)
         self._torque_noise = VectorNoise(self._settings.torque, generator)
         self._joint = simulation.scene.joints[joint]
-        child = simulation.scene.models[joint.partition("::")[0]].structure
-        placed = next(held.link.pose for held in child.links if held.link.name == self._joint.child)
-        self._in_child = compose(invert(placed), self._joint.pose)
+        structure = simulation.scene.models[joint.partition("::")[0]].structure
+        child_pose = next(held.link.pose for held in structure.links if held.link.name == self._joint.child)
+        self._joint_in_child = compose(invert(child_pose), self._joint.pose)
         self._offset = offset
 
     def measure(self) -> tuple[Array, Array]:
         """Return the force in N and the torque in N m, in the axes for which the sensor is configured.
 
-        With ``parent_to_child``, force and torque act from the parent on the child, otherwise from the child on the
-        parent.
+        With ``parent_to_child``, the parent exerts the force and torque on the child; otherwise the child exerts them
+        on the parent.
 
         Raises:
             KeyError: the links no longer exist.
@@ -56,14 +56,14 @@ class ForceTorqueSensor:
         simulation = self._simulation
         accelerations(simulation)
         data, body = simulation.data, int(simulation.model.body(self._joint.child).id)
-        joint = compose(simulation.link_pose(self._joint.child), self._in_child)
-        wrench, about = data.cfrc_int[body], data.subtree_com[simulation.model.body_rootid[body]]
+        joint = compose(simulation.link_pose(self._joint.child), self._joint_in_child)
+        wrench, reference_point = data.cfrc_int[body], data.subtree_com[simulation.model.body_rootid[body]]
         force = np.array(wrench[3:])
-        torque = np.array(wrench[:3]) - np.cross(np.subtract(joint[:3], about), force)
+        torque = np.array(wrench[:3]) - np.cross(np.subtract(joint[:3], reference_point), force)
         if self._settings.measure_direction != "parent_to_child":
             force, torque = -force, -torque
-        into = quaternion_inverse(np.array(self._axes(joint)))
-        return self._force_noise.apply(rotate(into, force)), self._torque_noise.apply(rotate(into, torque))
+        to_axes = quaternion_inverse(np.array(self._axes(joint)))
+        return self._force_noise.apply(rotate(to_axes, force)), self._torque_noise.apply(rotate(to_axes, torque))
 
     def _axes(self, joint: Transform) -> tuple[float, ...]:
         """Return the orientation in the world of the configured measurement frame, as a quaternion.

@@ -18,9 +18,9 @@ from linkwright.sdf.sensors import Imu
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import VectorNoise
 
-_NED = (np.pi, 0.0, np.pi / 2)
-_NWU = (0.0, 0.0, np.pi / 2)
-"""Roll, pitch and yaw of other axes in those of the world, whose x is east and y north."""
+_NED_RPY = (np.pi, 0.0, np.pi / 2)
+_NWU_RPY = (0.0, 0.0, np.pi / 2)
+"""The roll, pitch and yaw in rad of these axes in the world, whose x axis points east and y axis north."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,15 +58,15 @@ class ImuSensor:
         self.angular_velocity_noise = VectorNoise(settings.angular_velocity, generator)
         self.acceleration_noise = VectorNoise(settings.linear_acceleration, generator)
         self._mount = mount
-        self._measured = mount.simulation.time
+        self._last_time = mount.simulation.time
         self._reference = self._start(settings, initial_reference=initial_reference)
 
     def _start(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
         """Return the orientation in the world of the reference frame, as a quaternion."""
         if initial_reference:
             return self._mount.pose()[3:]
-        turns = {"NED": _NED, "NWU": _NWU, "CUSTOM": imu.custom_rpy}
-        return quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0)))
+        reference_rpy = {"NED": _NED_RPY, "NWU": _NWU_RPY, "CUSTOM": imu.custom_rpy}
+        return quaternion_from_rpy(reference_rpy.get(imu.localization, (0.0, 0.0, 0.0)))
 
     def measure(self) -> Inertial:
         """Return the current orientation, angular velocity and acceleration, with noise.
@@ -75,12 +75,12 @@ class ImuSensor:
             KeyError: the link no longer exists.
         """
         simulation = self._mount.simulation
-        period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time
+        period, self._last_time = (simulation.time - self._last_time) * 1e-9, simulation.time
         orientation = self._mount.pose()[3:]
-        into = quaternion_inverse(orientation)
-        angular, felt = self._mount.inertial_motion()
+        to_sensor = quaternion_inverse(orientation)
+        angular, acceleration = self._mount.inertial_motion()
         return Inertial(
             quaternion_multiply(quaternion_inverse(self._reference), orientation),
-            self.angular_velocity_noise.on(rotate(into, angular), period),
-            self.acceleration_noise.on(rotate(into, felt), period),
+            self.angular_velocity_noise.on(rotate(to_sensor, angular), period),
+            self.acceleration_noise.on(rotate(to_sensor, acceleration), period),
         )

@@ -23,9 +23,9 @@ from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts
 from linkwright.simulation.sensors.noise import NoiseSource
 
 _SURFACE_GAP = 1e-9
-"""The step in m behind a surface, so that a ray does not hit it again."""
-_SURFACES = 64
-"""The greatest number of surfaces of its own robot that a ray passes before its range begins."""
+"""The distance in m behind a surface at which a ray continues, so that it does not hit the surface again."""
+_MAX_OWN_SURFACES = 64
+"""The maximum number of surfaces of its robot that a ray passes before the minimum range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Scan:
     """A measurement of a lidar.
 
     Attributes:
-        ranges: in m, shape (vertical, horizontal); -inf below and inf above the range of the lidar.
+        ranges: the distances in m, shape (vertical, horizontal); -inf below the range of the lidar, and inf above it.
         intensities: `laser_retro` of the hit surfaces, 0 without a hit, shape (vertical, horizontal).
     """
 
@@ -41,7 +41,7 @@ class Scan:
     intensities: Array
 
 
-def angles_of(sweep: Sweep) -> Array:
+def sweep_angles(sweep: Sweep) -> Array:
     """Return the angles of the rays of a sweep, in rad, shape (count,)."""
     angles: Array = sweep.min_angle + sweep.step * np.arange(sweep.count, dtype=np.float64)
     return angles
@@ -72,12 +72,12 @@ class LidarSensor:
         self._groups = np.zeros(GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP if sees_visuals else COLLISION_GROUP] = 1
         self._retro = GeomTable(self._simulation, self._retro_by_geom)
-        self._own = GeomTable(self._simulation, self._owned)
+        self._own_geoms = GeomTable(self._simulation, self._own_geom_flags)
 
     @cached_property
     def directions(self) -> Array:
         """The unit vectors of the ray directions in the lidar's frame, shape (vertical * horizontal, 3)."""
-        up, across = np.meshgrid(angles_of(self.vertical), angles_of(self.horizontal), indexing="ij")
+        up, across = np.meshgrid(sweep_angles(self.vertical), sweep_angles(self.horizontal), indexing="ij")
         x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
         return rays
@@ -88,49 +88,51 @@ class LidarSensor:
         Raises:
             KeyError: the link no longer exists.
         """
-        ranges, geoms = self._cast()
-        intensities = self._retro.array()[geoms]
-        far = (ranges >= self.range_max) | (geoms < 0)
-        near = (ranges <= self.range_min) & ~far
+        ranges, hit_geoms = self._cast_rays()
+        intensities = self._retro.array()[hit_geoms]
+        is_too_far = (ranges >= self.range_max) | (hit_geoms < 0)
+        is_too_near = (ranges <= self.range_min) & ~is_too_far
         if not self._noise.silent:
             ranges = np.clip(self._noise.apply(ranges), self.range_min, self.range_max)
-        ranges[far], ranges[near] = np.inf, -np.inf
-        intensities[far] = 0.0
+        ranges[is_too_far], ranges[is_too_near] = np.inf, -np.inf
+        intensities[is_too_far] = 0.0
         shape = self.vertical.count, self.horizontal.count
         return Scan(ranges.reshape(shape), intensities.reshape(shape))
 
-    def _cast(self) -> tuple[Array, Any]:
+    def _cast_rays(self) -> tuple[Array, Any]:
         simulation, pose = self._simulation, self._mount.pose()
         rays = self.directions @ np.array(rotation_matrix(pose[3:])).T
-        reach = self.range_max if isfinite(self.range_max) else self._mujoco.mjMAXVAL
+        max_distance = self.range_max if isfinite(self.range_max) else self._mujoco.mjMAXVAL
         origin, body = np.array(pose[:3]), self._mount.body
         ranges, geoms = cast(
-            simulation.model, simulation.data, origin, rays, self._groups, apart_from=body, reach=reach
+            simulation.model, simulation.data, origin, rays, self._groups, apart_from=body, reach=max_distance
         )
-        own = self._own.array()
-        for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (own[geoms] > 0))[0]:
-            ranges[ray], geoms[ray] = self._beyond(origin, rays[ray], body, float(ranges[ray]), own)
+        is_own = self._own_geoms.array()
+        for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (is_own[geoms] > 0))[0]:
+            ranges[ray], geoms[ray] = self._hit_beyond_robot(origin, rays[ray], body, float(ranges[ray]), is_own)
         return ranges, geoms
 
-    def _beyond(self, origin: Array, ray: Array, body: int, reached: float, own: Array) -> tuple[float, int]:
-        """Return the distance in m and the geom of a ray's first hit behind near parts of the robot.
+    def _hit_beyond_robot(
+        self, origin: Array, ray: Array, body: int, distance: float, is_own: Array
+    ) -> tuple[float, int]:
+        """Return a ray's first hit that is not on a part of the robot within the minimum range.
 
-        The distance is inf, and the geom -1, if there is no such hit.
+        The result is the distance in m and the index of the geom; inf and -1 if there is no such hit.
         """
         simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
-        for _ in range(_SURFACES):
-            start = reached + _SURFACE_GAP
-            further = self._mujoco.mj_ray(
+        for _ in range(_MAX_OWN_SURFACES):
+            start = distance + _SURFACE_GAP
+            gap = self._mujoco.mj_ray(
                 simulation.model, simulation.data, origin + start * ray, ray, self._groups, 1, body, geom
             )
-            if further < 0:
+            if gap < 0:
                 return float("inf"), -1
-            reached = start + further
-            if reached >= self.range_min or not own[geom[0]]:
+            distance = start + gap
+            if distance >= self.range_min or not is_own[geom[0]]:
                 break
-        return reached, int(geom[0])
+        return distance, int(geom[0])
 
-    def _owned(self, names: list[str]) -> list[float]:
+    def _own_geom_flags(self, names: list[str]) -> list[float]:
         prefix = self._mount.link.partition("::")[0] + "::"
         return [float(name.startswith(prefix)) for name in names]
 

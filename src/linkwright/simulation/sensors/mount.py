@@ -1,4 +1,4 @@
-"""The mount of a sensor on its link, and tables with a value for each geom."""
+"""The mount of a sensor on a link, and tables with a value for each geom."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """The pose of a sensor on a link.
+    """The mount of a sensor on a link, which gives the sensor's pose and motion.
 
     Attributes:
         simulation: the simulation of the world.
@@ -35,7 +35,7 @@ class Mount:
 
     @property
     def model(self) -> str:
-        """The model that contains the link."""
+        """The name of the model that contains the link."""
         return self.link.partition(SEPARATOR)[0]
 
     @property
@@ -55,7 +55,7 @@ class Mount:
     def velocity(self) -> tuple[Vector3, Vector3]:
         """Return the linear velocity in m/s and the angular velocity in rad/s of the sensor.
 
-        Both are in the axes of the world.
+        Both are in world axes.
         """
         linear, angular = self.simulation.link_velocity(self.link)
         rates = _to_vector(angular)
@@ -69,20 +69,20 @@ class Mount:
         return self.offset[:3] == IDENTITY[:3]
 
     def _arm(self) -> Vector3:
-        """Return the vector from the origin of the link to the sensor, in the axes of the world, in m."""
+        """Return the vector from the origin of the link to the sensor, in m and in world axes."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
     def inertial_motion(self) -> tuple[Vector3, Vector3]:
-        """Return the angular velocity in rad/s and the proper acceleration in m/s2, in world axes.
+        """Return the angular velocity in rad/s and the proper acceleration in m/s2 of the sensor, in world axes.
 
-        The proper acceleration at rest is the reaction to gravity, which points upwards.
+        At rest, the proper acceleration is the opposite of gravity and points upwards.
         """
         accelerations(self.simulation)
-        simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
+        simulation, mujoco, acceleration = self.simulation, load_mujoco(), np.zeros(6)
         kind = mujoco.mjtObj.mjOBJ_XBODY
-        mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, result, 0)
+        mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, acceleration, 0)
         angular = _to_vector(simulation.link_velocity(self.link)[1])
-        p, q, r, x, y, z = result.tolist()
+        p, q, r, x, y, z = acceleration.tolist()
         if self._is_at_origin:
             return angular, (x, y, z)
         arm = self._arm()
@@ -101,19 +101,19 @@ def accelerations(simulation: Simulation) -> None:
 
 
 def part_of(geom: str) -> str:
-    """Return the name of the visual or collision to which a MuJoCo geom belongs.
+    """Return the name of the visual or collision to which a MuJoCo geom belongs, from the geom's name.
 
     An example is ``robot::base_link::lid#visual``.
     """
-    name, mark, kind = geom.partition("#")
-    return name + mark + kind.partition("#")[0]
+    name, separator, kind = geom.partition("#")
+    return name + separator + kind.partition("#")[0]
 
 
 def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
-    """Yield the visuals and collisions of all models, with their names in the form of `part_of`."""
+    """Yield the visuals and collisions of all models, each with its name as `part_of` returns it."""
     for model in simulation.scene.models.values():
-        for held in model.structure.links:
-            link = held.link
+        for tree_link in model.structure.links:
+            link = tree_link.link
             for visual in link.link.visuals:
                 yield f"{link.name}{SEPARATOR}{visual.name}#visual", visual
             for collision in link.link.collisions:
@@ -125,19 +125,19 @@ class GeomTable:
 
     Args:
         simulation: the simulation of the world.
-        values: returns the values for a list of geom names, in the order of the names.
+        compute_values: a function that returns the values for a list of geom names, in the order of the names.
     """
 
-    def __init__(self, simulation: Simulation, values: Any) -> None:
+    def __init__(self, simulation: Simulation, compute_values: Any) -> None:
         self._simulation = simulation
-        self._values = values
+        self._values = compute_values
         self._revision = -1
         self._array: Array = np.zeros(0)
 
     def array(self) -> Array:
         """Return the values by geom index, shape (geoms + 1,).
 
-        The last value is 0, so that the index -1, which means no geom, has the value 0.
+        The last value is 0, because the index -1 means that there is no geom.
         """
         self._simulation.refresh()
         if self._revision != self._simulation.revision:

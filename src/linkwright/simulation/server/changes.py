@@ -1,4 +1,4 @@
-"""The changes that turn one world into another: models that are removed, replaced and added."""
+"""The changes from one world to another: models that are removed, moved, replaced and added."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class AddedModel:
         name: the name of the model in the world.
         pose: the initial pose of the model's frame in the world.
         namespace: the default namespace for the nodes of the model's plugins.
-        motion: the motion of the replaced model; None if no model is replaced.
-        here: whether the model continues at the pose of the replaced model.
+        motion: the motion of the model that this model replaces; None if it replaces no model.
+        here: whether the model keeps the current pose and velocity of the model that it replaces.
     """
 
     model: Model
@@ -45,10 +45,10 @@ class Changes:
     """The changes from one world to another.
 
     Attributes:
-        gone: names of the removed models.
-        moved: the new poses in the world of models that differ only in their pose.
-        renewed: changed models that replace the running models of the same names.
-        new: the added models.
+        gone: the names of the models to remove.
+        moved: the new poses in the world of the models that differ only in their pose, by name.
+        renewed: the models that replace running models with the same names.
+        new: the models to add.
     """
 
     gone: tuple[str, ...]
@@ -56,38 +56,41 @@ class Changes:
     renewed: tuple[AddedModel, ...]
     new: tuple[AddedModel, ...]
 
-    def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """Return these changes, but with all other models also replaced, at their current or new poses."""
-        others = {*self.gone, *(change.name for change in self.renewed)}
-        poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
-        rest = (
+    def with_all_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
+        """Return these changes with all other running models also replaced, at their current or new poses."""
+        changed_names = {*self.gone, *(change.name for change in self.renewed)}
+        poses = {name: self.moved.get(name, model.pose) for name, model in running.items() if name not in changed_names}
+        replacements = (
             AddedModel(running[name].model, name, pose, namespaces.get(name, ""), here=name not in self.moved)
             for name, pose in poses.items()
         )
-        return replace(self, moved={}, renewed=(*self.renewed, *rest))
+        return replace(self, moved={}, renewed=(*self.renewed, *replacements))
 
-    def with_connected(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """Return these changes, but with moved models replaced if joints of the world connect them.
+    def with_connected_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
+        """Return these changes, but replace moved models that joints of the world connect to other models.
 
         The replacements are at the new poses.
         """
         connected = {name for model in running.values() if model.hangs_on for name in (model.name, *model.hangs_on)}
-        again = {name: pose for name, pose in self.moved.items() if name in connected}
+        connected_poses = {name: pose for name, pose in self.moved.items() if name in connected}
         moved = {name: pose for name, pose in self.moved.items() if name not in connected}
-        added = (AddedModel(running[name].model, name, pose, namespaces.get(name, "")) for name, pose in again.items())
-        return replace(self, moved=moved, renewed=(*self.renewed, *added))
+        replacements = (
+            AddedModel(running[name].model, name, pose, namespaces.get(name, ""))
+            for name, pose in connected_poses.items()
+        )
+        return replace(self, moved=moved, renewed=(*self.renewed, *replacements))
 
 
-def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collection[str]) -> Changes:
+def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Collection[str]) -> Changes:
     """Return the changes from the running models to the models of another world.
 
     Args:
-        world: the other world, with its includes resolved and as it was saved.
+        world: the other world, with its includes resolved and its saved state applied.
         running: the running models, by name.
-        owned: names of the running models that belong to a world; all others stay.
+        world_models: the names of the running models that came from a world; all other models stay.
 
     Raises:
-        LinkwrightError: SIM102, a model has the name of a model that stays; SIM140, a model cannot be placed.
+        LinkwrightError: SIM102, a model has the name of a model that stays; SIM140, the pose of a model is not defined.
     """
     frames = Frames(world)
     moved: dict[str, Transform] = {}
@@ -102,70 +105,70 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
             pose = frames.pose(model.name)
         except FrameError as error:
             raise _simulation_error(model.name, error) from error
-        before = running.get(model.name)
-        if before is None:
+        running_model = running.get(model.name)
+        if running_model is None:
             new.append(AddedModel(model, model.name, pose))
-        elif model.name not in owned:
+        elif model.name not in world_models:
             span = None if model.element is None else model.element.span()
             message = phrase("a model '{name}' already exists", name=model.name)
-            hint = phrase("it was added to the running simulation: delete it there, or give this model another name")
+            hint = phrase("that model was added to the running simulation; delete it there, or rename this model")
             raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
-        elif before.is_outdated or not alike(_unplaced(before.model), _unplaced(model)):
-            renewed.append(AddedModel(model, model.name, pose, here=pose == before.pose))
-        elif pose != before.pose:
+        elif running_model.is_outdated or not alike(_without_pose(running_model.model), _without_pose(model)):
+            renewed.append(AddedModel(model, model.name, pose, here=pose == running_model.pose))
+        elif pose != running_model.pose:
             moved[model.name] = pose
-    gone = tuple(name for name in running if name in owned and name not in names)
+    gone = tuple(name for name in running if name in world_models and name not in names)
     return Changes(gone, moved, tuple(renewed), tuple(new))
 
 
 def check(
     world: World, simulation: Simulation, added: Sequence[AddedModel], finder: ResourceFinder
 ) -> list[Diagnostic]:
-    """Compile models in a separate world to check whether a running simulation can add them.
+    """Compile models in a separate simulation to check whether a running simulation can add them.
 
     Args:
-        world: the world, whose own models are ignored.
+        world: the world; its models and states are ignored.
         simulation: the running simulation.
         added: the models to add.
         finder: the finder of mesh files.
 
     Returns:
-        The findings on parts that cannot be simulated.
+        The findings on parts of the models that cannot be simulated.
 
     Raises:
-        LinkwrightError: SIM104, SIM105, SIM140, the models cannot be simulated.
+        LinkwrightError: SIM102, SIM104, SIM105, SIM140, the models cannot be simulated.
     """
     models = {model.name: model.model for model in simulation.scene.models.values()}
     count_links((models | {change.name: change.model for change in added}).values())
-    trial = simulation.separate_simulation(replace(world, models=(), states=()), finder)
-    add_models(trial, added)
-    return trial.scene.diagnostics
+    trial_simulation = simulation.separate_simulation(replace(world, models=(), states=()), finder)
+    add_models(trial_simulation, added)
+    return trial_simulation.scene.diagnostics
 
 
 def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
-    """Add models to a simulation, either all or none.
+    """Add all given models to a simulation, or none if one of them cannot be added.
 
     Raises:
         LinkwrightError: SIM102, a model with one of the names already exists; SIM104, SIM105, SIM140, a model cannot be
             simulated.
     """
-    came: list[str] = []
+    attempted_names: list[str] = []
     by_name = {change.name: change for change in added}
     try:
         for name in simulation.scene.in_order(list(by_name)):
             each = by_name[name]
-            came.append(name)
+            attempted_names.append(name)
             simulation.spawn(each.model, each.name, each.pose)
         simulation.refresh()
     except (FrameError, ValueError, RuntimeError, LinkwrightError) as error:
-        for name in reversed(came):
+        for name in reversed(attempted_names):
             if name in simulation.scene.models:
                 simulation.delete(name)
-        raise _simulation_error(came[-1], error) from error
+        raise _simulation_error(attempted_names[-1], error) from error
 
 
 def surroundings(world: World) -> tuple[object, ...]:
-    """Return the properties of a world on which the plugins of its models depend, for comparison."""
+    """Return the properties of a world on which plugins of models depend, for comparison with another world."""
     physics = physics_of(world)
     joints = tuple(world.joints)
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints
@@ -181,5 +184,5 @@ def _simulation_error(name: str, error: Exception) -> LinkwrightError:
     return LinkwrightError(Diagnostic("SIM140", message))
 
 
-def _unplaced(model: Model) -> Model:
+def _without_pose(model: Model) -> Model:
     return replace(model, pose=AT_ORIGIN, placement_frame="")

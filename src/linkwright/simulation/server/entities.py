@@ -1,4 +1,4 @@
-"""Models that programs send as URDF or SDF."""
+"""Reads models that programs send as URDF or SDF."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 
-_NAME = "<the description>"
-_SHAPED = ("visual", "collision")
+_SOURCE_NAME = "<the description>"
+_SHAPE_OWNERS = ("visual", "collision")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +27,9 @@ class Entity:
     """A model that was read from URDF or SDF.
 
     Attributes:
-        model: the model, with its includes resolved; every link of a robot is kept.
-        diagnostics: findings about the model.
-        unread: the errors because of which shapes of the model are missing.
+        model: the model, with its includes resolved; links of a URDF robot are not lumped.
+        diagnostics: the findings on the description.
+        unread: the errors that explain why shapes of the model are missing.
     """
 
     model: Model
@@ -38,10 +38,10 @@ class Entity:
 
 
 def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
-    """Return the model that URDF or SDF describes.
+    """Read a model from URDF or SDF.
 
     Args:
-        text: URDF, or SDF whose first model is read.
+        text: the URDF or SDF; only the first model of SDF is read.
         finder: finds the included files.
         library: the robot descriptions that the process has read.
 
@@ -49,53 +49,54 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
         LinkwrightError: the text is not XML, or is neither URDF nor SDF; SIM142, the text does not contain a model;
             other errors of the text.
     """
-    document, warnings = parse_as_gazebo(text, _NAME)
+    document, warnings = parse_as_gazebo(text, _SOURCE_NAME)
     if document.root.tag == "robot":
         reading = library.read(text)
         if reading.robot is None or not reading.robot.links:
             raise LinkwrightError(*_errors(reading.diagnostics))
         converted = model_from_robot(reading.robot, lump_fixed_joints=False)
-        unread = _errors(reading.diagnostics) if _lacks_shapes(reading.robot) else ()
-        return Entity(converted.model, converted.diagnostics, tuple(unread))
+        shape_errors = _errors(reading.diagnostics) if _lacks_shapes(reading.robot) else ()
+        return Entity(converted.model, converted.diagnostics, tuple(shape_errors))
     sdf = read(document)
     if sdf.sdf is None:
         raise LinkwrightError(*_errors(sdf.diagnostics))
-    included = resolve_includes(sdf.sdf, Path.cwd() / _NAME, finder)
-    findings = (*warnings, *sdf.diagnostics, *included.diagnostics)
-    if not included.sdf.models:
+    resolved = resolve_includes(sdf.sdf, Path.cwd() / _SOURCE_NAME, finder)
+    findings = (*warnings, *sdf.diagnostics, *resolved.diagnostics)
+    if not resolved.sdf.models:
         if has_errors(findings):
             raise LinkwrightError(*_errors(findings))
-        message = phrase("there is no model in it")
+        message = phrase("the description contains no model")
         hint = (
-            phrase("it must be URDF, or SDF with a <model>")
+            phrase("send URDF, or SDF with a <model>")
             if not sdf.sdf.worlds
-            else phrase("it is a world, but only models can be added to a world")
+            else phrase("it describes a world, but only models can be added; send one of its models")
         )
         raise LinkwrightError(Diagnostic("SIM142", message, hint=hint))
-    return Entity(included.sdf.models[0], findings, tuple(_unknown_shapes(document.root)))
+    return Entity(resolved.sdf.models[0], findings, tuple(_invalid_shapes(document.root)))
 
 
 def _lacks_shapes(robot: Robot) -> bool:
-    """Return whether a visual or collision of a robot could not be read; urdfdom rejects such robots."""
+    """Return whether a visual or collision of a robot could not be read; urdfdom rejects such a robot."""
     return any(
-        len(link.visuals) + len(link.collisions) < sum(element.tag in _SHAPED for element in link.element.elements())
+        len(link.visuals) + len(link.collisions)
+        < sum(element.tag in _SHAPE_OWNERS for element in link.element.elements())
         for link in robot.links.values()
         if link.element is not None
     )
 
 
-def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
-    """Yield errors for elements in ``<geometry>`` that are not shapes of SDF."""
+def _invalid_shapes(root: Element) -> Iterator[Diagnostic]:
+    """Yield an error for each element in ``<geometry>`` that is not a shape of SDF."""
     for parent in root.walk():
-        for geometry in parent.elements("geometry") if parent.tag in _SHAPED else ():
+        for geometry in parent.elements("geometry") if parent.tag in _SHAPE_OWNERS else ():
             for shape in geometry.elements():
                 if shape.tag not in GEOMETRY.child_rules and ":" not in shape.tag:
-                    owner = parent.attributes.get("name", "")
+                    owner_name = parent.attributes.get("name", "")
                     message = phrase(
-                        "<{tag}> in <geometry> of {kind} '{name}' is not a shape",
+                        "the <geometry> of {kind} '{name}' contains <{tag}>, which is not a shape",
                         tag=shape.tag,
                         kind=foreign(parent.tag),
-                        name=owner,
+                        name=owner_name,
                     )
                     hint = phrase("the shapes are {names}", names=joined(sorted(GEOMETRY.child_rules)))
                     yield Diagnostic("SIM145", message, shape.span(), hint=hint, source=shape.source)
@@ -109,5 +110,5 @@ def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnos
     return (
         [finding for finding in findings if has_errors([finding])]
         or list(findings)
-        or [Diagnostic("SIM142", phrase("there is no model in it"))]
+        or [Diagnostic("SIM142", phrase("the description contains no model"))]
     )

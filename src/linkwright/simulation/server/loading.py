@@ -1,9 +1,9 @@
 """Replaces the running world by the world in another file or text, for ``/load_world``.
 
-Source: ``simulation_interfaces/srv/LoadWorld``. There, the scene is cleared and the simulation stops; here, the common
-parts of both worlds, spawned models and the time continue. ``uri`` is the path or address of a file, or the name of a
-world. The original ignores ``resource_string`` if there is a ``uri``; here, it is the edited text of the file, which
-need not be saved.
+The service has the type ``simulation_interfaces/srv/LoadWorld``, but differs from it in two points. By definition, the
+scene is cleared and the simulation stops; here, the common parts of both worlds, spawned models and the time continue.
+By definition, ``resource_string`` is ignored if there is a ``uri``; here, it is the edited text of this file, which
+need not be saved. ``uri`` is the path or address of a file, or the name of a world.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from linkwright.xmltree.decoding import decoded
 from linkwright.xmltree.reader import read_bytes
 
 _OK, _NOT_FOUND, _FAILED = 1, 2, 4
-"""Results of simulation_interfaces/msg/Result."""
+"""Result codes of simulation_interfaces/msg/Result."""
 _UNSUPPORTED_FORMAT, _NO_RESOURCE, _UNREADABLE, _MISSING_ASSETS, _UNSUPPORTED_ELEMENTS = 101, 102, 103, 104, 106
-"""Results of simulation_interfaces/srv/LoadWorld."""
+"""Result codes of simulation_interfaces/srv/LoadWorld."""
 _RESULTS = {
     "SIM150": _NOT_FOUND,
     "SIM151": _UNSUPPORTED_FORMAT,
@@ -34,16 +34,16 @@ _RESULTS = {
     "SIM140": _FAILED,
     "SIM152": _NO_RESOURCE,
 }
-_MISSING, _NOT_READ = ("SDF160", "SIM112"), ("SDF150",)
-"""The codes of missing models and meshes, and of elements that are not read."""
-_TEXT = "<the world>"
+_MISSING_CODES, _UNREAD_CODES = ("SDF160", "SIM112"), ("SDF150",)
+"""The codes of findings on missing models and meshes, and on elements that are not read."""
+_TEXT_NAME = "<the world>"
 
 
 class WorldLoader:
-    """The loader that replaces the running world.
+    """Replaces the world of a running simulation.
 
     Args:
-        server: the simulation.
+        server: the server of the simulation.
         loaded: the initial world.
 
     Attributes:
@@ -69,33 +69,34 @@ class WorldLoader:
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
         """Replace the running world by the world in a file or text.
 
-        An error that the running world also has does not prevent the replacement.
+        Findings that the running world also has do not prevent the replacement.
 
         Args:
-            uri: the file; empty for a text without a file.
-            text: replaces the text of the file; empty to read the file.
-            refused: codes of warnings that prevent the replacement.
+            uri: the path or address of a file, or the name of a world; empty for a text without a file.
+            text: the text of the world, which is used instead of the text of the file; empty to read the file.
+            refused: the codes of warnings that, like errors, prevent the replacement.
 
         Raises:
             LinkwrightError: the world cannot be read or simulated; nothing has changed.
         """
         if not (uri or text):
-            hint = phrase("give the file of a world, or its text")
-            raise LinkwrightError(Diagnostic("SIM152", phrase("no world is given"), hint=hint))
-        loaded = load_world(uri or str(Path.cwd() / _TEXT), text or None)
-        known = {
-            _essence(diagnostic)
+            hint = phrase("pass the path of a world file, or the text of a world")
+            raise LinkwrightError(Diagnostic("SIM152", phrase("no world was specified"), hint=hint))
+        loaded = load_world(uri or str(Path.cwd() / _TEXT_NAME), text or None)
+        running_findings = {
+            _finding_key(diagnostic)
             for diagnostic in (*self.loaded.diagnostics, *self._server.simulation.scene.diagnostics)
         }
 
         def allow(findings: Sequence[Diagnostic]) -> None:
-            wrong = [
+            new_errors = [
                 finding
                 for finding in findings
-                if (finding.severity is Severity.ERROR or finding.code in refused) and _essence(finding) not in known
+                if (finding.severity is Severity.ERROR or finding.code in refused)
+                and _finding_key(finding) not in running_findings
             ]
-            if wrong:
-                raise LinkwrightError(*wrong)
+            if new_errors:
+                raise LinkwrightError(*new_errors)
 
         allow(loaded.diagnostics)
         self._server.load(loaded.world, loaded.finder, allow)
@@ -105,15 +106,15 @@ class WorldLoader:
     def answer(self, request: Any, response: Any) -> Any:
         """Handle a request to the ``/load_world`` service."""
         resource = request.world_resource
-        refused = (
-            *(() if request.ignore_missing_or_unsupported_assets else _MISSING),
-            *(_NOT_READ if request.fail_on_unsupported_element else ()),
+        blocking_codes = (
+            *(() if request.ignore_missing_or_unsupported_assets else _MISSING_CODES),
+            *(_UNREAD_CODES if request.fail_on_unsupported_element else ()),
         )
         try:
-            self.load(resource.uri, resource.resource_string, refused=refused)
+            self.load(resource.uri, resource.resource_string, refused=blocking_codes)
         except LinkwrightError as error:
             finding = error.diagnostics[0]
-            response.result.result = _result(finding)
+            response.result.result = _result_code(finding)
             response.result.error_message = in_one_line(finding)
             return response
         response.result.result = _OK
@@ -122,13 +123,13 @@ class WorldLoader:
         return response
 
 
-def _result(finding: Diagnostic) -> int:
-    if finding.code in _MISSING:
+def _result_code(finding: Diagnostic) -> int:
+    if finding.code in _MISSING_CODES:
         return _MISSING_ASSETS
-    if finding.code in _NOT_READ:
+    if finding.code in _UNREAD_CODES:
         return _UNSUPPORTED_ELEMENTS
     return _RESULTS.get(finding.code, _UNREADABLE)
 
 
-def _essence(finding: Diagnostic) -> tuple[str, str]:
+def _finding_key(finding: Diagnostic) -> tuple[str, str]:
     return finding.code, str(finding.message)

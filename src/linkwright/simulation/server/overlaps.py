@@ -1,4 +1,4 @@
-"""Findings on bodies that overlap at the start (SIM144), which `simulation.recovery` separates."""
+"""Warnings about bodies that overlap at the start (SIM144), which `simulation.recovery` separates."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.connections import model_of
 from linkwright.simulation.simulation import Simulation
 
-_LEAST = 0.02
-"""The depth in m from which bodies overlap; soft contacts are as deep at rest."""
-_MOST = 8
-"""The number of overlaps that are reported individually."""
+_MIN_DEPTH = 0.02
+"""The depth in m above which bodies count as overlapping; soft contacts are up to this deep at rest."""
+_MAX_REPORTED = 8
+"""The maximum number of overlaps that are reported individually."""
 
 
 def overlaps(simulation: Simulation, names: Container[str] | None = None) -> list[Diagnostic]:
@@ -20,14 +20,14 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
 
     Args:
         simulation: the simulation of the world.
-        names: the models to check; all by default.
+        names: the names of the models to check; None for all models.
     """
     simulation.refresh()
     model, data = simulation.model, simulation.data
     load_mujoco().mj_collision(model, data)
     depths: dict[tuple[str, str], float] = {}
     for contact in data.contact:
-        if contact.dist < -_LEAST and not contact.exclude:
+        if contact.dist < -_MIN_DEPTH and not contact.exclude:
             links = [model.body(int(model.geom_bodyid[geom])).name for geom in contact.geom if geom >= 0]
             pair = _moving_first(simulation, links)
             if len(pair) == 2 and (names is None or any(model_of(link) in names for link in pair)):
@@ -38,26 +38,28 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
                 )
                 depths[key] = max(depths.get(key, 0.0), -float(contact.dist))
     deepest = sorted(depths.items(), key=lambda item: -item[1])
-    findings = [_finding(simulation, *pair, depth) for pair, depth in deepest[:_MOST]]
-    rest = len(deepest) - len(findings)
-    if rest:
-        message = counted("{count} other pair of models overlaps", "{count} other pairs of models overlap", rest)
+    findings = [_finding(simulation, *pair, depth) for pair, depth in deepest[:_MAX_REPORTED]]
+    remaining_count = len(deepest) - len(findings)
+    if remaining_count:
+        message = counted(
+            "{count} other pair of models overlaps", "{count} other pairs of models overlap", remaining_count
+        )
         findings.append(Diagnostic("SIM144", message, severity=Severity.WARNING))
     return findings
 
 
 def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
-    """Return links with those that can move first."""
+    """Return links sorted so that links that can move come before static ones."""
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 
 def _finding(simulation: Simulation, first: str, second: str, depth: float) -> Diagnostic:
     values = {"first": first, "second": second, "depth": f"{depth:.2f}"}
-    within = model_of(first) == model_of(second)
+    is_same_model = model_of(first) == model_of(second)
     message: Phrase = phrase("'{first}' starts {depth} m inside '{second}'", **values)
     hint = phrase("they are pushed apart slowly; move one of them if this is not intended")
-    if within:
-        hint = phrase("they are pushed apart slowly; links of a model touch only where <self_collide> is true")
+    if is_same_model:
+        hint = phrase("they are pushed apart slowly; to ignore contacts within the model, remove <self_collide>")
     element = simulation.scene.models[model_of(first)].model.element
     span, source = (None, None) if element is None else (element.span(), element.source)
     return Diagnostic("SIM144", message, span, severity=Severity.WARNING, hint=hint, source=source)

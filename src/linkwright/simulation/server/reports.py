@@ -1,4 +1,4 @@
-"""The topics that a simulator publishes about itself: time, state, description, poses."""
+"""The topics that a simulator publishes about itself: time, state, description, poses and performance."""
 
 from __future__ import annotations
 
@@ -26,92 +26,96 @@ from linkwright.sdf.writer import WrittenModel, save_model_of_world, save_world
 from linkwright.simulation.server.server import SimulationServer
 
 T = TypeVar("T")
-_CLOCK, _STATE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
-_METRICS = "gazebo_msgs/msg/PerformanceMetrics"
+_CLOCK_TYPE, _STATE_TYPE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
+_METRICS_TYPE = "gazebo_msgs/msg/PerformanceMetrics"
 _POSES_PERIOD, _METRICS_PERIOD = 1 / 30, 0.5
-"""Periods in real seconds."""
+"""The publishing periods of poses and performance metrics, in s of real time."""
 PLAYING, PAUSED = 1, 2
-"""States of simulation_interfaces/msg/SimulationState."""
+"""The values of ``state`` in simulation_interfaces/msg/SimulationState."""
 
 
 class Reports:
-    """The topics of a simulator, published in the simulation's thread.
+    """The publishers of a simulator's own topics, which publish in the simulation's thread.
 
     Args:
-        server: the simulation.
-        topics: the topics of the simulator's node.
+        server: the server of the simulation.
+        node: the simulator's node.
         clock_rate: the rate of ``/clock`` in simulated time, in Hz; 0 for every step.
     """
 
-    def __init__(self, server: SimulationServer, topics: SteppedNode, clock_rate: float) -> None:
+    def __init__(self, server: SimulationServer, node: SteppedNode, clock_rate: float) -> None:
         self._server = server
-        self._clock = topics.publisher(_CLOCK, "/clock", CLOCK_QOS)
-        self._state = topics.publisher(_STATE, "/simulation_state", LATCHED_QOS)
-        self._description = topics.publisher("std_msgs/msg/String", "/world_description", LATCHED_QOS)
-        self._poses = topics.publisher("tf2_msgs/msg/TFMessage", "/world_poses", 10)
-        self._metrics = topics.publisher(_METRICS, "/performance_metrics", 10)
+        self._clock = node.publisher(_CLOCK_TYPE, "/clock", CLOCK_QOS)
+        self._state = node.publisher(_STATE_TYPE, "/simulation_state", LATCHED_QOS)
+        self._description = node.publisher("std_msgs/msg/String", "/world_description", LATCHED_QOS)
+        self._poses = node.publisher("tf2_msgs/msg/TFMessage", "/world_poses", 10)
+        self._metrics = node.publisher(_METRICS_TYPE, "/performance_metrics", 10)
         self._names: tuple[str, ...] = ()
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
         self._finder: ResourceFinder | None = None
-        self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # stored models keep their ids
-        self._posed = self._measured = 0.0
+        self._saved_models: dict[
+            tuple[int, str, Transform], tuple[Model, WrittenModel]
+        ] = {}  # stored models keep their ids
+        self._last_poses = self._last_metrics = 0.0
         server.on_reset.append(self._publish_time)
         server.simulation.call_every(
             round(NANOSECONDS_PER_SECOND / clock_rate) if clock_rate > 0 else 0, self._publish_time
         )
 
     def begin(self) -> None:
-        """Publish the description of the world, and publish it again after each change."""
+        """Publish the description of the world now and after each change."""
         self._server.on_change.append(self.publish_description)
         self.publish_description()
 
     def publish_state(self, *, paused: bool) -> None:
         """Publish whether the simulation is paused."""
-        self._state.publish(get_message(_STATE)(state=PAUSED if paused else PLAYING))
+        self._state.publish(get_message(_STATE_TYPE)(state=PAUSED if paused else PLAYING))
 
     def publish_description(self) -> None:
         """Publish the world as SDF, with models at their initial poses and absolute file addresses."""
         simulation = self._server.simulation
         if self._finder is not simulation.finder:
-            self._finder, self._written = simulation.finder, {}
+            self._finder, self._saved_models = simulation.finder, {}
         figures = ((figure.model, figure.model.name, figure.pose) for figure in simulation.scene.figures)
         models = [*((model.model, model.name, model.pose) for model in simulation.scene.models.values()), *figures]
-        self._written = {(id(model), name, pose): self._saved(model, name, pose) for model, name, pose in models}
+        self._saved_models = {
+            (id(model), name, pose): self._save_model(model, name, pose) for model, name, pose in models
+        }
         world = replace(simulation.world, models=(), actors=(), roads=())
-        text = save_world(self._addressed(world), [written for _, written in self._written.values()])
+        text = save_world(self._with_absolute_uris(world), [saved for _, saved in self._saved_models.values()])
         self._description.publish(String(data=text))
 
-    def _saved(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
-        """Return a model and its SDF, which is reused if the model and its pose are unchanged."""
-        known = self._written.get((id(model), name, pose))
-        if known is not None:
-            return known
-        placed = replace(model, name=name, pose=RawPose(pose_of(pose)), placement_frame="")
-        return model, save_model_of_world(self._addressed(placed))
+    def _save_model(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
+        """Return a model and its SDF; reuse the SDF if the model, its name and its pose have not changed."""
+        cached = self._saved_models.get((id(model), name, pose))
+        if cached is not None:
+            return cached
+        placed_model = replace(model, name=name, pose=RawPose(pose_of(pose)), placement_frame="")
+        return model, save_model_of_world(self._with_absolute_uris(placed_model))
 
-    def _addressed(self, part: T) -> T:
-        addressed: T = with_changed_uris(part, Path.cwd(), self._address)
-        return addressed
+    def _with_absolute_uris(self, part: T) -> T:
+        converted: T = with_changed_uris(part, Path.cwd(), self._absolute_uri)
+        return converted
 
     def watch(self, factor: Callable[[], float]) -> None:
-        """Publish poses and the real-time factor if their topics have subscribers.
+        """Publish poses and the real-time factor if they are due and their topics have subscriptions.
 
-        The rates are 30 Hz and 2 Hz of real time, provided that this is called often enough.
+        Poses are due at 30 Hz and the factor at 2 Hz of real time; call this at least as often.
         """
         now = time.monotonic()
-        if now - self._posed >= _POSES_PERIOD and self._poses.is_wanted:
-            self._posed = now
+        if now - self._last_poses >= _POSES_PERIOD and self._poses.is_wanted:
+            self._last_poses = now
             self.publish_poses()
-        if now - self._measured >= _METRICS_PERIOD and self._metrics.is_wanted:
-            self._measured = now
-            message = get_message(_METRICS)(
+        if now - self._last_metrics >= _METRICS_PERIOD and self._metrics.is_wanted:
+            self._last_metrics = now
+            message = get_message(_METRICS_TYPE)(
                 header=Header(stamp=Time.from_nanoseconds(self._server.simulation.time)), real_time_factor=factor()
             )
             self._metrics.publish(message)
 
     def publish_poses(self) -> None:
-        """Publish the poses of all links that can move; the pose of ``robot::link`` is in ``world``."""
+        """Publish the poses of all links that can move, in the frame ``world``."""
         simulation = self._server.simulation
         simulation.refresh()
         if self._revision != simulation.revision:
@@ -125,8 +129,8 @@ class Reports:
         self._poses.publish(TFMessage(batch=batch))
 
     def _publish_time(self) -> None:
-        self._clock.publish(get_message(_CLOCK)(clock=Time.from_nanoseconds(self._server.simulation.time)))
+        self._clock.publish(get_message(_CLOCK_TYPE)(clock=Time.from_nanoseconds(self._server.simulation.time)))
 
-    def _address(self, written: str, beside: Path) -> str:
-        found = self._server.simulation.finder.file(written, beside) if written else Missing
-        return found.as_uri() if isinstance(found, Path) and found.is_absolute() else written
+    def _absolute_uri(self, uri: str, folder: Path) -> str:
+        resolved = self._server.simulation.finder.file(uri, folder) if uri else Missing
+        return resolved.as_uri() if isinstance(resolved, Path) and resolved.is_absolute() else uri

@@ -1,4 +1,4 @@
-"""The thread that runs a simulation in parallel with the event loop."""
+"""Runs a simulation in a thread, in parallel with the event loop."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.server.server import SimulationServer
 
 _CHUNK = 0.005
-"""Real seconds between two looks at the commands."""
-_LONGEST_CHUNK = 0.05
-"""The most simulated seconds between them: messages published meanwhile arrive at once."""
-_BEHIND = 0.25
-"""Real seconds that a simulation may be behind; a greater delay is not caught up."""
-_IDLE = 1 / 30
-"""Real seconds between two looks while nothing moves."""
-_MEASURED = 0.5
-"""Real seconds over which the real-time factor is measured."""
+"""The real time in s between two checks for commands."""
+_MAX_CHUNK = 0.05
+"""The maximum simulated time in s between two checks; all messages published in between arrive together."""
+_MAX_DELAY = 0.25
+"""The delay in s of real time up to which a simulation catches up; it does not make up for a greater delay."""
+_PAUSED_PERIOD = 1 / 30
+"""The maximum real time in s between two checks while the simulation is paused."""
+_MEASUREMENT_PERIOD = 0.5
+"""The real time in s over which the real-time factor is measured."""
 
 
 class Runner:
     """Advances a simulation in a separate thread, at the requested real-time factor.
 
-    All methods except `start` and `close` are called in that thread, through commands of the exchange.
+    All methods except `start` and `close` must be called in that thread, through commands of the exchange.
 
     Args:
-        server: the simulation.
-        factor: simulated seconds per real second; infinite for as fast as possible, 0 for the factor of the world.
+        server: the server of the simulation.
+        factor: the requested real-time factor; infinite for as fast as possible, 0 for the factor of the world.
         paused: whether the simulation starts paused.
-        seconds: the simulated seconds after which the simulation ends; None for never.
+        seconds: the simulated time in s after which the simulation ends; None for never.
         watch: called in the thread at short intervals, even while the simulation is paused.
-        on_state: called in the thread when the simulation was paused or resumed.
-        on_end: called in the thread with 0 after `seconds`, or with 1 after a failure.
+        on_state: called in the thread after the simulation was paused or resumed.
+        on_end: called in the thread with 0 after `seconds`; if `seconds` is set, also called with 1 after a failure.
 
     Attributes:
         paused: whether the simulation is paused.
@@ -58,14 +58,14 @@ class Runner:
         self.paused = paused
         self.real_time_factor = 0.0
         self._server = server
-        self._given_factor = factor
+        self._requested_factor = factor
         self._factor = 1.0
-        self._left = None if seconds is None else round(seconds * NANOSECONDS_PER_SECOND)
+        self._remaining_ns = None if seconds is None else round(seconds * NANOSECONDS_PER_SECOND)
         self._watch, self._on_state, self._on_end = watch, on_state, on_end
         self._ends = False
-        server.on_change.append(self._wake)
-        self._began = (0.0, 0)
-        self._measured = (0.0, 0)
+        server.on_change.append(self._restart_timing)
+        self._reference_times = (0.0, 0)
+        self._last_measurement = (0.0, 0)
         self._thread = threading.Thread(target=self._run, name="linkwright-simulation", daemon=True)
 
     def start(self) -> None:
@@ -73,7 +73,7 @@ class Runner:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread after the current step, and wait for its end."""
+        """Stop the thread after its current iteration, and wait until it has ended."""
         self._ends = True
         self._server.exchange.close()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
@@ -81,11 +81,11 @@ class Runner:
 
     def pause(self) -> None:
         """Pause the simulation."""
-        self._set(paused=True)
+        self._set_paused(paused=True)
 
     def resume(self) -> None:
         """Resume the simulation."""
-        self._set(paused=False)
+        self._set_paused(paused=False)
 
     def step(self, count: int) -> None:
         """Run a number of steps as fast as possible.
@@ -94,42 +94,44 @@ class Runner:
             UnstableError: a value in the simulation is no longer finite.
         """
         self._server.simulation.advance(count * self._server.simulation.step)
-        self._wake()
+        self._restart_timing()
 
-    def _set(self, *, paused: bool) -> None:
+    def _set_paused(self, *, paused: bool) -> None:
         if paused != self.paused:
             self.paused = paused
-            self._wake()
+            self._restart_timing()
             self._on_state()
 
-    def _wake(self) -> None:
-        """Restart the measurement of real time, with the real-time factor of the current world."""
-        self._factor = self._given_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
-        self._began = self._measured = (time.monotonic(), self._server.simulation.time)
+    def _restart_timing(self) -> None:
+        """Restart the measurement of real time, and update the real-time factor from the current world."""
+        self._factor = (
+            self._requested_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
+        )
+        self._reference_times = self._last_measurement = (time.monotonic(), self._server.simulation.time)
 
     def _run(self) -> None:
         exchange, dispatcher = self._server.exchange, self._server.node.graph.dispatcher
-        self._wake()
+        self._restart_timing()
         while not self._ends:
             self._call_logged(exchange.run_commands)
-            wait = _IDLE
+            wait_s = _PAUSED_PERIOD
             if not self.paused:
                 self._call_logged(self._advance)
-                wait = 0.0 if self.paused else self._ahead()
+                wait_s = 0.0 if self.paused else self._lead_s()
             self._measure()
             self._call_logged(self._watch)
             exchange.deliver(dispatcher)
-            if wait > 0:
-                exchange.has_commands.wait(wait)
+            if wait_s > 0:
+                exchange.has_commands.wait(wait_s)
 
     def _call_logged(self, work: Callable[[], object]) -> None:
         """Call a function; if it raises an error, log the error and pause the simulation.
 
-        The simulation can then be reset.
+        A user can then reset the simulation.
         """
-        run_logged(self._server.node.get_logger(), "the simulation", lambda: self._try(work))
+        run_logged(self._server.node.get_logger(), "the simulation", lambda: self._pause_on_error(work))
 
-    def _try(self, work: Callable[[], object]) -> None:
+    def _pause_on_error(self, work: Callable[[], object]) -> None:
         try:
             work()
         except LinkwrightError as error:
@@ -143,44 +145,48 @@ class Runner:
 
     def _fail(self) -> None:
         self.pause()
-        if self._left is not None:
-            self._left = None
+        if self._remaining_ns is not None:
+            self._remaining_ns = None
             self._on_end(1)
 
     def _advance(self) -> None:
         simulation = self._server.simulation
-        real = _CHUNK * (self._factor if self._factor < inf else 1.0)
+        real_s = _CHUNK * (self._factor if self._factor < inf else 1.0)
         if self._factor == inf:
-            real = _CHUNK * max(self.real_time_factor, 1.0)
-        chunk = max(round(min(real, _LONGEST_CHUNK) * NANOSECONDS_PER_SECOND), simulation.step)
-        if self._left is not None:
-            chunk = min(chunk, self._left)
-        before = simulation.time
-        simulation.advance(chunk)
-        if self._left is not None:
-            self._left -= simulation.time - before
-            if self._left <= 0:
-                self._left = None
+            real_s = _CHUNK * max(self.real_time_factor, 1.0)
+        chunk_ns = max(round(min(real_s, _MAX_CHUNK) * NANOSECONDS_PER_SECOND), simulation.step)
+        if self._remaining_ns is not None:
+            chunk_ns = min(chunk_ns, self._remaining_ns)
+        start_ns = simulation.time
+        simulation.advance(chunk_ns)
+        if self._remaining_ns is not None:
+            self._remaining_ns -= simulation.time - start_ns
+            if self._remaining_ns <= 0:
+                self._remaining_ns = None
                 self.pause()
                 self._on_end(0)
 
-    def _ahead(self) -> float:
-        """Return the real seconds until real time reaches simulated time; 0 or less if there is none.
+    def _lead_s(self) -> float:
+        """Return the time in s until real time reaches simulated time; 0 or less if the simulation is not ahead.
 
-        A simulation that is too far behind is not required to catch up.
+        A simulation that is too far behind does not have to catch up.
         """
         if self._factor == inf:
             return 0.0
-        real, simulated = self._began
+        reference_real, reference_simulated = self._reference_times
         now = time.monotonic()
-        ahead = real + (self._server.simulation.time - simulated) / NANOSECONDS_PER_SECOND / self._factor - now
-        if ahead < -_BEHIND:
-            self._began = now, self._server.simulation.time
-        return ahead
+        lead_s = (
+            reference_real
+            + (self._server.simulation.time - reference_simulated) / NANOSECONDS_PER_SECOND / self._factor
+            - now
+        )
+        if lead_s < -_MAX_DELAY:
+            self._reference_times = now, self._server.simulation.time
+        return lead_s
 
     def _measure(self) -> None:
         now, simulated = time.monotonic(), self._server.simulation.time
-        passed = now - self._measured[0]
-        if passed >= _MEASURED:
-            self.real_time_factor = max(simulated - self._measured[1], 0) / NANOSECONDS_PER_SECOND / passed
-            self._measured = now, simulated
+        elapsed = now - self._last_measurement[0]
+        if elapsed >= _MEASUREMENT_PERIOD:
+            self.real_time_factor = max(simulated - self._last_measurement[1], 0) / NANOSECONDS_PER_SECOND / elapsed
+            self._last_measurement = now, simulated

@@ -1,4 +1,4 @@
-"""A simulation whose plugins are connected to a graph."""
+"""A simulation, and the plugins that connect it to a graph."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.alternatives import alternative_to
 from linkwright.simulation.plugins.bridged import BridgedTopics
-from linkwright.simulation.plugins.findings import findings_of
+from linkwright.simulation.plugins.findings import error_findings
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import model_plugins, world_plugins
 from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
     is_built_in,
-    is_of_gz,
+    is_gz_library,
     plugin_class,
     sensor_class,
 )
@@ -41,11 +41,11 @@ from linkwright.simulation.server.changes import AddedModel, add_models, changes
 from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
 from linkwright.simulation.server.motion import motion_of, resume
 from linkwright.simulation.server.overlaps import overlaps
-from linkwright.simulation.server.unsimulated import unsimulated_elements, unsimulated_in
+from linkwright.simulation.server.unsimulated import unsimulated_elements, unsimulated_model_elements
 from linkwright.simulation.simulation import Simulation
 
-_WORLD = ""
-"""The name under which the plugins of the world are kept; no model has it."""
+_WORLD_OWNER = ""
+"""The key of the world's plugins; no model has this name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class ServerOptions:
 
 
 class SimulationServer:
-    """A simulation whose plugins are connected to a graph.
+    """A simulation, and the plugins that connect it to a graph.
 
     All methods must be called in the thread that advances the simulation, which may be any thread.
 
@@ -84,7 +84,7 @@ class SimulationServer:
         on_reset: called after a reset.
         on_findings: called after `findings` have changed.
         on_failure: called with the exception of a plugin's code, after it was logged.
-        left: the states that plugins store for their successors.
+        left: the values that plugins store by name for later instances, which read them after a model is changed.
     """
 
     def __init__(self, simulation: Simulation, node: Node, options: ServerOptions | None = None) -> None:
@@ -96,12 +96,12 @@ class SimulationServer:
         self.on_findings: list[Callable[[], object]] = []
         self.on_failure: list[Callable[[Exception], object]] = []
         self._options = options or ServerOptions()
-        self._usual: set[str] | None = set() if self._options.usual_names else None
+        self._used_usual_names: set[str] | None = set() if self._options.usual_names else None
         self._bridged = BridgedTopics(node, self.exchange)
         self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
         self.left: dict[str, Any] = {}
         self._namespaces: dict[str, str] = {}
-        self._of_world = set(simulation.scene.models)
+        self._world_models = set(simulation.scene.models)
         self._node_names: set[str] = set()
         self._logged: set[str] = set()
         self._findings: dict[str, list[Diagnostic]] = {}
@@ -110,16 +110,16 @@ class SimulationServer:
         """Start the plugins of the world and of its models."""
         self.report(self.simulation.scene.diagnostics)
         self._warn_unsimulated(unsimulated_elements(self.simulation.world))
-        self._load(_WORLD, world_plugins(self.simulation.world, self._options.systems), "")
+        self._load(_WORLD_OWNER, world_plugins(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), "")
         self.report(overlaps(self.simulation))  # after the plugins have attached models
-        self._changed()
+        self._call_on_change()
 
     @property
     def findings(self) -> list[Diagnostic]:
         """The findings on the models in the world; safe to read from any thread."""
-        return [diagnostic for found in tuple(self._findings.values()) for diagnostic in tuple(found)]
+        return [diagnostic for findings in tuple(self._findings.values()) for diagnostic in tuple(findings)]
 
     @property
     def gazebo_mistakes(self) -> bool:
@@ -127,7 +127,7 @@ class SimulationServer:
         return self._options.gazebo_mistakes
 
     def random(self, name: str) -> np.random.Generator:
-        """Return a random number generator for a name, determined only by the name and the seed."""
+        """Return a random number generator that depends only on the seed and a name."""
         return np.random.default_rng([self._options.seed, crc32(name.encode())])
 
     def plugins(self, model: str) -> tuple[SimulatedPlugin[object], ...]:
@@ -153,21 +153,21 @@ class SimulationServer:
         lift_onto_ground(self.simulation, name)
         self.report(overlaps(self.simulation, (name,)))
         self.report(collision_warnings(self.simulation, name), name)
-        self._warn_unsimulated(unsimulated_in(model))
+        self._warn_unsimulated(unsimulated_model_elements(model))
 
     def renew(self, model: Model, name: str) -> None:
-        """Replace a model by a changed one, which takes over pose, velocity and joint positions.
+        """Replace a model by a changed model, which takes over its pose, velocity and joint positions.
 
         Args:
             model: the changed model, with its includes resolved.
-            name: the name of both models.
+            name: the name of the running model, which the changed model keeps.
 
         Raises:
             LinkwrightError: SIM141, there is no model with this name; SIM140, the changed model cannot be placed or
                 moved, and nothing has changed.
         """
-        before = self._model(name)
-        added = AddedModel(model, name, before.pose, self._namespaces.get(name, ""), here=True)
+        old_model = self._model(name)
+        added = AddedModel(model, name, old_model.pose, self._namespaces.get(name, ""), here=True)
         check(self.simulation.world, self.simulation, (added,), self.simulation.finder)
         self._exchange((), (replace(added, motion=motion_of(self.simulation, name)),))
         self.report(collision_warnings(self.simulation, name), name)
@@ -175,34 +175,34 @@ class SimulationServer:
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
         """Replace the running world by another one.
 
-        Parts that both worlds have in common continue, and spawned models remain.
+        Models and plugins that both worlds contain continue, and spawned models remain.
 
         Args:
             world: the other world, with its includes resolved.
             finder: the finder of mesh files.
-            allow: called with the findings on parts that cannot be simulated, before anything changes. It may raise an
-                error to prevent the replacement.
+            allow: called before anything changes, with the findings on elements that cannot be simulated. It may
+                raise an error to prevent the replacement.
 
         Raises:
-            LinkwrightError: SIM102, a model has the name of a spawned one; SIM104, SIM140, the world cannot be
-                simulated. Nothing has changed.
+            LinkwrightError: SIM102, a model has the name of a spawned model; SIM104, SIM140, the world cannot be
+                simulated. The running world is then unchanged.
         """
-        simulation, before = self.simulation, self.simulation.world
-        wanted = with_saved_state(world)
-        changes = changes_to(wanted, simulation.scene.models, self._of_world)
-        if surroundings(before) != surroundings(wanted):
-            changes = changes.with_all(simulation.scene.models, self._namespaces)
-        changes = changes.with_connected(simulation.scene.models, self._namespaces)
-        allow(check(wanted, simulation, (*changes.renewed, *changes.new), finder))
+        simulation, old_world = self.simulation, self.simulation.world
+        new_world = with_saved_state(world)
+        changes = changes_to(new_world, simulation.scene.models, self._world_models)
+        if surroundings(old_world) != surroundings(new_world):
+            changes = changes.with_all_replaced(simulation.scene.models, self._namespaces)
+        changes = changes.with_connected_replaced(simulation.scene.models, self._namespaces)
+        allow(check(new_world, simulation, (*changes.renewed, *changes.new), finder))
         renewed = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.renewed)
         simulation.set_world(world, finder)
         simulation.place(changes.moved)
         self._exchange(changes.gone, (*renewed, *changes.new))
         self.report(overlaps(simulation, {*changes.moved, *(change.name for change in changes.new)}))
-        self._of_world = {model.name for model in wanted.models}
-        if not alike(before.plugins, wanted.plugins):
-            self._end(self._plugins.pop(_WORLD, []))
-            self._load(_WORLD, world_plugins(wanted, self._options.systems), "")
+        self._world_models = {model.name for model in new_world.models}
+        if not alike(old_world.plugins, new_world.plugins):
+            self._close_plugins(self._plugins.pop(_WORLD_OWNER, []))
+            self._load(_WORLD_OWNER, world_plugins(new_world, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
         """Remove the models in `gone`, and add the models in `added`.
@@ -211,32 +211,32 @@ class SimulationServer:
         also replaced.
         """
         simulation = self.simulation
-        count = len(simulation.scene.diagnostics)
-        before: dict[str, list[SimulatedPlugin[object]]] = {}
+        old_count = len(simulation.scene.diagnostics)
+        old_plugins: dict[str, list[SimulatedPlugin[object]]] = {}
         gone, added = tuple(gone), (*added, *self._attached_models({*gone, *(change.name for change in added)}))
-        leaving = {*gone, *(change.name for change in added)}
-        for name in [name for name in reversed(simulation.scene.models) if name in leaving]:
-            before[name] = self._plugins.pop(name, [])
-            self._end(before[name])
+        removed_names = {*gone, *(change.name for change in added)}
+        for name in [name for name in reversed(simulation.scene.models) if name in removed_names]:
+            old_plugins[name] = self._plugins.pop(name, [])
+            self._close_plugins(old_plugins[name])
             simulation.delete(name)
-        self._forget_findings(leaving)
+        self._forget_findings(removed_names)
         if added:
             add_models(simulation, added)
         for change in added:
             if change.motion is not None:
                 resume(simulation, change.name, change.motion, here=change.here)
-        self.report(simulation.scene.diagnostics[count:])
+        self.report(simulation.scene.diagnostics[old_count:])
         for change in added:
             self._namespaces[change.name] = change.namespace
             places = model_plugins(simulation.world, change.model, change.name)
-            continues = change.here and change.motion is not None
-            self._load(change.name, places, change.namespace, before[change.name] if continues else ())
-        self._changed()
+            is_continued = change.here and change.motion is not None
+            self._load(change.name, places, change.namespace, old_plugins[change.name] if is_continued else ())
+        self._call_on_change()
 
     def _attached_models(self, names: Collection[str]) -> Iterator[AddedModel]:
-        """Yield the models to add again because joints of the world attach them to the named models.
+        """Yield the models that are attached by joints of the world to the named models, to be added again.
 
-        They continue at their current poses.
+        The models continue at their current poses.
         """
         models = self.simulation.scene.models
         for name in {
@@ -256,7 +256,7 @@ class SimulationServer:
         self._model(name)
         self._exchange((name,), ())
         self.left.clear()
-        self._of_world.discard(name)
+        self._world_models.discard(name)
 
     def _model(self, name: str) -> SceneModel:
         if name not in self.simulation.scene.models:
@@ -289,13 +289,13 @@ class SimulationServer:
     def close(self) -> None:
         """Stop all plugins of the world and of its models."""
         self._bridged.close()
-        self._end(self._running())
+        self._close_plugins(self._running())
         self._plugins.clear()
 
     def _running(self) -> list[SimulatedPlugin[object]]:
         return [plugin for plugins in self._plugins.values() for plugin in plugins]
 
-    def _end(self, plugins: list[SimulatedPlugin[object]]) -> None:
+    def _close_plugins(self, plugins: list[SimulatedPlugin[object]]) -> None:
         for plugin in reversed(plugins):
             self._forget_node(plugin.place, plugin.node)
             plugin.close(partial(self._log_failure, plugin.place))
@@ -304,7 +304,7 @@ class SimulationServer:
         if not is_shared(place):
             self._node_names.discard(node.name)
 
-    def _changed(self) -> None:
+    def _call_on_change(self) -> None:
         for function in self.on_change:
             function()
 
@@ -315,43 +315,45 @@ class SimulationServer:
         owner: str,
         places: Iterable[PluginPlace],
         namespace: str,
-        before: Sequence[SimulatedPlugin[object]] = (),
+        old_plugins: Sequence[SimulatedPlugin[object]] = (),
     ) -> None:
         """Start the plugins and sensors of a model or world.
 
-        Plugins that are unchanged take over the state of their predecessors in `before`.
+        Unchanged plugins take over the state of their previous instances in `old_plugins`.
         """
         self._plugins[owner] = []
-        unknown: dict[str, None] = {}
+        unsimulated: dict[str, None] = {}
         for place in places:
             with self._logging_failures(place):
-                found = self._class(place)
-                if found is None:
-                    unknown |= dict.fromkeys(_kinds(place))
+                plugin_class_ = self._find_class(place)
+                if plugin_class_ is None:
+                    unsimulated |= dict.fromkeys(_unsimulated_names(place))
                 else:
-                    self._begin(owner, found, place, namespace, before)
-        new = [name for name in unknown if name not in self._logged]
-        self._logged.update(new)
-        if new:
-            names = joined(new)
+                    self._begin(owner, plugin_class_, place, namespace, old_plugins)
+        new_names = [name for name in unsimulated if name not in self._logged]
+        self._logged.update(new_names)
+        if new_names:
+            names = joined(new_names)
             self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
-        for name in new:
-            if (other := alternative_to(name)) is not None:
-                self.node.get_logger().info(phrase("instead of {name}, use {other}", name=name, other=other))
+        for name in new_names:
+            if (alternative := alternative_to(name)) is not None:
+                self.node.get_logger().info(phrase("instead of {name}, use {other}", name=name, other=alternative))
 
-    def _class(self, place: PluginPlace) -> PluginClass | None:
+    def _find_class(self, place: PluginPlace) -> PluginClass | None:
         if place.plugin is None:
             assert place.sensor is not None
             return sensor_class(place.sensor.sensor.type)
         filename, original = place.plugin.filename, original_library(place.plugin.name)
-        found = plugin_class(library_name(filename))
-        if found is None and (found := plugin_class(original)) is not None and filename not in self._logged:
+        class_ = plugin_class(library_name(filename))
+        if class_ is None and (class_ := plugin_class(original)) is not None and filename not in self._logged:
             self._logged.add(filename)
-            copied = phrase(
-                "'{copy}' is simulated as '{original}', whose class it names", copy=filename, original=original
+            notice = phrase(
+                "'{copy}' is simulated as '{original}', because its plugin name is a class of that library",
+                copy=filename,
+                original=original,
             )
-            self.node.get_logger().info(copied)
-        return found
+            self.node.get_logger().info(notice)
+        return class_
 
     def _begin(
         self,
@@ -359,12 +361,12 @@ class SimulationServer:
         kind: PluginClass,
         place: PluginPlace,
         namespace: str,
-        before: Sequence[SimulatedPlugin[object]],
+        old_plugins: Sequence[SimulatedPlugin[object]],
     ) -> None:
-        """Start a plugin or sensor, and let it resume from an unchanged predecessor in `before`."""
+        """Start a plugin or sensor, and let it resume from its unchanged previous instance in `old_plugins`, if any."""
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)
-        made: list[SimulatedPlugin[object]] = []
+        started: list[SimulatedPlugin[object]] = []
 
         def start() -> None:
             parameters, findings = parameters_from(
@@ -372,15 +374,17 @@ class SimulationServer:
             )
             self.report(findings)
             plugin = kind(place, node, parameters, self)
-            made.append(plugin)
+            started.append(plugin)
             self._plugins[owner].append(plugin)
             plugin.start()
-            same = next((simulated_plugin for simulated_plugin in before if plugin.is_like(simulated_plugin)), None)
-            if same is not None:
-                plugin.resume(same)
+            predecessor = next(
+                (simulated_plugin for simulated_plugin in old_plugins if plugin.is_like(simulated_plugin)), None
+            )
+            if predecessor is not None:
+                plugin.resume(predecessor)
 
         calls.call(start)
-        if not made:
+        if not started:
             self._forget_node(place, node)
             node.close()
 
@@ -388,12 +392,12 @@ class SimulationServer:
         """Log the error of a plugin or sensor, and end that plugin; the others continue."""
         self._log_failure(place, error)
         running = self._plugins.get(owner, [])
-        ended = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
+        failed_plugins = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
         running[:] = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is not place]
-        self._end(ended)
+        self._close_plugins(failed_plugins)
 
     def _log_failure(self, place: PluginPlace, error: Exception) -> None:
-        self.report(findings_of(error, place.name, place.element))
+        self.report(error_findings(error, place.name, place.element))
         if not isinstance(error, LinkwrightError):
             for function in self.on_failure:
                 function(error)
@@ -412,16 +416,16 @@ class SimulationServer:
                 self.exchange,
                 owned=False,
                 qos={},
-                usual=self._usual,
+                usual=self._used_usual_names,
                 bridged=self._bridged,
                 now_ns=self._now_ns,
                 calls=calls,
             )
-        described = node_of(place.name, place.element, namespace)
-        full_name = described.full_name
+        node_description = node_of(place.name, place.element, namespace)
+        full_name = node_description.full_name
         if full_name in self._node_names:
             message = phrase(
-                "plugin '{plugin}' is not loaded: another plugin already has the node name '{name}'",
+                "plugin '{plugin}' is not loaded: another plugin already uses the node name '{name}'",
                 plugin=place.name,
                 name=full_name,
             )
@@ -430,25 +434,25 @@ class SimulationServer:
             raise LinkwrightError(Diagnostic("SIM135", message, span, hint=hint, source=source))
         node = Node(
             self.node.graph,
-            described.name,
-            namespace=described.namespace,
-            parameters={"use_sim_time": True, **described.parameters},
-            remappings=described.remappings,
+            node_description.name,
+            namespace=node_description.namespace,
+            parameters={"use_sim_time": True, **node_description.parameters},
+            remappings=node_description.remappings,
         )
         self._node_names.add(full_name)
         node.graph.creators[node.get_logger().name] = self.node.get_logger().name
         return PluginNode(
-            node, self.exchange, owned=True, qos=described.qos, usual=None, now_ns=self._now_ns, calls=calls
+            node, self.exchange, owned=True, qos=node_description.qos, usual=None, now_ns=self._now_ns, calls=calls
         )
 
     def _now_ns(self) -> int:
         return self.simulation.time
 
     def _warn_unsimulated(self, elements: Iterable[str]) -> None:
-        new = [element for element in elements if element not in self._logged]
-        self._logged.update(new)
-        if new:
-            self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new)))
+        new_names = [element for element in elements if element not in self._logged]
+        self._logged.update(new_names)
+        if new_names:
+            self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new_names)))
 
     @contextmanager
     def _logging_failures(self, place: PluginPlace) -> Iterator[None]:
@@ -458,16 +462,16 @@ class SimulationServer:
         except Exception as error:  # noqa: BLE001 - a plugin of any world or package may raise anything
             self._log_failure(place, error)
 
-    def report(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
-        """Log findings, each only once, and add those on a model to `findings`.
+    def report(self, findings: Iterable[Diagnostic], model: str = _WORLD_OWNER) -> None:
+        """Log findings, each only once, and add the findings on a model to `findings`.
 
         They remain in `findings` until the model is removed.
         """
-        found = list(findings)
-        if found and model != _WORLD:
-            self._findings.setdefault(model, []).extend(found)
-            self._findings_changed()
-        for diagnostic in found:
+        reported = list(findings)
+        if reported and model != _WORLD_OWNER:
+            self._findings.setdefault(model, []).extend(reported)
+            self._call_on_findings()
+        for diagnostic in reported:
             text = f"{diagnostic.span}: {diagnostic.message}" if diagnostic.span else str(diagnostic.message)
             if text in self._logged:
                 continue
@@ -480,26 +484,26 @@ class SimulationServer:
                 logger.warning(line)
 
     def _forget_findings(self, models: Collection[str]) -> None:
-        gone = models & self._findings.keys()
-        for name in gone:
+        models_with_findings = models & self._findings.keys()
+        for name in models_with_findings:
             del self._findings[name]
-        if gone:
-            self._findings_changed()
+        if models_with_findings:
+            self._call_on_findings()
 
-    def _findings_changed(self) -> None:
+    def _call_on_findings(self) -> None:
         for function in self.on_findings:
             function()
 
 
 def is_shared(place: PluginPlace) -> bool:
     """Return whether a plugin or sensor shares the simulator's node."""
-    return place.plugin is None or is_of_gz(place.plugin.filename)
+    return place.plugin is None or is_gz_library(place.plugin.filename)
 
 
-def _kinds(place: PluginPlace) -> list[str]:
-    """Return the library or sensor type that is not simulated, for the log.
+def _unsimulated_names(place: PluginPlace) -> list[str]:
+    """Return the library or sensor type of a plugin that is not simulated, as a list for the log.
 
-    The list is empty for a library whose work the simulation does itself.
+    The list is empty if the simulation itself does the work of the library.
     """
     if place.plugin is None:
         return [] if place.sensor is None else [place.sensor.sensor.type]

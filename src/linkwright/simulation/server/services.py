@@ -31,7 +31,7 @@ from linkwright.simulation.server.worlds import LoadedWorld
 from linkwright.simulation.server.wrenches import Wrench, Wrenches
 
 _OK, _WRONG_STATE, _FAILED = 1, 3, 4
-"""Results of simulation_interfaces/msg/Result."""
+"""The codes of simulation_interfaces/msg/Result that are returned here."""
 
 
 class Progress(Protocol):
@@ -59,10 +59,10 @@ class Services:
     """The services of a simulator, which are handled in the simulation's thread.
 
     Args:
-        server: the simulation.
+        server: the simulation to which the services apply.
         runner: advances the simulation.
-        node: the node of the simulator.
-        world: the simulated world.
+        node: the simulator's node, which offers the services.
+        world: the world that is simulated at the start.
         library: the robot descriptions that the process has read.
 
     Attributes:
@@ -85,14 +85,14 @@ class Services:
         self._library = library
         self._entities = Entities(server.simulation)
         self._wrenches = Wrenches(server.simulation)
-        for kind, name, callback in (
+        for service_type, name, callback in (
             ("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", self._spawn),
             ("gazebo_msgs/srv/DeleteEntity", "/delete_entity", self._delete),
             ("gazebo_msgs/srv/GetModelList", "/get_model_list", self._list),
             ("gazebo_msgs/srv/GetEntityState", "/get_entity_state", self._get_state),
             ("gazebo_msgs/srv/SetEntityState", "/set_entity_state", self._set_state),
             ("gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", self._push),
-            ("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", self._let_go),
+            ("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", self._clear_wrenches),
             ("std_srvs/srv/Empty", "/pause_physics", self._pause),
             ("std_srvs/srv/Empty", "/unpause_physics", self._resume),
             ("std_srvs/srv/Empty", "/reset_simulation", self._reset),
@@ -100,7 +100,7 @@ class Services:
             ("simulation_interfaces/srv/StepSimulation", "/step_simulation", self._step),
             ("simulation_interfaces/srv/LoadWorld", "/load_world", self.worlds.answer),
         ):
-            node.service(kind, name, callback)
+            node.service(service_type, name, callback)
 
     # --- models -------------------------------------------------------------------------------------------------------
 
@@ -122,9 +122,9 @@ class Services:
         return self._put(read_entity(text, self._server.simulation.finder, self._library), name, pose, namespace)
 
     def _put(self, entity: Entity, name: str, pose: Transform, namespace: str) -> str:
-        placed = compose(pose, transform_of(entity.model.pose.pose))
+        world_pose = compose(pose, transform_of(entity.model.pose.pose))
         name = name or entity.model.name
-        self._server.spawn(entity.model, name, placed, namespace)
+        self._server.spawn(entity.model, name, world_pose, namespace)
         self._server.report(entity.diagnostics, name)
         return name
 
@@ -180,26 +180,32 @@ class Services:
     # --- poses of entities --------------------------------------------------------------------------------------------
 
     def _get_state(self, request: Any, response: Any) -> Any:
-        return self._entities.answer_get("/get_entity_state", request, response, self._server.node.get_logger().error)
+        return self._entities.fill_get_response(
+            "/get_entity_state", request, response, self._server.node.get_logger().error
+        )
 
     def _set_state(self, request: Any, response: Any) -> Any:
-        return self._entities.answer_set("/set_entity_state", request, response, self._server.node.get_logger().error)
+        return self._entities.fill_set_response(
+            "/set_entity_state", request, response, self._server.node.get_logger().error
+        )
 
     def _push(self, request: Any, response: Any) -> Any:
         def push() -> str:
             link = self._entities.link(request.link_name)
-            turn = self._entities.frame(request.reference_frame)[3:]
-            force, torque = (rotate(turn, numbers(item)) for item in (request.wrench.force, request.wrench.torque))
+            orientation = self._entities.frame(request.reference_frame)[3:]
+            force, torque = (
+                rotate(orientation, numbers(vector)) for vector in (request.wrench.force, request.wrench.torque)
+            )
             duration = request.duration.nanoseconds
             start = request.start_time.nanoseconds
-            begin = max(start, self._server.simulation.time)
-            end = None if duration < 0 else begin + duration
-            self._wrenches.add(link, Wrench(force, torque, numbers(request.reference_point), begin, end))
+            start_time = max(start, self._server.simulation.time)
+            end = None if duration < 0 else start_time + duration
+            self._wrenches.add(link, Wrench(force, torque, numbers(request.reference_point), start_time, end))
             return ""
 
         return fill_response(response, push)
 
-    def _let_go(self, request: Any, response: Any) -> Any:
+    def _clear_wrenches(self, request: Any, response: Any) -> Any:
         try:
             self._wrenches.clear(self._entities.link(request.link_name))
         except LinkwrightError as error:

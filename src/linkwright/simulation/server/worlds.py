@@ -1,4 +1,4 @@
-"""Finds and reads the world to simulate."""
+"""Lookup and reading of the world to simulate."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class LoadedWorld(NamedTuple):
 
     Attributes:
         world: the parsed world.
-        finder: the finder of the world's files.
-        diagnostics: findings about the world.
+        finder: finds the models and meshes to which the world refers.
+        diagnostics: the findings about the world and its files.
         path: the file of the world.
         files: all files from which the world was read.
-        read_ns: a time in nanoseconds since the epoch before which none of the files was read.
+        read_ns: the time when reading began, in nanoseconds since the epoch.
     """
 
     world: World
@@ -71,10 +71,10 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
     if not description.sdf.worlds:
-        wrong = [diagnostic for diagnostic in description.diagnostics if has_errors([diagnostic])]
+        errors = [diagnostic for diagnostic in description.diagnostics if has_errors([diagnostic])]
         message = phrase("there is no world in '{path}'", path=str(path))
         hint = phrase("add a model to a world: linkwright sim empty {path}", path=str(path))
-        raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
+        raise LinkwrightError(*errors or [Diagnostic("SIM151", message, hint=hint)])
     world = description.sdf.worlds[0]
     count_links(world.models)
     return LoadedWorld(world, resources, description.diagnostics, path, description.files, read_ns)
@@ -90,7 +90,9 @@ def _found(name: str, finder: ResourceFinder) -> Path:
     path = finder.world(name)
     if path is not None:
         return path
-    known = finder.worlds()
+    world_names = finder.worlds()
     message = phrase("there is no world '{name}'", name=name)
-    hint = did_you_mean(name, known) or phrase("give a file, or one of {names}", names=joined(sorted(known)[:8]))
+    hint = did_you_mean(name, world_names) or phrase(
+        "give a file, or one of {names}", names=joined(sorted(world_names)[:8])
+    )
     raise LinkwrightError(Diagnostic("SIM150", message, hint=hint))

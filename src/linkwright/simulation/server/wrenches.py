@@ -39,12 +39,12 @@ class Wrenches:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._acting: dict[str, list[Wrench]] = {}
+        self._wrenches: dict[str, list[Wrench]] = {}
         self._scheduled = False
 
     def add(self, link: str, wrench: Wrench) -> None:
         """Add a wrench on a link, which is applied from the next step on."""
-        self._acting.setdefault(link, []).append(wrench)
+        self._wrenches.setdefault(link, []).append(wrench)
         if not self._scheduled:
             self._scheduled = True
             self._simulation.call_every(0, self._apply_wrenches)
@@ -52,29 +52,29 @@ class Wrenches:
 
     def clear(self, link: str) -> None:
         """Remove all wrenches on a link."""
-        if self._acting.pop(link, None) and link in self._simulation.scene.bodies:
+        if self._wrenches.pop(link, None) and link in self._simulation.scene.bodies:
             self._simulation.push(link, (0.0, 0.0, 0.0))
 
     def _apply_wrenches(self) -> None:
         now, simulation = self._simulation.time, self._simulation
-        for link, wrenches in tuple(self._acting.items()):
-            left = [wrench for wrench in wrenches if wrench.end is None or now < wrench.end]
-            self._acting[link] = left
-            if not left or link not in simulation.scene.bodies:
-                del self._acting[link]
+        for link, wrenches in tuple(self._wrenches.items()):
+            remaining = [wrench for wrench in wrenches if wrench.end is None or now < wrench.end]
+            self._wrenches[link] = remaining
+            if not remaining or link not in simulation.scene.bodies:
+                del self._wrenches[link]
                 if link in simulation.scene.bodies:
                     simulation.push(link, (0.0, 0.0, 0.0))
                 continue
-            force, torque = self._sum(link, [wrench for wrench in left if wrench.begin <= now])
+            force, torque = self._total_wrench(link, [wrench for wrench in remaining if wrench.begin <= now])
             simulation.push(link, force.tolist(), torque.tolist())
 
-    def _sum(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
+    def _total_wrench(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
         """Return the total force in N, and the total torque in N m about the centre of mass of a link."""
         pose = self._simulation.link_pose(link)
-        turn, centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
+        rotation, mass_centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)
         for wrench in wrenches:
-            arm = turn @ np.asarray(wrench.point) + np.asarray(pose[:3]) - centre
+            arm = rotation @ np.asarray(wrench.point) + np.asarray(pose[:3]) - mass_centre
             force += wrench.force
             torque += np.asarray(wrench.torque) + np.cross(arm, wrench.force)
         return force, torque

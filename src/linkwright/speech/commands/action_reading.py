@@ -30,18 +30,18 @@ from linkwright.speech.commands.actions import (
 from linkwright.speech.commands.command_set import Place
 from linkwright.speech.commands.reading import Keys
 
-_SLOT = re.compile(r"\{(\w+)\}")
-_GRIPPER = "control_msgs/action/GripperCommand"
+_SLOT_PATTERN = re.compile(r"\{(\w+)\}")
+_GRIPPER_TYPE = "control_msgs/action/GripperCommand"
 
 
 class ActionReader:
     """Reads the action of one command.
 
     Args:
-        document: the document with the command.
+        document: the document that contains the command.
         keys: the keys of the command.
         places: the places that the file defines.
-        samples: an example value for each slot that all phrases of the command have.
+        samples: an example value for each slot that occurs in all phrases of the command.
 
     Attributes:
         KINDS: the keys that define the action of a command.
@@ -56,31 +56,31 @@ class ActionReader:
         self._document, self._keys, self._places, self._samples = document, keys, places, samples
 
     def read(self) -> Action:
-        """Read the action.
+        """Return the action of the command.
 
         Raises:
-            LinkwrightError: VOICE302, there is not exactly one action, or it is invalid; VOICE305, it does not fit its
-                type.
+            LinkwrightError: VOICE302, there is not exactly one action, or it is invalid; VOICE305, its fields do not
+                fit the type of its message.
         """
-        given = [kind for kind in self.KINDS if self._keys.node(kind) is not None]
-        if len(given) != 1:
-            known = ", ".join(self.KINDS)
+        kinds = [kind for kind in self.KINDS if self._keys.node(kind) is not None]
+        if len(kinds) != 1:
+            all_kinds = ", ".join(self.KINDS)
             message = (
                 phrase(
                     "{what} has two actions, '{first}' and '{second}'",
                     what=self._keys.what,
-                    first=given[0],
-                    second=given[1],
+                    first=kinds[0],
+                    second=kinds[1],
                 )
-                if given
+                if kinds
                 else phrase("{what} has no action", what=self._keys.what)
             )
-            raise self._keys.error(message, None, phrase("give it one of {known}", known=known))
+            raise self._keys.error(message, None, phrase("give it one of {known}", known=all_kinds))
         readers: dict[str, Callable[[], Action]] = {
             "drive": self._drive,
             "stop": self._stop,
             "scale_speed": self._scale_speed,
-            "set_speed": lambda: SetSpeed(self._amount(self._keys, "set_speed")),
+            "set_speed": lambda: SetSpeed(self._read_amount(self._keys, "set_speed")),
             "go_to": self._go_to,
             "gripper": self._gripper,
             "action": self._action,
@@ -88,13 +88,13 @@ class ActionReader:
             "publish": self._publish,
             "launch": self._launch,
         }
-        return readers[given[0]]()
+        return readers[kinds[0]]()
 
-    def _below(self, key: str, known: tuple[str, ...]) -> Keys:
-        return Keys(self._document, self._keys.node(key), phrase("'{key}'", key=key), known)
+    def _nested_keys(self, key: str, allowed: tuple[str, ...]) -> Keys:
+        return Keys(self._document, self._keys.node(key), phrase("'{key}'", key=key), allowed)
 
     def _drive(self) -> Action:
-        keys = self._below("drive", ("x", "y", "turn", "duration", "distance", "angle"))
+        keys = self._nested_keys("drive", ("x", "y", "turn", "duration", "distance", "angle"))
         limits = [name for name in ("duration", "distance", "angle") if keys.node(name) is not None]
         x, y, turn = (keys.number(name) for name in ("x", "y", "turn"))
         if not (x or y or turn):
@@ -108,13 +108,13 @@ class ActionReader:
             raise keys.error(phrase("a rotation has no 'distance': give 'angle'"), keys.node("distance"))
         if limits == ["angle"] and not turn:
             raise keys.error(phrase("a straight drive has no 'angle': give 'distance'"), keys.node("angle"))
-        amounts = {name: self._amount(keys, name) for name in limits}
+        amounts = {name: self._read_amount(keys, name) for name in limits}
         return Drive(x, y, turn, **amounts)
 
     def _stop(self) -> Action:
         if isinstance(self._keys.node("stop"), yaml.MappingNode):
-            keys = self._below("stop", ("publish",))
-            return Stop((self._published(keys.node("publish")),))
+            keys = self._nested_keys("stop", ("publish",))
+            return Stop((self._publication(keys.node("publish")),))
         if not self._keys.flag("stop"):
             raise self._keys.error(phrase("'stop' must be true"), self._keys.node("stop"))
         return Stop()
@@ -132,10 +132,10 @@ class ActionReader:
         if isinstance(node, yaml.ScalarNode):
             keys, key, action = self._keys, "go_to", ""
         else:
-            keys, key = self._below("go_to", ("place", "action")), "place"
+            keys, key = self._nested_keys("go_to", ("place", "action")), "place"
             action = keys.text("action")
         text = keys.text(key, needed=True)
-        slot = self._slot(text, keys, key)
+        slot = self._find_slot(text, keys, key)
         if slot is None and text not in self._places:
             message = phrase("there is no place '{name}'", name=text)
             raise keys.error(message, keys.node(key), did_you_mean(text, list(self._places)))
@@ -144,68 +144,70 @@ class ActionReader:
         return GoTo(slot or text, action or "navigate_to_pose")
 
     def _gripper(self) -> Action:
-        keys = self._below("gripper", ("action", "position", "max_effort"))
+        keys = self._nested_keys("gripper", ("action", "position", "max_effort"))
         goal = {"command": {"position": keys.number("position", needed=True), "max_effort": keys.number("max_effort")}}
-        return SendGoal(keys.text("action", needed=True), _GRIPPER, goal)
+        return SendGoal(keys.text("action", needed=True), _GRIPPER_TYPE, goal)
 
     def _action(self) -> Action:
-        keys = self._below("action", ("name", "type", "goal"))
-        name, kind, goal = self._call(keys, "goal", lambda name: get_action(name).Goal)
-        return SendGoal(name, kind, goal)
+        keys = self._nested_keys("action", ("name", "type", "goal"))
+        name, type_name, goal = self._call(keys, "goal", lambda name: get_action(name).Goal)
+        return SendGoal(name, type_name, goal)
 
     def _service(self) -> Action:
-        keys = self._below("service", ("name", "type", "request"))
-        name, kind, request = self._call(keys, "request", lambda name: get_service(name).Request)
-        return CallService(name, kind, request)
+        keys = self._nested_keys("service", ("name", "type", "request"))
+        name, type_name, request = self._call(keys, "request", lambda name: get_service(name).Request)
+        return CallService(name, type_name, request)
 
     def _publish(self) -> Action:
-        return self._published(self._keys.node("publish"))
+        return self._publication(self._keys.node("publish"))
 
-    def _published(self, node: yaml.Node | None) -> Publish:
+    def _publication(self, node: yaml.Node | None) -> Publish:
         keys = Keys(self._document, node, phrase("'{key}'", key="publish"), ("topic", "type", "message"))
-        name, kind, message = self._call(keys, "message", get_message)
-        return Publish(name, kind, message)
+        name, type_name, message = self._call(keys, "message", get_message)
+        return Publish(name, type_name, message)
 
     def _launch(self) -> Action:
-        keys = self._below("launch", ("package", "file", "arguments"))
+        keys = self._nested_keys("launch", ("package", "file", "arguments"))
         package, file = keys.text("package", needed=True), keys.text("file", needed=True)
         arguments = self._fields(keys, "arguments")
         for name, value in arguments.items():
             if not str(name).isidentifier() or isinstance(value, dict | list):
-                raise keys.error(phrase("arguments must be names with strings or numbers"), keys.node("arguments"))
+                raise keys.error(phrase("'arguments' must map names to strings or numbers"), keys.node("arguments"))
         if file.startswith("-") or package.startswith("-"):
             raise keys.error(phrase("'launch' must name a package and a file"))
         return Launch(package, file, arguments)
 
-    def _call(self, keys: Keys, fields: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
-        """Return the name, type and fields of a message to send, checked with an example value in each slot."""
-        name = keys.text("topic" if fields == "message" else "name", needed=True)
-        kind = keys.text("type", needed=True)
-        values = self._fields(keys, fields)
-        at = "type"
+    def _call(self, keys: Keys, fields_key: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
+        """Return name, type and fields of a message to send. They are checked with an example value in each slot."""
+        name = keys.text("topic" if fields_key == "message" else "name", needed=True)
+        type_name = keys.text("type", needed=True)
+        values = self._fields(keys, fields_key)
+        checked_key = "type"
         try:
-            message = find(kind)()
-            at = fields
+            message = find(type_name)()
+            checked_key = fields_key
             set_fields(message, fill_template(values, self._samples), expand_header_auto=True, expand_time_now=True)
         except LinkwrightError as error:
-            found = error.diagnostics[0]
-            span = self._document.span(keys.node(at) or keys.node("type"))
+            diagnostic = error.diagnostics[0]
+            span = self._document.span(keys.node(checked_key) or keys.node("type"))
             source = self._document.source
-            raise LinkwrightError(Diagnostic("VOICE305", found.message, span, hint=found.hint, source=source)) from None
-        return name, kind, values
+            raise LinkwrightError(
+                Diagnostic("VOICE305", diagnostic.message, span, hint=diagnostic.hint, source=source)
+            ) from None
+        return name, type_name, values
 
     def _fields(self, keys: Keys, key: str) -> dict[str, Any]:
         values = keys.plain(key)
         if not isinstance(values, dict):
             raise keys.error(phrase("'{key}' must be a mapping of keys to values", key=key), keys.node(key))
-        for text in _texts_in(values):
-            for name in _SLOT.findall(text):
-                self._slot(f"{{{name}}}", keys, key)
+        for text in _collect_texts(values):
+            for name in _SLOT_PATTERN.findall(text):
+                self._find_slot(f"{{{name}}}", keys, key)
         return values
 
-    def _amount(self, keys: Keys, key: str) -> Amount:
+    def _read_amount(self, keys: Keys, key: str) -> Amount:
         node = keys.node(key)
-        slot = self._slot(str(node.value), keys, key) if isinstance(node, yaml.ScalarNode) else None
+        slot = self._find_slot(str(node.value), keys, key) if isinstance(node, yaml.ScalarNode) else None
         if slot is not None:
             if isinstance(self._samples[slot.name], str):
                 raise keys.error(phrase("'{key}' must be a number or a quantity", key=key), node)
@@ -215,13 +217,13 @@ class ActionReader:
             raise keys.error(phrase("'{key}' must be more than 0", key=key), node)
         return value
 
-    def _slot(self, text: str, keys: Keys, key: str) -> Slot | None:
-        """Return the slot that a text names.
+    def _find_slot(self, text: str, keys: Keys, key: str) -> Slot | None:
+        """Return the slot that a text consists of; None if it is not a slot.
 
         Raises:
-            LinkwrightError: a phrase of the command lacks it.
+            LinkwrightError: a phrase of the command lacks this slot.
         """
-        match = _SLOT.fullmatch(text)
+        match = _SLOT_PATTERN.fullmatch(text)
         if match is None:
             return None
         if match[1] not in self._samples:
@@ -230,9 +232,9 @@ class ActionReader:
         return Slot(match[1])
 
 
-def _texts_in(value: Any) -> list[str]:
+def _collect_texts(value: Any) -> list[str]:
     if isinstance(value, dict):
-        return [text for part in value.values() for text in _texts_in(part)]
+        return [text for item in value.values() for text in _collect_texts(item)]
     if isinstance(value, list):
-        return [text for part in value for text in _texts_in(part)]
+        return [text for part in value for text in _collect_texts(part)]
     return [value] if isinstance(value, str) else []

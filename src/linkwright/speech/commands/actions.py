@@ -1,4 +1,4 @@
-"""Actions of commands, as the command file declares them."""
+"""The actions of commands, as a command file declares them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from linkwright.speech.commands.phrases import Value
 
 Values: TypeAlias = Mapping[str, Value]
-"""Slot -> its spoken value."""
+"""The spoken value of each slot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +24,15 @@ Amount: TypeAlias = float | Slot
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Drive for a distance, an angle or a time, or until the silence timeout.
+    """Drive for a distance, an angle or a time, or until no command has arrived for the silence timeout.
 
     Attributes:
-        x: forward, as a multiple of the robot's speed; backward is negative.
-        y: to the left, as a multiple of the robot's speed.
-        turn: to the left, as a multiple of the robot's turning speed.
-        duration: the duration in s.
-        distance: the distance in m.
-        angle: the angle in rad.
+        x: the speed forward, as a multiple of the robot's speed; negative for backward.
+        y: the speed to the left, as a multiple of the robot's speed.
+        turn: the angular speed to the left, as a multiple of the robot's turning speed.
+        duration: the duration in s; None for no limit.
+        distance: the distance in m; None for no limit.
+        angle: the angle in rad; None for no limit.
     """
 
     x: float = 0.0
@@ -48,7 +48,7 @@ class ScaleSpeed:
     """Multiply the speed for all following commands.
 
     Attributes:
-        factor: the factor of the speeds.
+        factor: the factor by which the current speed is multiplied.
     """
 
     factor: float
@@ -71,7 +71,7 @@ class GoTo:
 
     Attributes:
         place: the name of a place in the file.
-        action: the name of the action.
+        action: the name of the action, such as ``navigate_to_pose``.
     """
 
     place: str | Slot
@@ -125,11 +125,11 @@ class Publish:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Stop, and end everything that commands have started.
+    """Stop the robot, and end everything that commands have started.
 
     Attributes:
-        publishes: messages that stop other nodes that drive the robot; also published before a command starts another
-            motion.
+        publishes: messages that stop other nodes which drive the robot; they are also published before a command starts
+                another motion.
     """
 
     publishes: tuple[Publish, ...] = ()
@@ -137,7 +137,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """Start a launch file, which the next stop ends. No part of it is passed to a shell.
+    """Start a launch file, which runs until the next stop. It is not passed to a shell.
 
     Attributes:
         package: the package that contains the file.
@@ -152,22 +152,22 @@ class Launch:
 
 Action: TypeAlias = Drive | Stop | ScaleSpeed | SetSpeed | GoTo | SendGoal | CallService | Publish | Launch
 MOTIONS = Drive, GoTo, Launch
-"""Actions that replace another motion."""
+"""The actions that replace a running motion."""
 
 
 def fill_template(template: Any, values: Values) -> Any:
     """Fill a template with the values of slots.
 
-    A text that consists of one slot becomes its value; other texts have values inserted.
+    A text that consists of one slot becomes its value; in other texts, slots are replaced by their formatted values.
 
     Args:
-        template: texts, numbers, and lists and mappings of them.
+        template: a text, a number, or lists and mappings of them.
         values: the values of the slots.
     """
     if isinstance(template, Mapping):
         return {key: fill_template(value, values) for key, value in template.items()}
     if isinstance(template, list):
-        return [fill_template(part, values) for part in template]
+        return [fill_template(item, values) for item in template]
     if not isinstance(template, str):
         return template
     for name, value in values.items():
@@ -177,9 +177,9 @@ def fill_template(template: Any, values: Values) -> Any:
     return template
 
 
-def amount(given: Amount | None, values: Values) -> float | None:
-    """Return the number that an amount represents, or None if there is no amount."""
-    return float(values[given.name]) if isinstance(given, Slot) else given
+def resolve_amount(amount_or_slot: Amount | None, values: Values) -> float | None:
+    """Return an amount as a number; None if there is no amount."""
+    return float(values[amount_or_slot.name]) if isinstance(amount_or_slot, Slot) else amount_or_slot
 
 
 def format_value(value: Value) -> str:

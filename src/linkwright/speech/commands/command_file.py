@@ -1,4 +1,4 @@
-"""The command file in YAML, read strictly, with errors at their positions."""
+"""Read the command file in YAML strictly, and report errors with their positions."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from linkwright.speech.commands.action_reading import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
 from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Place
 from linkwright.speech.commands.phrases import Template, TemplateError, templates
-from linkwright.speech.commands.quantities import SAYABLE, quantity
+from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.reading import Keys
 from linkwright.speech.commands.words import Words, words_of
 
 DEFAULT_FILE = Path(__file__).with_name("default.yaml")
-"""The commands of a robot that was given none."""
+"""The commands of a robot that has no command file of its own."""
 
-MOST_PHRASES = 5000
-"""Engines get all phrases, one by one."""
+MAX_PHRASES = 5000
+"""The maximum number of phrases in a language, because engines receive them one by one."""
 
-_TOP = ("places", "objects", "said", "yes", "no", "commands")
-_PLACE = ("x", "y", "yaw", "frame", "names")
+_TOP_KEYS = ("places", "objects", "said", "yes", "no", "commands")
+_PLACE_KEYS = ("x", "y", "yaw", "frame", "names")
 
 
 def read_command_file(path: str | Path) -> CommandSet:
@@ -59,10 +59,10 @@ class _Reader:
         self._document = YamlDocument(source, "VOICE302")
         self._names: dict[str, dict[Words, str]] = {"place": {}, "object": {}}
         self._slot_values: dict[str, dict[str, tuple[str, ...]]] = {}
-        self._seen: dict[tuple[Any, ...], str] = {}
+        self._intent_by_pieces: dict[tuple[Any, ...], str] = {}
 
     def read(self) -> CommandSet:
-        top = Keys(self._document, self._document.root, phrase("a file of commands"), _TOP)
+        top = Keys(self._document, self._document.root, phrase("a file of commands"), _TOP_KEYS)
         commands = top.mapping("commands")
         if commands is None:
             raise top.error(phrase("'commands' is missing: it lists the commands for the robot"))
@@ -74,116 +74,124 @@ class _Reader:
             self._name("object", name, node)
         for slot, node in self._entries(top, "said"):
             self._add_slot_values(slot, node, top)
-        answers = {name: self._phrases(top.node(name), ()) for name in ("yes", "no")}
-        read = tuple(self._command(intent, node, places) for intent, node in commands)
-        found = CommandSet(read, self._names, self._slot_values, places, answers)
-        self._count(found)
-        return found
+        answers = {name: self._read_phrases(top.node(name), ()) for name in ("yes", "no")}
+        command_list = tuple(self._command(intent, node, places) for intent, node in commands)
+        command_set = CommandSet(command_list, self._names, self._slot_values, places, answers)
+        self._count(command_set)
+        return command_set
 
     def _entries(self, top: Keys, key: str) -> list[tuple[str, yaml.Node]]:
         return top.mapping(key) or []
 
     def _place(self, name: str, node: yaml.Node) -> Place:
-        keys = Keys(self._document, node, phrase("the place '{name}'", name=name), _PLACE)
+        keys = Keys(self._document, node, phrase("the place '{name}'", name=name), _PLACE_KEYS)
         self._name("place", name, keys.node("names"))
         frame = keys.text("frame") or "map"
         return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
 
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
-        """Read the spoken names of a place or an object; without names, its key is used."""
+        """Read the spoken names of a place or an object; its key is the name if there are no others."""
         texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
-        spoken = self._slot_values.setdefault(slot, {})
+        spoken_names = self._slot_values.setdefault(slot, {})
         for language, names in texts.items():
-            spoken[language] = (*spoken.get(language, ()), *(text for text, _ in names))
-            for text, where in names:
+            spoken_names[language] = (*spoken_names.get(language, ()), *(text for text, _ in names))
+            for text, text_node in names:
                 words = words_of(text)
                 other = self._names[slot].setdefault(words, name)
                 if other != name:
                     message = phrase("'{text}' is also a name of '{other}'", text=text, other=other)
-                    raise self._error("VOICE304", message, where)
+                    raise self._error("VOICE304", message, text_node)
 
     def _add_slot_values(self, slot: str, node: yaml.Node, top: Keys) -> None:
-        if slot not in SAYABLE:
+        if slot not in GRAMMAR_VALUES:
             raise top.error(
-                phrase("there is no quantity slot '{slot}'", slot=slot), node, did_you_mean(slot, list(SAYABLE))
+                phrase("there is no quantity slot '{slot}'", slot=slot), node, did_you_mean(slot, list(GRAMMAR_VALUES))
             )
         for language, entries in self._texts(node).items():
-            for text, where in entries:
-                if quantity(slot, words_of(text)) is None:
-                    raise self._document.error(phrase("'{text}' is not a value of {slot}", text=text, slot=slot), where)
-            usual = SAYABLE[slot].get(language, ())
-            self._slot_values.setdefault(slot, dict(SAYABLE[slot]))[language] = (*usual, *(text for text, _ in entries))
+            for text, text_node in entries:
+                if parse_quantity(slot, words_of(text)) is None:
+                    raise self._document.error(
+                        phrase("'{text}' is not a value of {slot}", text=text, slot=slot), text_node
+                    )
+            default_values = GRAMMAR_VALUES[slot].get(language, ())
+            self._slot_values.setdefault(slot, dict(GRAMMAR_VALUES[slot]))[language] = (
+                *default_values,
+                *(text for text, _ in entries),
+            )
 
     def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Place]) -> Command:
-        what = phrase("the command '{intent}'", intent=intent)
-        keys = Keys(self._document, node, what, ("phrases", "confirm", "response", "moves", *ActionReader.KINDS))
+        title = phrase("the command '{intent}'", intent=intent)
+        keys = Keys(self._document, node, title, ("phrases", "confirm", "response", "moves", *ActionReader.KINDS))
         if keys.node("phrases") is None:
-            raise keys.error(phrase("{what} has no 'phrases': it cannot be spoken", what=what))
-        phrases = self._phrases(keys.node("phrases"), tuple(self._names), intent)
-        every = [set(template.slots) for phrase in phrases.values() for template in phrase]
-        slots = set.intersection(*every) if every else set()
+            raise keys.error(phrase("{what} has no 'phrases': it cannot be spoken", what=title))
+        phrases = self._read_phrases(keys.node("phrases"), tuple(self._names), intent)
+        slot_sets = [set(template.slots) for phrase in phrases.values() for template in phrase]
+        slots = set.intersection(*slot_sets) if slot_sets else set()
         samples = {slot: next(iter(self._names[slot].values()), "") if slot in self._names else 1.0 for slot in slots}
         action = ActionReader(self._document, keys, places, samples).read()
-        if keys.node("stop") is not None and any(every):
+        if keys.node("stop") is not None and any(slot_sets):
             raise keys.error(phrase("a phrase of 'stop' must not have slots"), keys.node("phrases"))
         moves = isinstance(action, MOTIONS) if keys.node("moves") is None else keys.flag("moves")
-        response = self._one_text(keys.node("response"))
-        return Command(intent, phrases, action, self._question(keys), response, moves)
+        response = self._first_texts(keys.node("response"))
+        return Command(intent, phrases, action, self._read_question(keys), response, moves)
 
-    def _question(self, keys: Keys) -> ByLanguage:
+    def _read_question(self, keys: Keys) -> ByLanguage:
         node = keys.node("confirm")
         if isinstance(node, yaml.ScalarNode) and node.tag == "tag:yaml.org,2002:bool":
             question = phrase("are you sure?")
             return {language: localized(question, language) for language in LANGUAGES} if keys.flag("confirm") else {}
-        return self._one_text(node)
+        return self._first_texts(node)
 
-    def _one_text(self, node: yaml.Node | None) -> dict[str, str]:
+    def _first_texts(self, node: yaml.Node | None) -> dict[str, str]:
         return {} if node is None else {name: entries[0][0] for name, entries in self._texts(node).items() if entries}
 
-    def _phrases(
+    def _read_phrases(
         self, node: yaml.Node | None, slots: Sequence[str], intent: str = ""
     ) -> dict[str, tuple[Template, ...]]:
-        found: dict[str, tuple[Template, ...]] = {}
+        templates_by_language: dict[str, tuple[Template, ...]] = {}
         for language, texts in (self._texts(node) if node is not None else {}).items():
-            for text, where in texts:
-                found[language] = (*found.get(language, ()), *self._templates(text, where, slots, intent))
-        return found
+            for text, text_node in texts:
+                templates_by_language[language] = (
+                    *templates_by_language.get(language, ()),
+                    *self._parse_templates(text, text_node, slots, intent),
+                )
+        return templates_by_language
 
-    def _templates(self, text: str, where: yaml.Node | None, slots: Sequence[str], intent: str) -> list[Template]:
+    def _parse_templates(self, text: str, node: yaml.Node | None, slots: Sequence[str], intent: str) -> list[Template]:
         try:
-            read = templates(text, slots)
+            parsed = templates(text, slots)
         except TemplateError as error:
             raise self._error(
-                "VOICE303", phrase("the phrase '{text}': {why}", text=text, why=error.args[0]), where
+                "VOICE303", phrase("the phrase '{text}' is invalid: {why}", text=text, why=error.args[0]), node
             ) from None
-        for template in read:
-            other = self._seen.setdefault((template.pieces, template.slots), intent)
+        for template in parsed:
+            other = self._intent_by_pieces.setdefault((template.pieces, template.slots), intent)
             if intent and other != intent:
                 message = phrase("'{text}' is also a phrase of '{other}'", text=template.text, other=other)
-                raise self._error("VOICE304", message, where)
-        return read
+                raise self._error("VOICE304", message, node)
+        return parsed
 
     def _texts(self, node: yaml.Node) -> dict[str, list[tuple[str, yaml.Node | None]]]:
-        """Return texts with their positions by language.
+        """Return the texts of a node by language, each with its node.
 
         The node is a text, a list of texts, or a mapping of languages to these.
         """
         if isinstance(node, yaml.MappingNode):
             keys = Keys(self._document, node, phrase("strings by language"), None)
             return {language: keys.texts(language) for language in keys.names()}
-        what = "texts"
-        return {ANY: Keys.of(self._document, what, node).texts(what)}
+        title = "texts"
+        return {ANY: Keys.of(self._document, title, node).texts(title)}
 
-    def _count(self, found: CommandSet) -> None:
-        languages = {*LANGUAGES, *found.languages}
+    def _count(self, command_set: CommandSet) -> None:
+        languages = {*LANGUAGES, *command_set.languages}
         for language in sorted(languages):
-            count = found.phrase_count(language)
-            if count > MOST_PHRASES:
+            count = command_set.phrase_count(language)
+            if count > MAX_PHRASES:
                 message = phrase(
                     "{count} phrases are possible in '{language}', but engines accept at most {most}",
                     count=count,
                     language=language,
-                    most=MOST_PHRASES,
+                    most=MAX_PHRASES,
                 )
                 hint = phrase("use fewer parts in brackets, fewer slots in a phrase, or shorter lists under 'said'")
                 raise self._error("VOICE306", message, None, hint)

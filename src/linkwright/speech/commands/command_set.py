@@ -1,4 +1,4 @@
-"""A robot's commands: understands texts, and provides the phrases for engines."""
+"""A robot's commands: find the command of a text, and list all phrases for engines."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from math import prod
 
 from linkwright.speech.commands.actions import Action, Stop
 from linkwright.speech.commands.phrases import Names, Template, Value
-from linkwright.speech.commands.quantities import SAYABLE
+from linkwright.speech.commands.quantities import GRAMMAR_VALUES
 from linkwright.speech.commands.words import has_words, words_of
 
 ANY = "any"
-"""The language of phrases that are valid in all languages."""
+"""The language of phrases that are valid in every language."""
 
 ByLanguage = Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place to which a robot can be sent.
+    """A place to which the robot can be sent.
 
     Attributes:
         x, y: the position in metres.
-        yaw: the yaw in radians.
+        yaw: the heading in radians.
         frame: the frame of the pose.
     """
 
@@ -35,15 +35,15 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command.
+    """A command of a command file.
 
     Attributes:
         intent: its name.
         phrases: its phrases by language.
-        action: the action.
-        question: by language, the question before the command is executed; empty to execute it immediately.
+        action: the action that it starts.
+        question: by language, the question to ask before the command is executed; empty to execute it immediately.
         response: by language, the answer; empty for the default answer.
-        moves: whether it replaces another motion.
+        moves: whether it replaces a running motion.
     """
 
     intent: str
@@ -55,13 +55,13 @@ class Command:
 
 
 @dataclass(frozen=True, slots=True)
-class Understood:
-    """A recognized command with its values.
+class Match:
+    """A command that was found in a text.
 
     Attributes:
         command: the command.
         values: the spoken values by slot.
-        language: the language of the phrase; `ANY` for a phrase that is valid in all languages.
+        language: the language of the matching phrase; `ANY` for a phrase that is valid in every language.
     """
 
     command: Command
@@ -75,8 +75,8 @@ class CommandSet:
 
     Attributes:
         commands: the commands in the order of the file.
-        names: for each slot of names, the names by their spoken forms.
-        said: for each slot, its possible spoken values by language.
+        names: for each slot that a name replaces (``place``, ``object``), the names by their spoken forms.
+        said: for each slot that the file lists, its possible spoken values by language.
         places: the places by name.
         answers: for ``yes`` and ``no``, the spoken forms by language.
     """
@@ -87,19 +87,19 @@ class CommandSet:
     places: Mapping[str, Place]
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
-    def understand(self, text: str) -> Understood | None:
-        """Find the command that a text expresses, in any language; return None if there is none.
+    def understand(self, text: str) -> Match | None:
+        """Return the command that a text expresses in any language; None if there is none.
 
-        Of several commands, the one with the most literal words is returned, and of these the first in the file.
+        If several commands fit, the one with the most literal words is returned; of these, the first in the file.
         """
         words = words_of(text)
-        best: tuple[int, Understood] | None = None
+        best: tuple[int, Match] | None = None
         for command in self.commands:
             for language, templates in command.phrases.items():
                 for template in templates:
                     values = template.values(words, self.names)
                     if values is not None and (best is None or template.literal_count > best[0]):
-                        best = template.literal_count, Understood(command, values, language)
+                        best = template.literal_count, Match(command, values, language)
         return None if best is None else best[1]
 
     @property
@@ -115,18 +115,20 @@ class CommandSet:
     def is_stop(self, text: str) -> bool:
         """Return whether a text contains a phrase that stops the robot."""
         words = words_of(text)
-        return any(has_words(words, template.pieces[0]) for stop in self.stops for template in _all(stop.phrases))
+        return any(
+            has_words(words, template.pieces[0]) for stop in self.stops for template in _all_templates(stop.phrases)
+        )
 
-    def is_other(self, text: str) -> bool:
+    def is_other_command(self, text: str) -> bool:
         """Return whether a text is exactly a command that does not stop the robot."""
-        found = self.understand(text)
-        return found is not None and not isinstance(found.command.action, Stop)
+        match = self.understand(text)
+        return match is not None and not isinstance(match.command.action, Stop)
 
     def answer(self, text: str) -> bool | None:
         """Return True if a text means yes, False if it means no, and None for any other text."""
         words = words_of(text)
         for name, is_yes in (("yes", True), ("no", False)):
-            if any(template.values(words, {}) is not None for template in _all(self.answers[name])):
+            if any(template.values(words, {}) is not None for template in _all_templates(self.answers[name])):
                 return is_yes
         return None
 
@@ -144,21 +146,21 @@ class CommandSet:
         """Return the spoken values of each slot in a language."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
-            for slot, texts in {**SAYABLE, **self.said}.items()
+            for slot, texts in {**GRAMMAR_VALUES, **self.said}.items()
         }
 
     def _templates(self, language: str) -> list[Template]:
-        every = [*(command.phrases for command in self.commands), *self.answers.values()]
-        return [template for phrases in every for name in (language, ANY) for template in phrases.get(name, ())]
+        phrase_sets = [*(command.phrases for command in self.commands), *self.answers.values()]
+        return [template for phrases in phrase_sets for name in (language, ANY) for template in phrases.get(name, ())]
 
 
 def choose_text(texts: ByLanguage, language: str) -> str:
-    """Return the text in a language, else in English, else in any language; empty if there is none."""
+    """Return the text in a language, or else for any language, in English, or in another; empty if there is none."""
     for name in (language, ANY, "en"):
         if name in texts:
             return texts[name]
     return next(iter(texts.values()), "")
 
 
-def _all(phrases: Mapping[str, tuple[Template, ...]]) -> list[Template]:
+def _all_templates(phrases: Mapping[str, tuple[Template, ...]]) -> list[Template]:
     return [template for phrase in phrases.values() for template in phrase]

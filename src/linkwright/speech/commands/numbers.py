@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from linkwright.speech.commands.words import Words
 
-_ENGLISH = (
+_ENGLISH_NUMBERS = (
     "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen"
 )
-_SMALL = {word: number for number, word in enumerate((_ENGLISH + " eighteen nineteen").split())} | {
+_UP_TO_NINETEEN = {word: number for number, word in enumerate((_ENGLISH_NUMBERS + " eighteen nineteen").split())} | {
     "oh": 0,
     "nought": 0,
 }
 _TENS = {
-    word: 10 * (at + 2)
-    for at, word in enumerate(["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"])
+    word: 10 * (index + 2)
+    for index, word in enumerate(["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"])
 }
-_ONE = ("a", "an")
+_ARTICLES = ("a", "an")
 _FRACTIONS: dict[Words, float] = {
     ("half",): 0.5,
     ("half", "a"): 0.5,
@@ -31,94 +31,106 @@ _FRACTIONS: dict[Words, float] = {
     ("three", "quarters", "of", "a"): 0.75,
 }
 AND_FRACTION: dict[Words, float] = {("and", "a", "half"): 0.5, ("and", "a", "quarter"): 0.25, ("半",): 0.5}
-"""Fractions that may follow a number, or a number and its unit."""
+"""The fractions that can follow a number, or a number and its unit."""
 
 _DIGITS = {digit: number for number, digit in enumerate("零一二三四五六七八九")} | {"〇": 0, "两": 2}
 _POWERS = {"十": 10, "百": 100, "千": 1000}
 
 
 def number(words: Words) -> float | None:
-    """Return the number, at least 0, that all of the words together mean, or None."""
+    """Return the number, at least 0, that the words mean together; None if they are not a number."""
     if not words:
         return None
     if len(words) == 1 and words[0][0].isdigit():
         return float(words[0])
     if words in _FRACTIONS:
         return _FRACTIONS[words]
-    return _english(words) if words[0].isascii() else _chinese(words)
+    return _parse_english(words) if words[0].isascii() else _parse_chinese(words)
 
 
 def has_number(words: Words) -> bool:
     """Return whether any of the words is a number; the articles "a" and "an" do not count."""
-    return any(word not in _ONE and number((word,)) is not None for word in words)
+    return any(word not in _ARTICLES and number((word,)) is not None for word in words)
 
 
-def _english(words: Words) -> float | None:
+def _parse_english(words: Words) -> float | None:
     for tail, fraction in AND_FRACTION.items():
         if words[-len(tail) :] == tail:
-            whole = _whole(words[: -len(tail)])
-            return None if whole is None else whole + fraction
+            integer = _parse_english_integer(words[: -len(tail)])
+            return None if integer is None else integer + fraction
     if "point" in words:
-        at = words.index("point")
-        whole = _whole(words[:at]) if at else 0
-        return None if whole is None else _with_decimals(whole, [_SMALL.get(word, 10) for word in words[at + 1 :]])
-    return _whole(words)
+        point_index = words.index("point")
+        integer = _parse_english_integer(words[:point_index]) if point_index else 0
+        return (
+            None
+            if integer is None
+            else _append_decimals(integer, [_UP_TO_NINETEEN.get(word, 10) for word in words[point_index + 1 :]])
+        )
+    return _parse_english_integer(words)
 
 
-def _whole(words: Words) -> int | None:
-    """Return the value of an integer in English, up to 9999, or None."""
+def _parse_english_integer(words: Words) -> int | None:
+    """Return the integer from 0 to 9999 that English words mean; None if they are not one."""
     for name, power in (("thousand", 1000), ("hundred", 100)):
         if name in words:
-            at = words.index(name)
-            left = 1 if words[:at] in ((), ("a",)) else _whole(words[:at])
-            rest = words[at + 1 :]
-            right = 0 if not rest else _whole(rest[1:] if rest[0] == "and" else rest)
-            good = left is not None and right is not None and 0 < left < 10 and right < power
-            return power * left + right if good and left is not None and right is not None else None
+            index = words.index(name)
+            multiplier = 1 if words[:index] in ((), ("a",)) else _parse_english_integer(words[:index])
+            rest = words[index + 1 :]
+            remainder = 0 if not rest else _parse_english_integer(rest[1:] if rest[0] == "and" else rest)
+            is_valid = multiplier is not None and remainder is not None and 0 < multiplier < 10 and remainder < power
+            return (
+                power * multiplier + remainder
+                if is_valid and multiplier is not None and remainder is not None
+                else None
+            )
     if len(words) == 1:
-        return 1 if words[0] in _ONE else _SMALL.get(words[0], _TENS.get(words[0]))
-    if len(words) == 2 and words[0] in _TENS and 0 < _SMALL.get(words[1], 0) < 10:
-        return _TENS[words[0]] + _SMALL[words[1]]
+        return 1 if words[0] in _ARTICLES else _UP_TO_NINETEEN.get(words[0], _TENS.get(words[0]))
+    if len(words) == 2 and words[0] in _TENS and 0 < _UP_TO_NINETEEN.get(words[1], 0) < 10:
+        return _TENS[words[0]] + _UP_TO_NINETEEN[words[1]]
     return None
 
 
-def _chinese(words: Words) -> float | None:
+def _parse_chinese(words: Words) -> float | None:
     if words == ("半",):
         return 0.5
     if len(words) > 1 and words[-2:] == ("个", "半"):
-        whole = _chinese_whole(words[:-2])
-        return None if whole is None else whole + 0.5
+        integer = _parse_chinese_integer(words[:-2])
+        return None if integer is None else integer + 0.5
     if words[-1] == "个":
-        return _chinese(words[:-1]) if len(words) > 1 else None
+        return _parse_chinese(words[:-1]) if len(words) > 1 else None
     if "点" in words:
-        at = words.index("点")
-        whole = _chinese_whole(words[:at])
-        return None if whole is None else _with_decimals(whole, [_DIGITS.get(word, 10) for word in words[at + 1 :]])
-    return _chinese_whole(words)
+        point_index = words.index("点")
+        integer = _parse_chinese_integer(words[:point_index])
+        return (
+            None
+            if integer is None
+            else _append_decimals(integer, [_DIGITS.get(word, 10) for word in words[point_index + 1 :]])
+        )
+    return _parse_chinese_integer(words)
 
 
-def _chinese_whole(words: Words) -> int | None:
-    """Return the value of an integer in Chinese, up to 9999, or None; 一百八 is 180."""
-    total, digit, power, zero = 0, None, 10_000, False
+def _parse_chinese_integer(words: Words) -> int | None:
+    """Return the integer from 1 to 9999 that Chinese words mean, or None; 一百八 is 180."""
+    total, digit, power, has_zero = 0, None, 10_000, False
     for word in words:
         if word in _DIGITS and digit is None:
             if _DIGITS[word] == 0 and total:
-                zero = True
+                has_zero = True
                 continue
             digit = _DIGITS[word]
         elif word in _POWERS and _POWERS[word] < power and (digit or (word == "十" and digit is None and not total)):
             power = _POWERS[word]
             total += (digit or 1) * power
-            digit, zero = None, False
+            digit, has_zero = None, False
         else:
             return None
     if digit is None:
         return total or None
-    short = total and power > 10 and not zero
-    return total + digit * (power // 10 if short else 1)
+    omits_unit = total and power > 10 and not has_zero
+    return total + digit * (power // 10 if omits_unit else 1)
 
 
-def _with_decimals(whole: int, digits: list[int]) -> float | None:
+def _append_decimals(integer: int, digits: list[int]) -> float | None:
     if not digits or max(digits) > 9:
         return None
-    return float(f"{whole}.{''.join(map(str, digits))}")
+    return float(f"{integer}.{''.join(map(str, digits))}")

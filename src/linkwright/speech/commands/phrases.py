@@ -11,32 +11,32 @@ from dataclasses import dataclass
 from itertools import product
 
 from linkwright.diagnostics import phrase
-from linkwright.speech.commands.quantities import SAYABLE, quantity
+from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.words import Words, words_of
 
 Value = float | str
-"""The value of a slot: a quantity in metres, radians, seconds or metres a second, or a name of the file."""
+"""The value of a slot: a quantity in metres, radians, seconds or metres per second, or a name in the file."""
 
 Names = Mapping[str, Mapping[Words, str]]
-"""Slot of names -> spoken form -> the name."""
+"""For each slot that a name replaces, the names by their spoken forms."""
 
-_OPTIONAL = re.compile(r"\[([^\[\]{}]*)\]")
-_SLOT = re.compile(r"\{(\w*)\}")
-_MANY_OPTIONAL = 6
+_OPTIONAL_PATTERN = re.compile(r"\[([^\[\]{}]*)\]")
+_SLOT_PATTERN = re.compile(r"\{(\w*)\}")
+_MAX_OPTIONAL = 6
 
 
 class TemplateError(ValueError):
-    """Raised when a phrase is malformed; its text, a `Phrase`, gives the reason."""
+    """Raised if a phrase is malformed; its argument, a `Phrase`, is the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A phrase whose brackets are expanded.
+    """A phrase in which each bracket has been replaced by one of its alternatives.
 
     Attributes:
-        text: the text in the file.
-        pieces: the literal words before, between and after the slots; one more than there are slots.
-        slots: the slots in their order.
+        text: the text of the phrase, with its slots in braces.
+        pieces: the literal words before, between and after the slots; there is one more piece than there are slots.
+        slots: the names of the slots, in order.
     """
 
     text: str
@@ -45,40 +45,40 @@ class Template:
 
     @property
     def literal_count(self) -> int:
-        """The number of words that are not slots."""
+        """The number of words outside the slots."""
         return sum(map(len, self.pieces))
 
     def values(self, words: Words, names: Names) -> dict[str, Value] | None:
-        """Return the values of the slots, or None if the words do not match."""
-        return self._rest(words, 0, names)
+        """Return the values of the slots; None if the words do not match."""
+        return self._match_from(words, 0, names)
 
     def spoken(self, values: Mapping[str, Sequence[str]]) -> Iterator[str]:
-        """Yield all phrases of the template, with all values of its slots.
+        """Yield the phrases with all combinations of slot values.
 
         Args:
-            values: the possible values by slot.
+            values: the possible spoken values of each slot.
         """
-        for chosen in product(*(values.get(slot, ()) for slot in self.slots)):
+        for combination in product(*(values.get(slot, ()) for slot in self.slots)):
             text = self.text
-            for slot, value in zip(self.slots, chosen, strict=True):
+            for slot, value in zip(self.slots, combination, strict=True):
                 text = text.replace(f"{{{slot}}}", value)
             yield text
 
-    def _rest(self, words: Words, at: int, names: Names) -> dict[str, Value] | None:
-        piece = self.pieces[at]
-        if words[: len(piece)] != piece:
+    def _match_from(self, words: Words, slot_index: int, names: Names) -> dict[str, Value] | None:
+        literal_words = self.pieces[slot_index]
+        if words[: len(literal_words)] != literal_words:
             return None
-        words = words[len(piece) :]
-        if at == len(self.slots):
+        words = words[len(literal_words) :]
+        if slot_index == len(self.slots):
             return None if words else {}
-        slot = self.slots[at]
+        slot = self.slots[slot_index]
         for end in range(len(words), 0, -1):
-            value = names[slot].get(words[:end]) if slot in names else quantity(slot, words[:end])
+            value = names[slot].get(words[:end]) if slot in names else parse_quantity(slot, words[:end])
             if value is None:
                 continue
-            rest = self._rest(words[end:], at + 1, names)
-            if rest is not None:
-                return {slot: value, **rest}
+            remaining_values = self._match_from(words[end:], slot_index + 1, names)
+            if remaining_values is not None:
+                return {slot: value, **remaining_values}
         return None
 
 
@@ -87,34 +87,36 @@ def templates(text: str, slots: Sequence[str]) -> list[Template]:
 
     Args:
         text: the phrase in the file.
-        slots: the slots that exist in addition to those for quantities.
+        slots: the slots that are allowed in addition to quantities.
 
     Raises:
-        TemplateError: a bracket is not closed, a slot occurs twice or is unknown, or no literal word is left.
+        TemplateError: a bracket is not closed, a slot occurs twice or does not exist, or there is no literal word.
     """
-    if len(_OPTIONAL.findall(text)) > _MANY_OPTIONAL:
-        raise TemplateError(phrase("it has more than {most} parts in brackets", most=_MANY_OPTIONAL))
-    found = []
-    for plain in _without_brackets(text):
-        if re.search(r"[\[\]{}]", _SLOT.sub("", plain)):
+    if len(_OPTIONAL_PATTERN.findall(text)) > _MAX_OPTIONAL:
+        raise TemplateError(phrase("it has more than {most} optional parts in brackets", most=_MAX_OPTIONAL))
+    expanded = []
+    for variant in _expand_brackets(text):
+        if re.search(r"[\[\]{}]", _SLOT_PATTERN.sub("", variant)):
             raise TemplateError(phrase("a bracket or brace is not closed, or is nested in another one"))
-        used = tuple(_SLOT.findall(plain))
-        for slot in used:
-            if slot not in SAYABLE and slot not in slots:
-                known = ", ".join([*SAYABLE, *slots])
-                raise TemplateError(phrase("there is no slot '{slot}'; the slots are {known}", slot=slot, known=known))
-        if len(set(used)) < len(used):
+        used_slots = tuple(_SLOT_PATTERN.findall(variant))
+        for slot in used_slots:
+            if slot not in GRAMMAR_VALUES and slot not in slots:
+                known_slots = ", ".join([*GRAMMAR_VALUES, *slots])
+                raise TemplateError(
+                    phrase("there is no slot '{slot}'; the slots are {known}", slot=slot, known=known_slots)
+                )
+        if len(set(used_slots)) < len(used_slots):
             raise TemplateError(phrase("a slot occurs twice"))
-        pieces = tuple(words_of(piece) for piece in _SLOT.split(plain)[::2])
+        pieces = tuple(words_of(piece) for piece in _SLOT_PATTERN.split(variant)[::2])
         if not any(pieces):
-            raise TemplateError(phrase("it needs a word outside the slots"))
-        found.append(Template(" ".join(plain.split()), pieces, used))
-    return found
+            raise TemplateError(phrase("it must have a word outside the slots"))
+        expanded.append(Template(" ".join(variant.split()), pieces, used_slots))
+    return expanded
 
 
-def _without_brackets(text: str) -> list[str]:
-    match = _OPTIONAL.search(text)
+def _expand_brackets(text: str) -> list[str]:
+    match = _OPTIONAL_PATTERN.search(text)
     if match is None:
         return [text]
-    before, after = text[: match.start()], _without_brackets(text[match.end() :])
-    return [before + alternative + rest for alternative in (*match[1].split("|"), "") for rest in after]
+    prefix, suffixes = text[: match.start()], _expand_brackets(text[match.end() :])
+    return [prefix + alternative + suffix for alternative in (*match[1].split("|"), "") for suffix in suffixes]

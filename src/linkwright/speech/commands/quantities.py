@@ -9,11 +9,11 @@ from linkwright.speech.commands.numbers import AND_FRACTION, number
 from linkwright.speech.commands.words import Words, words_of
 
 
-def _units(table: Mapping[str, float]) -> dict[Words, float]:
+def _parse_units(table: Mapping[str, float]) -> dict[Words, float]:
     return {words_of(name): factor for names, factor in table.items() for name in names.split("|")}
 
 
-_DISTANCE = {
+_DISTANCE_UNITS = {
     "metre|metres|meter|meters|m|米|公尺": 1.0,
     "centimetre|centimetres|centimeter|centimeters|cm|厘米|公分": 0.01,
     "millimetre|millimetres|millimeter|millimeters|mm|毫米": 0.001,
@@ -21,27 +21,27 @@ _DISTANCE = {
     "inch|inches|英寸": 0.0254,
     "yard|yards|码": 0.9144,
 }
-_SPEED = {
-    f"{name} {per}" if name.isascii() else f"{name}{per}": factor
-    for names, factor in _DISTANCE.items()
+_SPEED_UNITS = {
+    f"{name} {suffix}" if name.isascii() else f"{name}{suffix}": factor
+    for names, factor in _DISTANCE_UNITS.items()
     for name in names.split("|")
-    for per in (("per second", "a second") if name.isascii() else ("每秒",))
+    for suffix in (("per second", "a second") if name.isascii() else ("每秒",))
 } | {"kilometres per hour|kilometers per hour|kilometres an hour|kilometers an hour|公里每小时": 1 / 3.6}
 UNITS: Mapping[str, Mapping[Words, float]] = {
-    "distance": _units(_DISTANCE),
-    "angle": _units(
+    "distance": _parse_units(_DISTANCE_UNITS),
+    "angle": _parse_units(
         {
             "degree|degrees|deg|°|度": pi / 180,
             "radian|radians|rad|弧度": 1.0,
             "turn|turns|circle|circles|revolution|revolutions|圈|周": tau,
         }
     ),
-    "speed": _units(_SPEED),
-    "duration": _units({"second|seconds|s|秒|秒钟": 1.0, "minute|minutes|分钟": 60.0}),
+    "speed": _parse_units(_SPEED_UNITS),
+    "duration": _parse_units({"second|seconds|s|秒|秒钟": 1.0, "minute|minutes|分钟": 60.0}),
 }
-"""Slots that are a number with a unit -> the units, and what they are in m, rad, m/s and s."""
+"""The units of each slot that is a number with a unit, each with its value in m, rad, m/s or s."""
 
-SAYABLE: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+GRAMMAR_VALUES: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "distance": {
         "en": (
             *("ten centimetres", "twenty centimetres", "half a metre", "one metre", "a metre", "one and a half metres"),
@@ -73,31 +73,31 @@ SAYABLE: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "zh": ("一", "二", "三", "四", "五", "六", "七", "八", "九", "十"),
     },
 }
-"""The values of a slot in the engines' grammars, by language: few, so that other words are not mistaken for them.
+"""The values of slots in the engines' grammars, by slot and language: few, so that engines do not mishear other words.
 
-Any other number is also understood, if an engine recognizes it or a user types it.
+Any other value is also understood if an engine recognizes it or a user types it.
 """
 
-_EACH_SECOND: Words = ("每", "秒")
+_PER_SECOND: Words = ("每", "秒")
 
 
-def quantity(slot: str, words: Words) -> float | None:
-    """Return the value of words for a slot of `SAYABLE`, in the slot's unit; None if they do not fit."""
+def parse_quantity(slot: str, words: Words) -> float | None:
+    """Return the value of words for a quantity slot, in the slot's unit; None if they are not such a value."""
     if slot == "number":
         return number(words)
-    if slot == "speed" and words[:2] == _EACH_SECOND:
-        return _measured(UNITS["distance"], words[2:])
-    return _measured(UNITS[slot], words)
+    if slot == "speed" and words[:2] == _PER_SECOND:
+        return _parse_with_unit(UNITS["distance"], words[2:])
+    return _parse_with_unit(UNITS[slot], words)
 
 
-def _measured(units: Mapping[Words, float], words: Words) -> float | None:
+def _parse_with_unit(units: Mapping[Words, float], words: Words) -> float | None:
     for tail, fraction in [((), 0.0), *AND_FRACTION.items()]:
-        rest = words[: len(words) - len(tail)]
-        if words[len(rest) :] != tail:
+        measure_words = words[: len(words) - len(tail)]
+        if words[len(measure_words) :] != tail:
             continue
         for unit, factor in units.items():
-            if len(rest) > len(unit) and rest[-len(unit) :] == unit:
-                value = number(rest[: -len(unit)])
+            if len(measure_words) > len(unit) and measure_words[-len(unit) :] == unit:
+                value = number(measure_words[: -len(unit)])
                 if value is not None and (not fraction or value == int(value)):
                     return (value + fraction) * factor
     return None

@@ -1,4 +1,4 @@
-"""Split texts into words, normalised across engines: case, punctuation, blanks between Chinese characters."""
+"""Split texts into words, so that case, punctuation and blanks between Chinese characters do not matter."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import unicodedata
 
 Words = tuple[str, ...]
-"""The words of a text: a number in digits, a word, or one Chinese character each."""
+"""The words of a text; a word is a word in letters, a number in digits, or one Chinese character."""
 
 _HAN = "\u3007\u3400-\u4dbf\u4e00-\u9fff"
 _WORD = re.compile(rf"\d+(?:\.\d+)?|[{_HAN}]|(?:(?![{_HAN}])[^\W\d_])+(?:['’][^\W\d_]+)*|°")
@@ -20,7 +20,7 @@ def words_of(text: str) -> Words:
     return tuple(_WORD.findall(unicodedata.normalize("NFKC", text).lower().replace("’", "'")))
 
 
-def has_words(words: Words, wanted: Words) -> bool:
-    """Return whether a text contains the wanted words in this order without gaps."""
-    length = len(wanted)
-    return any(words[at : at + length] == wanted for at in range(len(words) - length + 1))
+def has_words(words: Words, sequence: Words) -> bool:
+    """Return whether words contain a sequence of words without gaps."""
+    length = len(sequence)
+    return any(words[start : start + length] == sequence for start in range(len(words) - length + 1))

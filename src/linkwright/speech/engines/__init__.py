@@ -1,1 +1,1 @@
-"""Adapters for third-party engines, each a module that imports its library on demand."""
+"""Adapters for third-party engines; each module imports its library on demand."""

@@ -1,4 +1,4 @@
-"""The engine ``onnx``: a user's network in an ONNX file that classifies a section of sound (keyword spotting).
+"""The engine ``onnx``: a user's ONNX network that classifies a section of sound (keyword spotting).
 
 Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output is ``[1, classes]``, scores or
 probabilities. The metadata ``names`` contains the classes, as JSON (a list, or an object of numbers and names) or
@@ -24,16 +24,16 @@ from linkwright.speech.sound.activity import VoiceActivity
 from linkwright.speech.sound.samples import RATE, Samples
 from linkwright.speech.sound.spectra import HOP, MelFrames
 
-LEAST_PROBABILITY = 0.6
-"""The least probability of a class that counts."""
+MIN_PROBABILITY = 0.6
+"""The minimum probability at which a class is reported."""
 
-_BEFORE = RATE // 5  # samples before the start of speech that are included
-_LONGEST = 10 * RATE  # the maximum number of samples in an utterance
-_FULL = 32_768.0
+_LEAD_IN = RATE // 5  # samples before the start of speech that are included
+_MAX_SAMPLES = 10 * RATE  # the maximum number of samples in an utterance
+_FULL_SCALE = 32_768.0
 
 
 class OnnxEngine(SpeechEngine):
-    """The engine ``onnx``, whose model is set by the option ``model``.
+    """Recognises phrases with a network from an ONNX file, which the option ``model`` names.
 
     Raises:
         LinkwrightError: VOICE102, onnxruntime is not installed; VOICE104, the file is not such a network.
@@ -41,74 +41,72 @@ class OnnxEngine(SpeechEngine):
 
     def __init__(self, options: EngineOptions) -> None:
         if options.model is None:
-            hint = phrase("give the ONNX file of your network as the model")
-            raise LinkwrightError(
-                Diagnostic("VOICE104", phrase("the engine 'onnx' has no model of its own"), hint=hint)
-            )
+            hint = phrase("give an ONNX file as the model")
+            raise LinkwrightError(Diagnostic("VOICE104", phrase("the engine 'onnx' needs a model"), hint=hint))
         self._session = _session(options.model)
-        self._input, self._length, self._names = _form(self._session, options.model)
-        self._phrases = {_plain(phrase): phrase for phrase in options.phrases}
+        self._input, self._length, self._names = _read_interface(self._session, options.model)
+        self._phrases = {_normalize(phrase): phrase for phrase in options.phrases}
         self._frames, self._activity = MelFrames(), VoiceActivity()
         self._buffer: Samples = np.zeros(0, np.int16)
-        self._heard = 0  # the number of samples
+        self._sample_count = 0  # the number of samples
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process a block; there are no partial results, because the network runs when an utterance is over."""
-        self._buffer = np.concatenate((self._buffer, samples))[-_LONGEST:]
-        self._heard += len(samples)
-        found: list[Heard] = []
+        """Process samples. There are no partial results, because the network runs at the end of an utterance."""
+        self._buffer = np.concatenate((self._buffer, samples))[-_MAX_SAMPLES:]
+        self._sample_count += len(samples)
+        results: list[Heard] = []
         for frame in self._frames.feed(samples):
-            spoke = self._activity.speaking
-            speaks = self._activity.step(frame)
-            if spoke and not speaks:
-                found += self._end()
-            elif not spoke and not speaks:
-                self._buffer = self._buffer[-_BEFORE - len(samples) :]
-        return found
+            was_speaking = self._activity.speaking
+            is_speaking = self._activity.step(frame)
+            if was_speaking and not is_speaking:
+                results += self._end_utterance()
+            elif not was_speaking and not is_speaking:
+                self._buffer = self._buffer[-_LEAD_IN - len(samples) :]
+        return results
 
     def finish(self) -> Sequence[Heard]:
         """End the utterance, and return its result."""
         if not self._activity.speaking:
             return []
         self._activity.end()
-        return self._end()
+        return self._end_utterance()
 
-    def _end(self) -> list[Heard]:
+    def _end_utterance(self) -> list[Heard]:
         utterance = self._buffer[: max(1, len(self._buffer) - self._activity.quiet_frames * HOP)]
-        end = (self._heard - len(self._buffer) + len(utterance)) / RATE
-        scores = self._session.run(None, {self._input: _fitted(utterance, self._length)[None]})[0][0]
-        chances = _probabilities(np.asarray(scores, np.float64))
-        best = int(np.argmax(chances))
-        name, probability = self._names[best], float(chances[best])
-        text = self._phrases.get(_plain(name), "") if probability >= LEAST_PROBABILITY else ""
-        self._buffer = self._buffer[-_BEFORE:]
+        end = (self._sample_count - len(self._buffer) + len(utterance)) / RATE
+        scores = self._session.run(None, {self._input: _fit_length(utterance, self._length)[None]})[0][0]
+        probabilities = _probabilities(np.asarray(scores, np.float64))
+        best = int(np.argmax(probabilities))
+        name, probability = self._names[best], float(probabilities[best])
+        text = self._phrases.get(_normalize(name), "") if probability >= MIN_PROBABILITY else ""
+        self._buffer = self._buffer[-_LEAD_IN:]
         return [Heard(text, probability, True, max(0.0, end - len(utterance) / RATE), end)]
 
 
-def _plain(text: str) -> str:
+def _normalize(text: str) -> str:
     return " ".join(text.replace("_", " ").lower().split())
 
 
-def _fitted(utterance: Samples, length: int) -> NDArray[np.float32]:
-    """Return sound of a given length.
+def _fit_length(utterance: Samples, length: int) -> NDArray[np.float32]:
+    """Return the sound in a fixed number of samples.
 
-    It is the middle of the utterance, or all of it with silence on both sides.
+    A longer utterance is cut to its middle; a shorter one is padded with silence on both sides.
     """
-    first = (len(utterance) - length) // 2
-    whole: NDArray[np.float32] = np.zeros(length, np.float32)
-    if first >= 0:
-        whole[:] = utterance[first : first + length] / _FULL
+    start = (len(utterance) - length) // 2
+    sound: NDArray[np.float32] = np.zeros(length, np.float32)
+    if start >= 0:
+        sound[:] = utterance[start : start + length] / _FULL_SCALE
     else:
-        whole[-first : -first + len(utterance)] = utterance / _FULL
-    return whole
+        sound[-start : -start + len(utterance)] = utterance / _FULL_SCALE
+    return sound
 
 
 def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Convert scores to probabilities, unless they already are probabilities."""
+    """Convert scores to probabilities with softmax, unless they already are probabilities."""
     if scores.min() >= 0.0 and abs(scores.sum() - 1.0) < 1e-3:
         return scores
-    powers: NDArray[np.float64] = np.exp(scores - scores.max())
-    return np.asarray(powers / powers.sum())
+    exponentials: NDArray[np.float64] = np.exp(scores - scores.max())
+    return np.asarray(exponentials / exponentials.sum())
 
 
 def _session(path: Path) -> Any:
@@ -117,38 +115,40 @@ def _session(path: Path) -> Any:
     except ModuleNotFoundError as error:
         raise missing_extra("VOICE102", error) from None
     except UnloadableNetworkError as error:
-        raise _unfit(path, error.reason) from None
+        raise _model_error(path, error.reason) from None
 
 
-def _form(session: Any, path: Path) -> tuple[str, int, tuple[str, ...]]:
-    """Return the name and length of the input, and the names of the classes."""
+def _read_interface(session: Any, path: Path) -> tuple[str, int, tuple[str, ...]]:
+    """Return the name and length of the network's input, and the names of its classes."""
     inputs, outputs = session.get_inputs(), session.get_outputs()
     shape = inputs[0].shape if len(inputs) == 1 else []
-    if len(shape) != 2 or not isinstance(shape[1], int) or not 0 < shape[1] <= _LONGEST:
-        raise _unfit(path, phrase("its input is not one array of [1, n], but {shape}", shape=foreign(shape)))
+    if len(shape) != 2 or not isinstance(shape[1], int) or not 0 < shape[1] <= _MAX_SAMPLES:
+        raise _model_error(path, phrase("its input must be one array of [1, n], not {shape}", shape=foreign(shape)))
     if inputs[0].type != "tensor(float)":
-        raise _unfit(path, phrase("its input is {type}, not float32", type=foreign(inputs[0].type)))
-    names = _names(session.get_modelmeta().custom_metadata_map.get("names", ""))
+        raise _model_error(
+            path, phrase(("the type of its input must be float32, not {type}"), type=foreign(inputs[0].type))
+        )
+    names = _parse_names(session.get_modelmeta().custom_metadata_map.get("names", ""))
     classes = outputs[0].shape[-1] if outputs[0].shape else None
     if not names or (isinstance(classes, int) and classes != len(names)):
-        raise _unfit(path, phrase("its metadata 'names' does not have a name for each class"))
+        raise _model_error(path, phrase("its metadata 'names' must have a name for each class"))
     return inputs[0].name, shape[1], names
 
 
-def _names(text: str) -> tuple[str, ...]:
+def _parse_names(text: str) -> tuple[str, ...]:
     try:
-        found = json.loads(text)
+        names = json.loads(text)
     except json.JSONDecodeError:
-        found = [name.strip() for name in text.split(",") if name.strip()]
-    if isinstance(found, dict):
+        names = [name.strip() for name in text.split(",") if name.strip()]
+    if isinstance(names, dict):
         try:
-            found = [found[key] for key in sorted(found, key=int)]
+            names = [names[key] for key in sorted(names, key=int)]
         except ValueError:
             return ()
-    return tuple(map(str, found)) if isinstance(found, list) else ()
+    return tuple(map(str, names)) if isinstance(names, list) else ()
 
 
-def _unfit(path: Path, reason: Phrase) -> LinkwrightError:
+def _model_error(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("'{path}' is not a keyword spotter: {reason}", path=path, reason=reason)
     hint = phrase(
         "use a network that takes 16 kHz sound as float32 [1, n], outputs [1, classes], and names "

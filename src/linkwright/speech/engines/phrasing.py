@@ -1,4 +1,4 @@
-"""Convert phrases to the vocabulary of an engine, and its results to phrases."""
+"""Convert phrases to the vocabulary of an engine, and the results of the engine to phrases."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, quoted_n
 
 Words = tuple[str, ...]
 
-_LONGEST_WORD = 8
-"""Characters of a Chinese word that are looked up as one."""
+_MAX_WORD_LENGTH = 8
+"""The maximum length in characters of a Chinese word that is looked up in a vocabulary."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,78 +19,84 @@ class Phrasing:
     """Phrases in the vocabulary of an engine.
 
     Attributes:
-        phrases: the phrases as the user wrote them, by the words of the engine.
+        phrases: the phrases as the user wrote them, by their words in the engine's vocabulary.
     """
 
     phrases: Mapping[Words, str]
 
     @classmethod
-    def of(cls, phrases: Iterable[str], knows: Callable[[str], bool], model: Path | str) -> Phrasing:
+    def of(cls, phrases: Iterable[str], in_vocabulary: Callable[[str], bool], model: Path | str) -> Phrasing:
         """Convert phrases to an engine's vocabulary.
 
-        A word that the engine does not know is tried in lower case. In a language that is written without spaces, such
-        as Chinese, it is also divided into the fewest known words.
+        A word that is not in the vocabulary is tried in lower case. In a language that is written without spaces,
+        such as Chinese, it is also divided into the fewest words of the vocabulary.
 
         Args:
             phrases: the phrases as the user wrote them.
-            knows: returns whether a word is in the engine's vocabulary.
+            in_vocabulary: returns whether the engine's vocabulary contains a word.
             model: the name of the model, for errors.
 
         Raises:
-            LinkwrightError: VOICE103, the engine does not know some words.
+            LinkwrightError: VOICE103, the vocabulary lacks some words.
         """
-        found: dict[Words, str] = {}
+        converted: dict[Words, str] = {}
         missing: dict[str, None] = {}
         for text in phrases:
             words: list[str] = []
             for word in text.split():
-                known = _known(word, knows)
-                if known is None:
+                vocabulary_words = _spell_word(word, in_vocabulary)
+                if vocabulary_words is None:
                     missing[word] = None
                 else:
-                    words += known
+                    words += vocabulary_words
             if words:
-                found.setdefault(tuple(words), text)
+                converted.setdefault(tuple(words), text)
         if missing:
-            message = phrase("'{model}' does not know {words}", model=model, words=quoted_names(missing))
+            message = phrase(
+                ("the vocabulary of '{model}' does not contain {words}"), model=model, words=quoted_names(missing)
+            )
             hint = phrase("use other words, or the engine 'enrolled', which needs no vocabulary")
             raise LinkwrightError(Diagnostic("VOICE103", message, hint=hint))
-        return cls(found)
+        return cls(converted)
 
-    def divided(self, words: Sequence[str]) -> list[tuple[str, int, int]] | None:
-        """Split recognised words into the fewest phrases.
+    def split_into_phrases(self, words: Sequence[str]) -> list[tuple[str, int, int]] | None:
+        """Split recognised words into the smallest number of phrases.
 
         Returns:
             Each phrase with the indices of its first word and of the word after its last; None if the words are not a
             sequence of phrases.
         """
         longest = max(map(len, self.phrases), default=0)
-        best: list[list[tuple[str, int, int]] | None] = [[]]
+        best_splits: list[list[tuple[str, int, int]] | None] = [[]]
         for end in range(1, len(words) + 1):
             shortest: list[tuple[str, int, int]] | None = None
-            for first in range(max(0, end - longest), end):
-                before, found = best[first], self.phrases.get(tuple(words[first:end]))
-                if before is None or found is None:
+            for start in range(max(0, end - longest), end):
+                previous, phrase_text = best_splits[start], self.phrases.get(tuple(words[start:end]))
+                if previous is None or phrase_text is None:
                     continue
-                if shortest is None or len(before) + 1 < len(shortest):
-                    shortest = [*before, (found, first, end)]
-            best.append(shortest)
-        return best[-1]
+                if shortest is None or len(previous) + 1 < len(shortest):
+                    shortest = [*previous, (phrase_text, start, end)]
+            best_splits.append(shortest)
+        return best_splits[-1]
 
 
-def _known(word: str, knows: Callable[[str], bool]) -> list[str] | None:
-    """Return the words of a vocabulary that make up a word, or None."""
+def _spell_word(word: str, in_vocabulary: Callable[[str], bool]) -> list[str] | None:
+    """Return the fewest words of a vocabulary that together make up a word; None if there are none."""
     for spelling in (word, word.lower()):
-        if knows(spelling):
+        if in_vocabulary(spelling):
             return [spelling]
     if word.isascii():
         return None
-    best: list[list[str] | None] = [[]]
+    best_splits: list[list[str] | None] = [[]]
     for end in range(1, len(word) + 1):
         shortest: list[str] | None = None
-        for first in range(max(0, end - _LONGEST_WORD), end):
-            before, part = best[first], word[first:end]
-            if before is not None and (shortest is None or len(before) + 1 < len(shortest)) and knows(part):
-                shortest = [*before, part]
-        best.append(shortest)
-    return best[-1]
+        for start in range(max(0, end - _MAX_WORD_LENGTH), end):
+            previous, piece = best_splits[start], word[start:end]
+            if (
+                previous is not None
+                and (shortest is None or len(previous) + 1 < len(shortest))
+                and in_vocabulary(piece)
+            ):
+                shortest = [*previous, piece]
+        best_splits.append(shortest)
+    return best_splits[-1]

@@ -1,7 +1,7 @@
-"""The engine ``pocketsphinx``: a grammar of phrases; its wheel contains a model of American English.
+"""The engine ``pocketsphinx``: a grammar of phrases with an acoustic model of American English.
 
-The grammar has no model of other speech: in our measurements a quarter of other utterances was recognized as one of the
-phrases, and more in noise. It is therefore an engine for push-to-talk; Vosk or enrolled words are better where
+The grammar has no model of other speech: in our measurements a quarter of other utterances was recognized as a phrase,
+and more in noise. The engine is therefore suitable for push-to-talk; Vosk or enrolled words are better where they are
 available.
 """
 
@@ -23,17 +23,17 @@ from linkwright.speech.sound.samples import RATE, Samples
 _LANGUAGE = "en"
 _GRAMMAR = "phrases"
 _MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")
-_FILLERS = ("<", "[", "(")  # prefixes of pocketsphinx's names for silence and noise, which no word has
-_USUAL_FIT = -8.0
-"""The score that all of 72 correctly recognized phrases exceeded, and a quarter of other sounds."""
+_FILLER_PREFIXES = ("<", "[", "(")  # prefixes of pocketsphinx's names for silence and noise, which no word has
+_MIDDLE_FIT = -8.0
+"""A log score per frame: all of 72 correct phrases had more, and so had a quarter of other sounds."""
 
-_LEAST = 1e-300  # avoids the logarithm of a probability that underflows to 0
+_MIN_PROBABILITY = 1e-300  # avoids the logarithm of a probability that underflows to 0
 
 
 class PocketsphinxEngine(SpeechEngine):
-    """Recognises phrases with pocketsphinx; the confidence rates the acoustic fit, 0.5 for the usual fit.
+    """Recognises phrases with pocketsphinx. The confidence rates the acoustic fit: 0.5 for a score of -8 per frame.
 
-    The probability from pocketsphinx itself is not useful: it is shared among all paths through the grammar that sound
+    The probability from pocketsphinx itself is not useful: it is divided among all paths through the grammar that sound
     alike, and a fifth of clear phrases had less than 0.1.
 
     Raises:
@@ -51,7 +51,7 @@ class PocketsphinxEngine(SpeechEngine):
             message = phrase("pocketsphinx has no model for the language '{language}'", language=options.language)
             hint = phrase("use the engine 'vosk' or 'enrolled', or give the folder of a model")
             raise LinkwrightError(Diagnostic("VOICE105", message, hint=hint))
-        self._decoder = _decoder(pocketsphinx, options.model)
+        self._decoder = _make_decoder(pocketsphinx, options.model)
         self._phrasing = Phrasing.of(
             options.phrases,
             lambda word: self._decoder.lookup_word(word) is not None,
@@ -61,79 +61,84 @@ class PocketsphinxEngine(SpeechEngine):
         self._decoder.activate_search(_GRAMMAR)
         self._endpointer = pocketsphinx.Endpointer(sample_rate=RATE)
         self._waiting = b""
-        self._speaking = False
+        self._is_speaking = False
         self._partial = ""
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process a block; partial results are phrases that match the words so far."""
+        """Process samples. A partial result is a complete phrase that matches the words so far."""
         self._waiting += samples.astype("<i2").tobytes()
         size = self._endpointer.frame_bytes
-        found: list[Heard] = []
+        results: list[Heard] = []
         while len(self._waiting) >= size:
             frame, self._waiting = self._waiting[:size], self._waiting[size:]
-            found += self._decode(self._endpointer.process(frame))
-        if self._speaking:
-            found += self._changed()
-        return found
+            results += self._decode(self._endpointer.process(frame))
+        if self._is_speaking:
+            results += self._changed_partial()
+        return results
 
     def finish(self) -> Sequence[Heard]:
         """End the utterance, and return its final results."""
-        rest, self._waiting = self._waiting or b"\0\0", b""  # pocketsphinx cannot end an utterance without a sample
-        found = self._decode(self._endpointer.end_stream(rest)) if self._endpointer.in_speech else []
-        return [*found, *self._end()]
+        remaining, self._waiting = (
+            self._waiting or b"\0\0",
+            b"",
+        )  # pocketsphinx cannot end an utterance without a sample
+        results = self._decode(self._endpointer.end_stream(remaining)) if self._endpointer.in_speech else []
+        return [*results, *self._end_utterance()]
 
     def close(self) -> None:
-        """End an unfinished utterance."""
-        self._end()
+        """End the current utterance without a result."""
+        self._end_utterance()
 
     def _decode(self, speech: bytes | None) -> list[Heard]:
-        """Decode the part of the sound that the endpointer detects as speech."""
+        """Decode detected speech, and return the result at the end of the utterance."""
         if speech is None:
             return []
-        if not self._speaking:
+        if not self._is_speaking:
             self._decoder.start_utt()
-            self._speaking, self._partial = True, ""
+            self._is_speaking, self._partial = True, ""
         self._decoder.process_raw(speech)
-        return [] if self._endpointer.in_speech else self._end()
+        return [] if self._endpointer.in_speech else self._end_utterance()
 
-    def _end(self) -> list[Heard]:
-        if not self._speaking:
+    def _end_utterance(self) -> list[Heard]:
+        if not self._is_speaking:
             return []
-        self._speaking = False
+        self._is_speaking = False
         self._decoder.end_utt()
-        text, confidence = self._best()
+        text, confidence = self._best_phrase()
         return [Heard(text, confidence, True, self._endpointer.speech_start, self._endpointer.speech_end)]
 
-    def _changed(self) -> list[Heard]:
-        text, confidence = self._best()
+    def _changed_partial(self) -> list[Heard]:
+        text, confidence = self._best_phrase()
         if text in ("", self._partial):
             return []
         self._partial = text
-        now = self._endpointer.speech_start + self._decoder.n_frames() / self._decoder.config["frate"]
-        return [Heard(text, confidence, False, self._endpointer.speech_start, now)]
+        end = self._endpointer.speech_start + self._decoder.n_frames() / self._decoder.config["frate"]
+        return [Heard(text, confidence, False, self._endpointer.speech_start, end)]
 
-    def _best(self) -> tuple[str, float]:
-        """Return the recognised phrase, as the user wrote it, and its confidence.
+    def _best_phrase(self) -> tuple[str, float]:
+        """Return the recognised phrase as the user wrote it, and its confidence.
 
-        The phrase is empty if none was recognised.
+        The phrase is empty if no phrase was recognised.
         """
-        found = self._decoder.hyp()
-        if found is None:
+        hypothesis = self._decoder.hyp()
+        if hypothesis is None:
             return "", 0.0
-        words = [word for word in found.hypstr.split() if not word.startswith(_FILLERS)]
+        words = [word for word in hypothesis.hypstr.split() if not word.startswith(_FILLER_PREFIXES)]
         return self._phrasing.phrases.get(tuple(words), ""), self._confidence()
 
     def _confidence(self) -> float:
-        """Return the confidence of the result.
+        """Return the confidence of the current result, 0 to 1.
 
-        It compares the score of the words with the best sequence of phones in any order.
+        It compares the score of the words with that of the best sequence of phones in any order.
         """
-        spoken = [segment for segment in self._decoder.seg() or () if not segment.word.startswith(_FILLERS)]
-        frames = sum(segment.end_frame - segment.start_frame + 1 for segment in spoken)
+        word_segments = [
+            segment for segment in self._decoder.seg() or () if not segment.word.startswith(_FILLER_PREFIXES)
+        ]
+        frames = sum(segment.end_frame - segment.start_frame + 1 for segment in word_segments)
         if not frames:
             return 0.0
-        fit = sum(math.log(max(segment.ascore, _LEAST)) for segment in spoken) / frames
-        return 1.0 / (1.0 + math.exp(_USUAL_FIT - fit))
+        fit = sum(math.log(max(segment.ascore, _MIN_PROBABILITY)) for segment in word_segments) / frames
+        return 1.0 / (1.0 + math.exp(_MIDDLE_FIT - fit))
 
 
 def _jsgf(phrasing: Phrasing) -> str:
@@ -142,7 +147,7 @@ def _jsgf(phrasing: Phrasing) -> str:
     return f"#JSGF V1.0;\ngrammar {_GRAMMAR};\npublic <said> = {alternatives};\n"
 
 
-def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
+def _make_decoder(pocketsphinx: Any, folder: Path | None) -> Any:
     settings: dict[str, Any] = {"lm": None, "loglevel": "FATAL", "samprate": RATE, "compallsen": True}
     if folder is not None:
         dictionaries = sorted(path for path in folder.glob("*.dic*") if path.is_file()) if folder.is_dir() else []
@@ -151,7 +156,7 @@ def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
             hint = phrase("give a folder with 'mdef', its other files, and a dictionary such as 'words.dict'")
             raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))
         settings |= {"hmm": str(folder), "dict": str(dictionaries[0])}
-        _try_in_another_process(folder, settings)
+        _load_in_subprocess(folder, settings)
     try:
         return pocketsphinx.Decoder(**settings)
     except (RuntimeError, ValueError) as error:
@@ -159,20 +164,24 @@ def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
         raise LinkwrightError(Diagnostic("VOICE104", message)) from None
 
 
-_TRIAL = "import json, sys, pocketsphinx; pocketsphinx.Decoder(**json.loads(sys.argv[1]))"
+_TRIAL_SCRIPT = "import json, sys, pocketsphinx; pocketsphinx.Decoder(**json.loads(sys.argv[1]))"
 
 
-def _try_in_another_process(folder: Path, settings: dict[str, Any]) -> None:
-    """Load a model in a separate process first.
+def _load_in_subprocess(folder: Path, settings: dict[str, Any]) -> None:
+    """Load a model in a separate process first, and raise if that fails.
 
-    The library ends the process if a model is damaged.
+    The library ends its process if a model is damaged.
     """
-    given = [sys.executable, "-c", _TRIAL, json.dumps(settings)]
+    command = [sys.executable, "-c", _TRIAL_SCRIPT, json.dumps(settings)]
     trial = subprocess.run(  # noqa: S603 - this very interpreter
-        given, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
+        command, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
     )
     if trial.returncode:
         message = phrase("pocketsphinx cannot load the model in '{path}'", path=folder)
-        last = trial.stderr.strip().rpartition("\n")[2]
-        hint = phrase("it reports: {reason}", reason=foreign(last)) if last else phrase("one of its files is damaged")
+        last_line = trial.stderr.strip().rpartition("\n")[2]
+        hint = (
+            phrase("it reports: {reason}", reason=foreign(last_line))
+            if last_line
+            else phrase("one of its files is damaged")
+        )
         raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

@@ -1,10 +1,10 @@
-"""The engine ``vosk``: a grammar of phrases, with a pretrained model.
+"""The engine ``vosk``: a grammar of phrases with a pretrained model.
 
 The grammar consists of the phrases and ``[unk]``, which matches all other speech. A result with ``[unk]``, or with a
-word of less confidence than `LEAST_CONFIDENCE`, is rejected. In our measurements this reduced false commands in read
+word of less confidence than `MIN_CONFIDENCE`, is rejected. In our measurements this reduced false commands in read
 texts from one in sixty to none, at the cost of one correct command in a hundred.
 
-Partial results are those of the best path, which arrive immediately; with confidences Vosk delays them until it has
+Partial results come from the best path and arrive immediately; with confidences, Vosk would delay them until it has
 built a lattice. They start after the last ``[unk]``, so that "stop" is also recognized in the middle of other speech.
 """
 
@@ -22,22 +22,22 @@ from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.engines.phrasing import Phrasing
 from linkwright.speech.sound.samples import RATE, Samples
 
-LEAST_CONFIDENCE = 0.6
-"""The least confidence of each word of a phrase."""
+MIN_CONFIDENCE = 0.6
+"""The minimum confidence of each word of a phrase."""
 
-_NEAR = 0.3
-"""The confidence from which a rejected phrase is reported as the nearest."""
+_MIN_NEAREST_CONFIDENCE = 0.3
+"""The minimum confidence at which a rejected phrase is reported as the nearest."""
 
 MODELS = {language: f"vosk-{language}" for language in LANGUAGES}
-"""The models that are fetched by name, by language."""
+"""The names of the models that can be downloaded, by language."""
 
-_UNKNOWN = "[unk]"
-_SILENT = -1  # the log level of Vosk that suppresses messages
+_OTHER_SPEECH = "[unk]"
+_SILENT_LOG_LEVEL = -1  # the log level of Vosk that suppresses messages
 _ACOUSTIC_MODEL = Path("am") / "final.mdl"
 
 
 class VoskEngine(SpeechEngine):
-    """The engine ``vosk``.
+    """Recognises phrases with Vosk.
 
     Raises:
         LinkwrightError: MODEL102, the language's model has not been downloaded; VOICE102, Vosk is not installed;
@@ -46,41 +46,41 @@ class VoskEngine(SpeechEngine):
     """
 
     def __init__(self, options: EngineOptions) -> None:
-        vosk = _library()
-        folder = options.model or _model_of(options.language)
-        vosk.SetLogLevel(_SILENT)
-        model = _load(vosk, folder)
+        vosk = _load_library()
+        folder = options.model or _find_language_model(options.language)
+        vosk.SetLogLevel(_SILENT_LOG_LEVEL)
+        model = _load_model(vosk, folder)
         self._phrasing = Phrasing.of(options.phrases, lambda word: model.vosk_model_find_word(word) >= 0, folder)
         grammar = [" ".join(words) for words in self._phrasing.phrases]
-        self._recognizer = vosk.KaldiRecognizer(model, RATE, json.dumps([*grammar, _UNKNOWN], ensure_ascii=False))
+        self._recognizer = vosk.KaldiRecognizer(model, RATE, json.dumps([*grammar, _OTHER_SPEECH], ensure_ascii=False))
         self._recognizer.SetWords(True)
         self._partial: list[str] = []
         self._samples = 0  # the number of samples so far
-        self._began = 0.0  # start time of the partial result
+        self._partial_start = 0.0  # start time of the partial result
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process a block; partial results get the minimum accepted confidence, because theirs is unknown."""
+        """Process samples. Partial results get the minimum accepted confidence, because Vosk does not report theirs."""
         if not len(samples):
             return []
         self._samples += len(samples)
         if self._recognizer.AcceptWaveform(samples.astype("<i2").tobytes()):
-            return self._final(self._recognizer.Result())
-        return self._changed(self._recognizer.PartialResult())
+            return self._final_results(self._recognizer.Result())
+        return self._changed_partial(self._recognizer.PartialResult())
 
     def finish(self) -> Sequence[Heard]:
         """End the utterance, and return its final results."""
-        return self._final(self._recognizer.FinalResult())
+        return self._final_results(self._recognizer.FinalResult())
 
-    def _final(self, result: str) -> list[Heard]:
+    def _final_results(self, result: str) -> list[Heard]:
         self._partial = []
         words = json.loads(result).get("result", [])
         if not words:
             return []
         confidence = min(word["conf"] for word in words)
-        divided = self._phrasing.divided([word["word"] for word in words])
-        if divided is None or confidence < LEAST_CONFIDENCE:
-            is_near = divided is not None and len(divided) == 1 and confidence >= _NEAR
-            nearest = divided[0][0] if divided and is_near else ""
+        phrases = self._phrasing.split_into_phrases([word["word"] for word in words])
+        if phrases is None or confidence < MIN_CONFIDENCE:
+            is_near = phrases is not None and len(phrases) == 1 and confidence >= _MIN_NEAREST_CONFIDENCE
+            nearest = phrases[0][0] if phrases and is_near else ""
             return [Heard("", confidence, True, words[0]["start"], words[-1]["end"], nearest)]
         return [
             Heard(
@@ -90,25 +90,25 @@ class VoskEngine(SpeechEngine):
                 words[first]["start"],
                 words[end - 1]["end"],
             )
-            for text, first, end in divided
+            for text, first, end in phrases
         ]
 
-    def _changed(self, result: str) -> list[Heard]:
-        """Return the partial result if its words have changed and form one or more phrases, otherwise nothing."""
+    def _changed_partial(self, result: str) -> list[Heard]:
+        """Return the partial results if the words have changed and form one or more phrases, else an empty list."""
         words = json.loads(result).get("partial", "").split()
         if words == self._partial:
             return []
-        now = self._samples / RATE
+        time = self._samples / RATE
         if not self._partial:
-            self._began = now
+            self._partial_start = time
         self._partial = words
-        if _UNKNOWN in words:
-            words = words[len(words) - words[::-1].index(_UNKNOWN) :]
-        divided = self._phrasing.divided(words) or []
-        return [Heard(text, LEAST_CONFIDENCE, False, self._began, now) for text, _, _ in divided]
+        if _OTHER_SPEECH in words:
+            words = words[len(words) - words[::-1].index(_OTHER_SPEECH) :]
+        phrases = self._phrasing.split_into_phrases(words) or []
+        return [Heard(text, MIN_CONFIDENCE, False, self._partial_start, time) for text, _, _ in phrases]
 
 
-def _library() -> Any:
+def _load_library() -> Any:
     try:
         import vosk  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ModuleNotFoundError as error:
@@ -119,7 +119,7 @@ def _library() -> Any:
     return vosk
 
 
-def _model_of(language: str) -> Path:
+def _find_language_model(language: str) -> Path:
     name = MODELS.get(language.partition("-")[0].lower())
     if name is None:
         message = phrase("no Vosk model for the language '{language}' is installed", language=language)
@@ -128,7 +128,7 @@ def _model_of(language: str) -> Path:
     return find_model(model_entry(name))
 
 
-def _load(vosk: Any, folder: Path) -> Any:
+def _load_model(vosk: Any, folder: Path) -> Any:
     if (folder / _ACOUSTIC_MODEL).is_file():
         try:
             return vosk.Model(str(folder))

@@ -27,20 +27,20 @@ from linkwright.files.user_folders import config_folder
 from linkwright.files.whole_files import write_whole_file
 from linkwright.speech.sound.spectra import BANDS, Powers
 
-TAKES = 3
-"""The number of takes of a word; it is recognised from the first on, but less surely."""
+RECOMMENDED_TAKES = 3
+"""The recommended number of takes of a word; a word is recognised from its first take, but with less confidence."""
 
-MOST_TAKES = 10
-MOST_WORDS = 200
+MAX_TAKES = 10
+MAX_WORDS = 200
 
 _FORMAT, _VERSION = "linkwright enrolled words", 1
-_STEP = 0.5  # dB
-_LONGEST_NAME = 100
-_MOST_FRAMES = 400
+_LEVEL_STEP = 0.5  # dB
+_MAX_NAME_LENGTH = 100
+_MAX_FRAMES = 400
 
 
 def words_path() -> Path:
-    """Return the path of the user's file.
+    """Return the path of the user's file of words.
 
     It is ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same path below ``~/.config``.
     """
@@ -52,8 +52,8 @@ class Take:
     """One recording of a word.
 
     Attributes:
-        powers: the powers of the frames of the word.
-        noise: the power of the background, shape ``(BANDS,)``.
+        powers: the powers of the frames of the word, shape ``(frames, BANDS)``.
+        noise: the power of the background in each band, shape ``(BANDS,)``.
     """
 
     powers: Powers
@@ -77,15 +77,15 @@ class Words:
         return tuple(self._takes)
 
     def takes(self, name: str) -> tuple[Take, ...]:
-        """Return the takes of a word; empty for an unknown word."""
+        """Return the takes of a word; empty if there is no such word."""
         return self._takes.get(name, ())
 
     def add(self, name: str, take: Take) -> None:
-        """Add a take; the oldest take is removed if there are more than `MOST_TAKES`."""
-        self._takes[name] = (*self.takes(name), take)[-MOST_TAKES:]
+        """Add a take of a word; if there are more than `MAX_TAKES` takes, the oldest is removed."""
+        self._takes[name] = (*self.takes(name), take)[-MAX_TAKES:]
 
     def remove(self, name: str) -> None:
-        """Remove a word with all of its takes; an unknown word is ignored."""
+        """Remove a word with all of its takes, if it exists."""
         self._takes.pop(name, None)
 
     @classmethod
@@ -93,36 +93,38 @@ class Words:
         """Read the words from a file.
 
         Raises:
-            LinkwrightError: VOICE202, it cannot be read; VOICE203, it is not a file of words, or it is damaged.
+            LinkwrightError: VOICE202, the file cannot be read; VOICE203, it is damaged or not a file of words.
         """
-        shown = display_path(Path(path))
+        path_text = display_path(Path(path))
         try:
             text = read_text(path)
         except OSError as error:
-            message = phrase("cannot read '{path}': {reason}", path=shown, reason=foreign(error.strerror))
+            message = phrase("cannot read '{path}': {reason}", path=path_text, reason=foreign(error.strerror))
             raise LinkwrightError(Diagnostic("VOICE202", message, hint=missing_file_hint(Path(path)))) from None
         except UnicodeDecodeError:
-            raise _damaged(shown, phrase("it is not a text file")) from None
+            raise _damaged_error(path_text, phrase("it is not a text file")) from None
         try:
             document = json.loads(text)
         except json.JSONDecodeError as error:
-            place = Span(shown, error.lineno, error.colno, error.lineno, error.colno)
-            raise _damaged(shown, phrase("it is not JSON: {reason}", reason=foreign(error.msg)), place) from None
+            span = Span(path_text, error.lineno, error.colno, error.lineno, error.colno)
+            raise _damaged_error(
+                path_text, phrase("it is not JSON: {reason}", reason=foreign(error.msg)), span
+            ) from None
         except RecursionError:
-            raise _damaged(shown, phrase("it is nested too deeply")) from None
-        return cls(_words(document, shown))
+            raise _damaged_error(path_text, phrase("it is nested too deeply")) from None
+        return cls(_parse_words(document, path_text))
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the file atomically; its folder is created if it is missing.
+        """Write a file atomically, and create its folder if it is missing.
 
         Raises:
-            OSError: it cannot be written.
+            OSError: the file cannot be written.
         """
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         words = [
             {
                 "name": name,
-                "takes": [{"frames": _encoded(take.powers), "noise": _encoded(take.noise)} for take in takes],
+                "takes": [{"frames": _encode(take.powers), "noise": _encode(take.noise)} for take in takes],
             }
             for name, takes in self._takes.items()
         ]
@@ -131,73 +133,78 @@ class Words:
 
 
 def name_problem(name: str) -> Phrase | None:
-    """Return the reason why a word cannot have a name, or None if the name is valid."""
+    """Return why a word cannot have a name; None if the name is valid."""
     if not name.strip():
         return phrase("it is empty")
-    if len(name) > _LONGEST_NAME:
-        return phrase("it has more than {most} characters", most=_LONGEST_NAME)
+    if len(name) > _MAX_NAME_LENGTH:
+        return phrase("it has more than {most} characters", most=_MAX_NAME_LENGTH)
     if not name.isprintable():
         return phrase("it contains characters that cannot be shown")
     return None
 
 
-def rounded(powers: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return powers rounded as in a file."""
-    return _decoded(_levels(powers)).reshape(powers.shape)
+def round_powers(powers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return powers with the precision that they have in a file."""
+    return _from_levels(_levels(powers)).reshape(powers.shape)
 
 
 def _levels(powers: NDArray[np.float64]) -> NDArray[np.uint8]:
     decibels = 10.0 * np.log10(np.maximum(powers, 1.0))
-    return np.asarray(np.clip(np.rint(decibels / _STEP), 0, 255), dtype=np.uint8)
+    return np.asarray(np.clip(np.rint(decibels / _LEVEL_STEP), 0, 255), dtype=np.uint8)
 
 
-def _decoded(levels: NDArray[np.uint8]) -> NDArray[np.float64]:
-    return np.asarray(10.0 ** (levels.astype(np.float64) * _STEP / 10.0))
+def _from_levels(levels: NDArray[np.uint8]) -> NDArray[np.float64]:
+    return np.asarray(10.0 ** (levels.astype(np.float64) * _LEVEL_STEP / 10.0))
 
 
-def _encoded(powers: NDArray[np.float64]) -> str:
+def _encode(powers: NDArray[np.float64]) -> str:
     return base64.b64encode(_levels(powers).tobytes()).decode("ascii")
 
 
-def _words(document: Any, shown: str) -> dict[str, tuple[Take, ...]]:
+def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
     if not isinstance(document, dict) or document.get("format") != _FORMAT:
-        raise _damaged(shown, phrase("it is not marked as a file of enrolled words"))
+        raise _damaged_error(path_text, phrase("it is not marked as a file of enrolled words"))
     if document.get("version") != _VERSION:
         version = document.get("version")
-        raise _damaged(
-            shown, phrase("it has version '{version}', but only {known} is supported", version=version, known=_VERSION)
+        raise _damaged_error(
+            path_text,
+            phrase(
+                ("its version is '{version}', but only version {known} is supported"), version=version, known=_VERSION
+            ),
         )
     words = document.get("words")
-    if not isinstance(words, list) or len(words) > MOST_WORDS:
-        raise _damaged(shown, phrase("it contains no list of words, or more than {most}", most=MOST_WORDS))
-    found: dict[str, tuple[Take, ...]] = {}
+    if not isinstance(words, list) or len(words) > MAX_WORDS:
+        raise _damaged_error(path_text, phrase("it must contain a list of at most {most} words", most=MAX_WORDS))
+    takes_by_name: dict[str, tuple[Take, ...]] = {}
     for number, word in enumerate(words, 1):
         name = word.get("name") if isinstance(word, dict) else None
-        if not isinstance(name, str) or name_problem(name) is not None or name in found:
-            raise _damaged(shown, phrase("word {number} has no name, or the name of an earlier word", number=number))
-        takes = word.get("takes")
-        if not isinstance(takes, list) or not 1 <= len(takes) <= MOST_TAKES:
-            raise _damaged(
-                shown, phrase("the word '{name}' has no takes, or more than {most}", name=name, most=MOST_TAKES)
+        if not isinstance(name, str) or name_problem(name) is not None or name in takes_by_name:
+            raise _damaged_error(
+                path_text, phrase(("word {number} has no valid name, or the name of an earlier word"), number=number)
             )
-        found[name] = tuple(_read_take(take, name, shown) for take in takes)
-    return found
+        takes = word.get("takes")
+        if not isinstance(takes, list) or not 1 <= len(takes) <= MAX_TAKES:
+            raise _damaged_error(
+                path_text, phrase("the word '{name}' must have 1 to {most} takes", name=name, most=MAX_TAKES)
+            )
+        takes_by_name[name] = tuple(_read_take(take, name, path_text) for take in takes)
+    return takes_by_name
 
 
-def _read_take(take: Any, name: str, shown: str) -> Take:
+def _read_take(take: Any, name: str, path_text: str) -> Take:
     try:
         frames, noise = (
             np.frombuffer(base64.b64decode(take[key], validate=True), np.uint8) for key in ("frames", "noise")
         )
     except (TypeError, KeyError, ValueError, binascii.Error):
-        raise _damaged(shown, phrase("a take of the word '{name}' cannot be decoded", name=name)) from None
+        raise _damaged_error(path_text, phrase("a take of the word '{name}' cannot be decoded", name=name)) from None
     count = len(frames) // BANDS
-    if len(frames) % BANDS or not 1 <= count <= _MOST_FRAMES or len(noise) != BANDS:
-        raise _damaged(shown, phrase("a take of the word '{name}' has the wrong length", name=name))
-    return Take(_decoded(frames).reshape(count, BANDS), _decoded(noise))
+    if len(frames) % BANDS or not 1 <= count <= _MAX_FRAMES or len(noise) != BANDS:
+        raise _damaged_error(path_text, phrase("a take of the word '{name}' has the wrong length", name=name))
+    return Take(_from_levels(frames).reshape(count, BANDS), _from_levels(noise))
 
 
-def _damaged(shown: str, why: Phrase, place: Span | None = None) -> LinkwrightError:
-    message = phrase("'{path}' cannot be read as a file of enrolled words: {why}", path=shown, why=why)
-    hint = phrase("replace it with a copy, or remove it and enrol the words again")
+def _damaged_error(path_text: str, why: Phrase, place: Span | None = None) -> LinkwrightError:
+    message = phrase("'{path}' cannot be read as a file of enrolled words: {why}", path=path_text, why=why)
+    hint = phrase("replace it with a backup, or remove it and enrol the words again")
     return LinkwrightError(Diagnostic("VOICE203", message, place, hint=hint))

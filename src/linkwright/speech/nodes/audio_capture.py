@@ -1,7 +1,7 @@
 """audio_capture: publishes the sound of a WAV file or of the microphone on the topics of audio_common.
 
 Topics and parameters are those of the node in ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
-``audio_info``. Deliberate difference: the format is always 16 kHz, mono, S16LE, which is that node's default, and never
+``audio_info``. Deliberate difference: the format is always 16 kHz, mono, S16LE, the default of that node, and never
 MP3.
 """
 
@@ -22,20 +22,20 @@ from linkwright.speech.sound.microphone import Microphone
 from linkwright.speech.sound.samples import BLOCK, RATE, Samples
 from linkwright.speech.sound.wav import read_wav
 
-_PUBLISHED = {"channels": 1, "depth": 16, "sample_rate": RATE, "sample_format": "S16LE", "format": "wave"}
-"""The format parameters of audio_capture, with their only supported values."""
+_FORMAT_PARAMETERS = {"channels": 1, "depth": 16, "sample_rate": RATE, "sample_format": "S16LE", "format": "wave"}
+"""The parameters of the format, with the only value that is supported for each."""
 
-_MOST_CHUNK = 10 * RATE
+_MAX_CHUNK = 10 * RATE
 
 
 class AudioCapture(SingleNode):
-    """The running node.
+    """Publishes the sound of a microphone or of a WAV file.
 
     Parameters:
 
     - ``device``: a microphone by number or part of its name.
-    - ``file``: a WAV file to publish instead, paced by the node's clock. It starts with the first subscriber and is
-      followed by silence, or with ``loop`` by the file again.
+    - ``file``: a WAV file to publish instead, paced by the node's clock. It starts when the first subscriber arrives
+    and is followed by silence, or with ``loop`` by the file again.
     - ``chunk``: the number of samples in a message.
 
     Raises:
@@ -45,7 +45,7 @@ class AudioCapture(SingleNode):
 
     DEFAULT_NAME = "audio_capture_node"
     NAMESPACE: ClassVar[str] = ""
-    """Of the topics of a node in no namespace."""
+    """The namespace of the topics if the node is in the root namespace."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
@@ -68,72 +68,72 @@ class AudioCapture(SingleNode):
         chunk: int = node.declare_parameter("chunk", BLOCK).value
         for name, value in {"src": "alsasrc", "dst": "appsink", "bitrate": 192, "diagnostic_tolerance": 0.1}.items():
             node.declare_parameter(name, value)
-        self._warn_of_other_forms()
-        if not 0 < chunk <= _MOST_CHUNK:
+        self._warn_about_format()
+        if not 0 < chunk <= _MAX_CHUNK:
             message = phrase(
                 "parameter '{name}' must be {least} to {most}, but it is {value}",
                 name="chunk",
                 least=1,
-                most=_MOST_CHUNK,
+                most=_MAX_CHUNK,
                 value=chunk,
             )
             raise LinkwrightError(Diagnostic("VOICE414", message))
         sound = read_wav(Path(file).expanduser()) if file else None
         namespace = node.get_namespace().rstrip("/") or self.NAMESPACE
-        self._names = (f"{namespace}/audio", f"{namespace}/audio_stamped")
+        self._topic_names = (f"{namespace}/audio", f"{namespace}/audio_stamped")
         self._topics = AudioTopics(node, namespace)
         if sound is None:
-            self._listen(device, chunk)
+            self._open_microphone(device, chunk)
         else:
-            self._play(sound, chunk)
+            self._start_playing(sound, chunk)
 
-    def _warn_of_other_forms(self) -> None:
-        for name, published in _PUBLISHED.items():
-            value: Any = self._node.declare_parameter(name, published).value
-            if value != published:
-                text = phrase(
+    def _warn_about_format(self) -> None:
+        for name, supported in _FORMAT_PARAMETERS.items():
+            value: Any = self._node.declare_parameter(name, supported).value
+            if value != supported:
+                warning = phrase(
                     "sound is published with {name} {published}, not {value}",
                     name=name,
-                    published=published,
+                    published=supported,
                     value=value,
                 )
-                self._node.get_logger().warning(localized(text))
+                self._node.get_logger().warning(localized(warning))
 
-    def _listen(self, device: str, chunk: int) -> None:
-        waiting: deque[Samples] = deque()
+    def _open_microphone(self, device: str, chunk: int) -> None:
+        pending: deque[Samples] = deque()
 
         def publish() -> None:
-            while waiting:
-                self._topics.publish(waiting.popleft())
+            while pending:
+                self._topics.publish(pending.popleft())
 
-        ready = self._node.create_guard_condition(publish)
+        condition = self._node.create_guard_condition(publish)
 
         def heard(samples: Samples) -> None:
-            waiting.append(samples)
-            ready.trigger()
+            pending.append(samples)
+            condition.trigger()
 
         self._microphone = Microphone(device, chunk, heard)
 
-    def _play(self, sound: Samples, chunk: int) -> None:
-        self._sound, self._chunk, self._at = sound, chunk, -1
+    def _start_playing(self, sound: Samples, chunk: int) -> None:
+        self._sound, self._chunk, self._position = sound, chunk, -1
         self._node.create_timer(chunk / RATE, self._publish_next)
 
     def _publish_next(self) -> None:
-        if self._at < 0:
-            if not any(map(self._node.count_subscribers, self._names)):
+        if self._position < 0:
+            if not any(map(self._node.count_subscribers, self._topic_names)):
                 return
-            self._at = 0
-        block: Samples = self._sound[self._at : self._at + self._chunk]
-        self._at += self._chunk
-        if self._loop and self._at >= len(self._sound):
-            self._at = 0
+            self._position = 0
+        block: Samples = self._sound[self._position : self._position + self._chunk]
+        self._position += self._chunk
+        if self._loop and self._position >= len(self._sound):
+            self._position = 0
         if len(block) < self._chunk:
             block = np.concatenate((block, np.zeros(self._chunk - len(block), np.int16)))
         self._topics.publish(block)
 
 
 class RobotAudioCapture(AudioCapture):
-    """The same node with the topics of our robots, in the namespace ``/audio``."""
+    """audio_capture with the topics of Linkwright's robots, in the namespace ``/audio``."""
 
     DEFAULT_NAME = "audio_capture"
     NAMESPACE = NAMESPACE

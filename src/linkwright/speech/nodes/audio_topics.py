@@ -7,10 +7,10 @@ from typing import Any
 from linkwright.graph import LATCHED_QOS, Node, Publisher, Time
 from linkwright.speech.nodes.audio_messages import (
     AUDIO,
-    AUDIO_DEPTH,
     AUDIO_INFO,
+    AUDIO_QUEUE_DEPTH,
     AUDIO_STAMPED,
-    AudioForm,
+    AudioFormat,
     audio_data,
     audio_info,
     audio_stamped,
@@ -22,7 +22,7 @@ NAMESPACE = "/audio"
 
 
 class AudioTopics:
-    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of an audio source: mono 16-bit PCM at 16 kHz.
+    """Publishes sound on the topics ``audio``, ``audio_stamped`` and ``audio_info``: mono 16-bit PCM at 16 kHz.
 
     Args:
         node: the node that publishes.
@@ -31,30 +31,32 @@ class AudioTopics:
 
     def __init__(self, node: Node, namespace: str = NAMESPACE) -> None:
         self._node = node
-        self._plain: Publisher[Any] = node.create_publisher(AUDIO, f"{namespace}/audio", AUDIO_DEPTH)
-        self._stamped: Publisher[Any] = node.create_publisher(AUDIO_STAMPED, f"{namespace}/audio_stamped", AUDIO_DEPTH)
-        self._info: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", LATCHED_QOS)
-        self._info.publish(audio_info(AudioForm()))
+        self._data_publisher: Publisher[Any] = node.create_publisher(AUDIO, f"{namespace}/audio", AUDIO_QUEUE_DEPTH)
+        self._stamped_publisher: Publisher[Any] = node.create_publisher(
+            AUDIO_STAMPED, f"{namespace}/audio_stamped", AUDIO_QUEUE_DEPTH
+        )
+        self._info_publisher: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", LATCHED_QOS)
+        self._info_publisher.publish(audio_info(AudioFormat()))
         self._stamps = SampleStamps()
 
     def restart(self) -> None:
-        """Start a new stream, unrelated to the previous one."""
+        """Start a new stream, whose stamps do not continue those of the previous one."""
         self._stamps.restart()
 
     def publish(self, samples: Samples, lost: float = 0.0) -> None:
-        """Publish the next block of the stream, whose last sample was recorded now or earlier.
+        """Publish the next block of the stream. Its last sample was recorded now or earlier.
 
         Args:
             samples: the block.
-            lost: seconds of sound that are missing in the block or before it.
+            lost: the seconds of sound that are missing in the block or before it.
         """
         data = samples.astype("<i2").tobytes()
         now = self._node.get_clock().now()
-        began = Time(nanoseconds=self._stamps.stamp(samples.size, now.nanoseconds, lost), clock_type=now.clock_type)
-        self._stamped.publish(audio_stamped(data, began.to_msg()))
-        self._plain.publish(audio_data(data))
+        start = Time(nanoseconds=self._stamps.stamp(samples.size, now.nanoseconds, lost), clock_type=now.clock_type)
+        self._stamped_publisher.publish(audio_stamped(data, start.to_msg()))
+        self._data_publisher.publish(audio_data(data))
 
     def close(self) -> None:
         """Remove the topics."""
-        for publisher in (self._plain, self._stamped, self._info):
+        for publisher in (self._data_publisher, self._stamped_publisher, self._info_publisher):
             self._node.destroy_publisher(publisher)

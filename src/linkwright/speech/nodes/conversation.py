@@ -18,26 +18,26 @@ from linkwright.speech.commands.actions import (
     SetSpeed,
     Slot,
     Stop,
-    amount,
     fill_template,
     format_value,
+    resolve_amount,
 )
-from linkwright.speech.commands.command_set import ANY, CommandSet, Understood, choose_text
+from linkwright.speech.commands.command_set import ANY, CommandSet, Match, choose_text
 from linkwright.speech.nodes.driving import Driver, Ending
 from linkwright.speech.nodes.requests import Requests
 
 
 class Conversation:
-    """Executes commands and answers them.
+    """Executes commands, and answers the user.
 
     Args:
-        node: the node.
-        commands: the commands.
-        language: the language of answers until the user speaks another language.
+        node: the node that owns the timer of questions.
+        commands: the commands of the robot.
+        language: the language of answers, until the user speaks another one.
         driver: moves the robot.
         requests: calls services and actions of other nodes.
-        patience: the timeout of a question, in s.
-        report_command: called with each command that is executed: its intent, and ``slot=value`` for each filled slot,
+        confirmation_timeout: the timeout for the answer to a question, in s.
+        report_command: called with each executed command: its intent, and ``slot=value`` for each filled slot,
             in m, rad, s and m/s.
         respond: called with each answer of the robot.
     """
@@ -49,16 +49,16 @@ class Conversation:
         language: str,
         driver: Driver,
         requests: Requests,
-        patience: float,
+        confirmation_timeout: float,
         report_command: Callable[[str], None],
         respond: Callable[[str], None],
     ) -> None:
         self._commands, self._language = commands, language
         self._driver, self._requests = driver, requests
         self._report_command, self._respond = report_command, respond
-        self._asked: tuple[Understood, str] | None = None
+        self._pending: tuple[Match, str] | None = None
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self._patience = node.create_timer(patience, self._unanswered, clock=clock, autostart=False)
+        self._question_timer = node.create_timer(confirmation_timeout, self._on_no_answer, clock=clock, autostart=False)
         for command in commands.commands:
             requests.prepare(command.action)
             for publication in command.action.publishes if isinstance(command.action, Stop) else ():
@@ -66,104 +66,104 @@ class Conversation:
 
     @property
     def is_busy(self) -> bool:
-        """Whether there is an activity that a stop would end."""
+        """Whether the robot moves, or a request is active, so that a stop would end something."""
         return self._driver.is_moving or self._requests.is_active
 
     def handle(self, text: str) -> bool:
         """Execute the command in a text, or ask for confirmation; return whether the text was understood."""
-        answer = self._commands.answer(text) if self._asked is not None else None
-        if self._asked is not None and answer is not None:
-            understood, asked_for = self._asked
-            self._forget()
+        answer = self._commands.answer(text) if self._pending is not None else None
+        if self._pending is not None and answer is not None:
+            confirmed, spoken_text = self._pending
+            self._drop_question()
             if answer:
-                self._carry_out(understood, asked_for)
+                self._carry_out(confirmed, spoken_text)
             else:
                 self.answer(phrase("I will not do it"))
             return True
-        found = self._commands.understand(text)
-        if found is None:
+        match = self._commands.understand(text)
+        if match is None:
             return False
-        self._forget()
-        self._answer_in(found.language)
-        if found.command.question:
-            self._asked = found, text
-            self._respond(str(fill_template(choose_text(found.command.question, self._language), found.values)))
-            self._patience.reset()
+        self._drop_question()
+        self._set_language(match.language)
+        if match.command.question:
+            self._pending = match, text
+            self._respond(str(fill_template(choose_text(match.command.question, self._language), match.values)))
+            self._question_timer.reset()
         else:
-            self._carry_out(found, text)
+            self._carry_out(match, text)
         return True
 
     def stop(self, text: str = "") -> None:
-        """Stop everything.
+        """Stop the robot, cancel all requests, and notify other nodes.
 
         Args:
-            text: the spoken text to answer; empty if there was none.
+            text: the text that was understood as a stop, to be answered; empty for no answer.
         """
-        self._forget()
+        self._drop_question()
         self._driver.stop()
         self._requests.cancel_all()
         self._notify_others()
         if text:
             stop = self._commands.stops[0]
-            found = self._commands.understand(text)
-            if found is not None:
-                self._answer_in(found.language)
+            match = self._commands.understand(text)
+            if match is not None:
+                self._set_language(match.language)
             self._report_command(stop.intent)
             self._respond(choose_text(stop.response, self._language) or text)
 
-    def rest(self, why: Phrase) -> None:
-        """Stop driving because the source of the commands is lost, and say why."""
+    def rest(self, reason: Phrase) -> None:
+        """Stop driving, and answer with the reason."""
         self._driver.stop()
-        self.answer(why)
+        self.answer(reason)
 
     def answer(self, text: Phrase) -> None:
         """Answer in the language that the user spoke last."""
         self._respond(localized(text, language_of(self._language) or ENGLISH))
 
-    def drive_ended(self, ending: Ending) -> None:
-        """Handle the end of a drive, which has finished or timed out."""
+    def on_drive_end(self, ending: Ending) -> None:
+        """Tell the user if a drive has ended because the robot is stuck."""
         if ending == "stuck":
             self.answer(phrase("I am stuck, so I stop"))
 
-    def goal_ended(self, reached: bool, reason: str) -> None:
-        """Handle the end of a goal, which was reached or has failed."""
-        if reached:
+    def on_goal_end(self, is_reached: bool, reason: str) -> None:
+        """Tell the user whether a goal was reached, or why it failed."""
+        if is_reached:
             self.answer(phrase("I am done"))
         elif reason:
             self.answer(phrase("I could not do it: {reason}", reason=reason))
         else:
             self.answer(phrase("I could not do it"))
 
-    def _answer_in(self, language: str) -> None:
-        """Answer in a given language."""
+    def _set_language(self, language: str) -> None:
+        """Use a language for further answers, unless the phrase is valid in all languages."""
         if language != ANY:
             self._language = language
 
-    def _carry_out(self, found: Understood, text: str) -> None:
-        if isinstance(found.command.action, Stop):
+    def _carry_out(self, match: Match, text: str) -> None:
+        if isinstance(match.command.action, Stop):
             self.stop(text)
             return
-        values = found.values
+        values = match.values
         self._report_command(
-            " ".join([found.command.intent, *(f"{name}={format_value(value)}" for name, value in values.items())])
+            " ".join([match.command.intent, *(f"{name}={format_value(value)}" for name, value in values.items())])
         )
-        problem = self._done(found)
+        problem = self._execute(match)
         if problem is not None:
             self.answer(problem)
         else:
-            self._respond(str(fill_template(choose_text(found.command.response, self._language) or text, values)))
+            self._respond(str(fill_template(choose_text(match.command.response, self._language) or text, values)))
 
-    def _done(self, found: Understood) -> Phrase | None:
-        """Execute an action; return None, or the reason why it cannot be executed."""
-        action, values = found.command.action, found.values
-        if found.command.moves:
-            self._make_way(found)
+    def _execute(self, match: Match) -> Phrase | None:
+        """Execute an action; return why it cannot be executed, or None."""
+        action, values = match.command.action, match.values
+        if match.command.moves:
+            self._end_other_motion(match)
         if isinstance(action, Drive):
             self._driver.begin(action, values)
         elif isinstance(action, ScaleSpeed):
             self._driver.scale(action.factor)
         elif isinstance(action, SetSpeed):
-            self._driver.set_speed(amount(action.speed, values) or 0.0)
+            self._driver.set_speed(resolve_amount(action.speed, values) or 0.0)
         elif isinstance(action, Publish):
             self._requests.publish(action, values)
         elif isinstance(action, Launch):
@@ -179,13 +179,13 @@ class Conversation:
             return phrase("I cannot: no node serves '{name}'", name=action.name)
         return None
 
-    def _make_way(self, found: Understood) -> None:
-        """End the motion that another one replaces, and notify other nodes."""
-        action = found.command.action
+    def _end_other_motion(self, match: Match) -> None:
+        """End the motion that a command replaces, and notify other nodes."""
+        action = match.command.action
         self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
         if not isinstance(action, Drive) and self._driver.is_moving:
             self._driver.stop()
-        if not isinstance(action, Publish):  # the subscriber of the message may start a motion
+        if not isinstance(action, Publish):  # the subscriber of this message may start a motion itself
             self._notify_others()
 
     def _notify_others(self) -> None:
@@ -193,10 +193,10 @@ class Conversation:
             for publication in stop.action.publishes if isinstance(stop.action, Stop) else ():
                 self._requests.publish(publication, {})
 
-    def _forget(self) -> None:
-        self._asked = None
-        self._patience.cancel()
+    def _drop_question(self) -> None:
+        self._pending = None
+        self._question_timer.cancel()
 
-    def _unanswered(self) -> None:
-        self._forget()
+    def _on_no_answer(self) -> None:
+        self._drop_question()
         self.answer(phrase("I received no answer, so I will not do it"))

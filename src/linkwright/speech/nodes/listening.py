@@ -13,83 +13,93 @@ from linkwright.graph import Node
 from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import RATE, Samples
 
-_MOST_WAITING = 100
-"""Blocks: an engine that is 10 s behind gets no new sound until it has caught up."""
+_MAX_PENDING = 100
+"""The maximum number of waiting blocks: an engine that is 10 s behind gets no new sound until it has caught up."""
 
-_Found: TypeAlias = Heard | Diagnostic | LinkwrightError | None
-"""Results of the thread; None: all sound up to the end of the utterance was processed."""
+_ThreadResult: TypeAlias = Heard | Diagnostic | LinkwrightError | None
+"""Results of the thread; None means that all sound up to the end of an utterance was processed."""
 
-_MOST_GAPS = 100
-_NEAR = 0.2  # s: engines do not know the exact start of a word
+_MAX_GAPS = 100
+_GAP_TOLERANCE = 0.2  # s: engines do not know the exact start of a word
 
 
 class Listener:
-    """Passes sound to an engine, and its results to the node.
+    """Passes sound to an engine in a thread, and the engine's results to the node.
 
     Args:
-        node: the node, which runs `heard` and `failed` as callbacks.
-        make: creates the engine in the thread, which may take seconds.
-        heard: called with each result.
-        finished: called when all speech before `finish` was processed.
-        warn: called with the reason why an engine does not recognise anything, whenever it changes.
-        failed: called with the error that ended the engine.
+        node: the node that runs the functions below as callbacks.
+        make_engine: creates the engine in the thread; this may take seconds.
+        on_result: called with each result of the engine.
+        on_finish: called when all sound before a call of `finish` was processed.
+        on_problem: called with the reason why the engine recognises less than it should, whenever the reason changes.
+        on_error: called with the error that ended the engine.
     """
 
     def __init__(
         self,
         node: Node,
-        make: Callable[[], SpeechEngine],
-        heard: Callable[[Heard], None],
-        finished: Callable[[], None],
-        warn: Callable[[Diagnostic], None],
-        failed: Callable[[LinkwrightError], None],
+        make_engine: Callable[[], SpeechEngine],
+        on_result: Callable[[Heard], None],
+        on_finish: Callable[[], None],
+        on_problem: Callable[[Diagnostic], None],
+        on_error: Callable[[LinkwrightError], None],
     ) -> None:
-        self._make, self._heard, self._finished, self._warn, self._failed = make, heard, finished, warn, failed
-        self._handed = 0
-        self._gaps: deque[tuple[float, float]] = deque(maxlen=_MOST_GAPS)  # position and length of each gap
-        self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
-        self._found: deque[_Found] = deque()
-        self._ready = node.create_guard_condition(self._deliver)
+        self._make, self._heard, self._finished, self._warn, self._failed = (
+            make_engine,
+            on_result,
+            on_finish,
+            on_problem,
+            on_error,
+        )
+        self._sample_count = 0
+        self._gaps: deque[tuple[float, float]] = deque(maxlen=_MAX_GAPS)  # position and length of each gap
+        self._blocks: SimpleQueue[Samples | bool | None] = SimpleQueue()
+        self._found: deque[_ThreadResult] = deque()
+        self._ready = node.create_guard_condition(self._run_callbacks)
         self._thread = threading.Thread(target=self._run, name="speech engine", daemon=True)
         self._thread.start()
 
     def hear(self, samples: Samples) -> bool:
-        """Pass a block of sound to the engine.
+        """Pass a block of sound to the engine; return False if the block was dropped.
 
-        Returns False if the engine lags behind and the block was dropped.
+        A block is dropped if the engine lags far behind.
         """
-        if self._sound.qsize() >= _MOST_WAITING:
+        if self._blocks.qsize() >= _MAX_PENDING:
             self.note_gap(samples.size / RATE)
             return False
-        self._handed += samples.size
-        self._sound.put(samples)
+        self._sample_count += samples.size
+        self._blocks.put(samples)
         return True
 
     def note_gap(self, seconds: float) -> None:
-        """Record missing sound, in seconds, before the next block."""
-        self._gaps.append((self._handed / RATE, seconds))
+        """Record that seconds of sound are missing before the next block."""
+        self._gaps.append((self._sample_count / RATE, seconds))
 
-    def lost_in(self, heard: Heard) -> float:
-        """Return the seconds of sound that were missing in a result, or just before or after it."""
-        return sum(seconds for at, seconds in self._gaps if heard.start - _NEAR <= at <= heard.end + _NEAR)
+    def missing_seconds(self, result: Heard) -> float:
+        """Return how many seconds of sound are missing within a result, or just before or after it."""
+        return sum(
+            seconds
+            for position, seconds in self._gaps
+            if result.start - _GAP_TOLERANCE <= position <= result.end + _GAP_TOLERANCE
+        )
 
     def finish(self) -> None:
-        """End the utterance."""
-        self._sound.put(True)
+        """End the current utterance."""
+        self._blocks.put(True)
 
     def close(self) -> None:
-        """Close the engine."""
-        self._sound.put(None)
+        """Stop the thread, and close the engine."""
+        self._blocks.put(None)
         self._thread.join()
 
     def _run(self) -> None:
         try:
             self._serve()
         except LinkwrightError as error:
-            self._pass(error)
+            self._queue_result(error)
         except Exception as error:  # noqa: BLE001 - of an engine that others may bring
             message = phrase("the speech engine failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
-            self._pass(LinkwrightError(Diagnostic("VOICE307", message)))
+            self._queue_result(LinkwrightError(Diagnostic("VOICE307", message)))
 
     def _serve(self) -> None:
         engine = self._make()
@@ -99,30 +109,30 @@ class Listener:
                 if engine.problem != problem:
                     problem = engine.problem
                     if problem is not None:
-                        self._pass(problem)
-                if (block := self._sound.get()) is None:
+                        self._queue_result(problem)
+                if (block := self._blocks.get()) is None:
                     return
                 if isinstance(block, bool):
-                    found: list[_Found] = [*engine.finish(), None]
+                    results: list[_ThreadResult] = [*engine.finish(), None]
                 else:
-                    found = [*engine.hear(block)]
-                for result in found:
-                    self._pass(result)
+                    results = [*engine.hear(block)]
+                for result in results:
+                    self._queue_result(result)
         finally:
             engine.close()
 
-    def _pass(self, found: _Found) -> None:
-        self._found.append(found)
+    def _queue_result(self, result: _ThreadResult) -> None:
+        self._found.append(result)
         self._ready.trigger()
 
-    def _deliver(self) -> None:
+    def _run_callbacks(self) -> None:
         while self._found:
-            found = self._found.popleft()
-            if isinstance(found, LinkwrightError):
-                self._failed(found)
-            elif isinstance(found, Diagnostic):
-                self._warn(found)
-            elif found is None:
+            result = self._found.popleft()
+            if isinstance(result, LinkwrightError):
+                self._failed(result)
+            elif isinstance(result, Diagnostic):
+                self._warn(result)
+            elif result is None:
                 self._finished()
             else:
-                self._heard(found)
+                self._heard(result)

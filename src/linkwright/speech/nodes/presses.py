@@ -1,4 +1,4 @@
-"""Presses of the talk button: a press without an understood command is answered once its sound was processed."""
+"""Presses of the talk button: a press without a command is answered after its sound has been processed."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.speech.engine import Heard
 
-SAY_IT_AGAIN = phrase("I did not hear all of that: please repeat")
+PLEASE_REPEAT = phrase("I did not hear all of that, please repeat")
 
-_MISSED = 3
-"""Presses in a row without any command after which enrolling is proposed."""
+_MISSES_BEFORE_PROPOSAL = 3
+"""The number of presses in a row without any command after which enrolling is proposed."""
 
 
 @dataclass(slots=True)
 class _Press:
-    """The results of one press.
+    """The words that were recognised during one press.
 
     Attributes:
         is_settled: whether a command of this press was executed or answered.
         has_gaps: whether some of its sound was lost.
-        unknown: the last recognized text that is not a command.
+        unknown: the last recognized speech that is not a command.
     """
 
     is_settled: bool = False
@@ -30,10 +30,10 @@ class _Press:
 
 
 class Presses:
-    """Presses whose sound the engine is still processing; the next press may have begun before that.
+    """The presses whose sound the engine still processes. The next press may begin before that is done.
 
     Args:
-        can_enrol: whether the words are enrolled in pages, so the user can enrol words that were not understood.
+        can_enrol: whether pages can enrol words, so that the user can enrol words that were not understood.
 
     Attributes:
         proposes_enrolling: whether the answer to the last press proposed enrolling. The next press, or a command,
@@ -43,46 +43,46 @@ class Presses:
     def __init__(self, *, can_enrol: bool = False) -> None:
         self._can_enrol = can_enrol
         self.proposes_enrolling = False
-        self._missed = 0
+        self._missed_presses = 0
         self._presses: deque[_Press] = deque()
 
     def begin(self) -> None:
-        """Record that the button was pressed."""
+        """Record that the button is pressed."""
         self.proposes_enrolling = False
         self._presses.append(_Press())
 
     def settle(self) -> None:
-        """Record that a command was executed or answered."""
-        self._missed = 0
+        """Record that a command of the oldest press was executed or answered."""
+        self._missed_presses = 0
         self.proposes_enrolling = False
         if self._presses:
             self._presses[0].is_settled = True
 
     def note_gap(self) -> None:
-        """Record that sound was lost since the last press."""
+        """Record that sound of the latest press was lost."""
         if self._presses:
             self._presses[-1].has_gaps = True
 
-    def note_unknown(self, heard: Heard) -> None:
-        """Record speech that is not a command."""
+    def note_unknown(self, result: Heard) -> None:
+        """Record speech of the oldest press that is not a command."""
         if self._presses:
-            self._presses[0].unknown = heard
+            self._presses[0].unknown = result
 
     def end(self) -> Phrase | None:
-        """End the oldest press, whose sound was processed, and return the answer to it, or None."""
+        """End the oldest press, after its sound was processed; return the answer to it, or None."""
         if not self._presses:
             return None
         press = self._presses.popleft()
         if press.is_settled or press.unknown is None:
             return None
         if press.has_gaps:
-            return SAY_IT_AGAIN
-        self._missed += 1
-        self.proposes_enrolling = self._can_enrol and self._missed % _MISSED == 0
+            return PLEASE_REPEAT
+        self._missed_presses += 1
+        self.proposes_enrolling = self._can_enrol and self._missed_presses % _MISSES_BEFORE_PROPOSAL == 0
         if self.proposes_enrolling:
-            return phrase("I do not know your words: enrol them in the Voice panel, in the room where you speak")
+            return phrase("I do not recognise your words: enrol them in the Voice panel, in the room where you speak")
         if press.unknown.nearest:
             return phrase(
-                "I heard something that is not a command: '{text}' is the nearest", text=press.unknown.nearest
+                "I heard something that is not a command; the most similar one is '{text}'", text=press.unknown.nearest
             )
         return phrase("I heard something that is not a command")

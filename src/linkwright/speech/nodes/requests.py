@@ -1,4 +1,4 @@
-"""Requests of commands to other nodes: action goals, service calls, messages, launch files."""
+"""Send the requests of commands to other nodes: action goals, service calls, messages and launch files."""
 
 from __future__ import annotations
 
@@ -28,43 +28,43 @@ from linkwright.speech.commands.actions import (
 from linkwright.speech.commands.command_set import Place
 
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
-_DEPTH = 10
-_GRACE = 5.0
-"""s for a launch to end on its own."""
+_QUEUE_DEPTH = 10
+_EXIT_TIMEOUT = 5.0
+"""The time in s that a launch file has to end before it is killed."""
 
 
 class Goals:
-    """Goals of one action, one at a time.
+    """Sends goals of one action, one at a time.
 
     Args:
         node: the node that sends them.
         type_name: the type of the action.
         name: the name of the action.
-        ended: called with whether the goal was reached, and the server's reason if it gives one; not called for a goal
-            that was canceled or replaced.
+        on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty text; not
+            called for a goal that was canceled or replaced.
     """
 
-    def __init__(self, node: Node, type_name: str, name: str, ended: Callable[[bool, str], None]) -> None:
-        self._ended = ended
+    def __init__(self, node: Node, type_name: str, name: str, on_end: Callable[[bool, str], None]) -> None:
+        self._ended = on_end
         self._client = ActionClient(node, type_name, name)
-        self._cancel_all = node.create_client("action_msgs/srv/CancelGoal", f"{name}/_action/cancel_goal")
+        self._cancel_client = node.create_client("action_msgs/srv/CancelGoal", f"{name}/_action/cancel_goal")
         self._number = 0
         self._handle: Any = None
         self.is_active = False
 
     @property
     def is_served(self) -> bool:
-        """Whether there is an action server."""
+        """Whether an action server is available."""
         return self._client.server_is_ready()
 
     def send(self, goal: Any) -> None:
         """Send a goal, which replaces the previous one."""
         self._number += 1
         self.is_active = True
-        self._client.send_goal_async(goal).add_done_callback(partial(self._accepted, self._number))
+        self._client.send_goal_async(goal).add_done_callback(partial(self._receive_response, self._number))
 
     def leave(self) -> None:
-        """Cancel the goal that was sent by this client."""
+        """Cancel the goal of this client."""
         handle, self._handle = self._handle, None
         self._number += 1
         if self.is_active and handle is not None:
@@ -74,32 +74,32 @@ class Goals:
     def cancel_all(self) -> None:
         """Cancel all goals of the action, including those of other clients."""
         self.leave()
-        if self._cancel_all.service_is_ready():
-            self._cancel_all.call_async(self._cancel_all.srv_type.Request())
+        if self._cancel_client.service_is_ready():
+            self._cancel_client.call_async(self._cancel_client.srv_type.Request())
 
-    def _accepted(self, number: int, future: Any) -> None:
+    def _receive_response(self, number: int, future: Any) -> None:
         handle = future.result()
         if number != self._number:
             if handle.accepted and not self.is_active:
                 handle.cancel_goal_async()
         elif handle.accepted:
             self._handle = handle
-            handle.get_result_async().add_done_callback(partial(self._done, number))
+            handle.get_result_async().add_done_callback(partial(self._receive_result, number))
         else:
-            self._end(False, "")
+            self._finish(False, "")
 
-    def _done(self, number: int, future: Any) -> None:
+    def _receive_result(self, number: int, future: Any) -> None:
         if number == self._number:
-            answer = future.result()
-            self._end(answer.status == GoalStatus.SUCCEEDED, getattr(answer.result, "error_msg", ""))
+            result = future.result()
+            self._finish(result.status == GoalStatus.SUCCEEDED, getattr(result.result, "error_msg", ""))
 
-    def _end(self, reached: bool, reason: str) -> None:
+    def _finish(self, is_reached: bool, reason: str) -> None:
         self._handle, self.is_active = None, False
-        self._ended(reached, reason)
+        self._ended(is_reached, reason)
 
 
-def pose_goal(node: Node, place: Place) -> Any:
-    """Return a goal of navigate_to_pose for a place."""
+def make_pose_goal(node: Node, place: Place) -> Any:
+    """Return a goal of ``navigate_to_pose`` for a place, stamped now."""
     goal = get_action(NAVIGATE).Goal()
     goal.pose.header.frame_id = place.frame
     goal.pose.header.stamp = node.get_clock().now().to_msg()
@@ -109,83 +109,86 @@ def pose_goal(node: Node, place: Place) -> Any:
 
 
 class Requests:
-    """Clients and publishers for all requests of commands.
+    """Sends all requests of commands.
 
     Args:
         node: the node that sends requests.
-        ended: called when a goal is over; see `Goals`.
-        respond: called with the ``message`` of a service's response.
+        on_goal_end: called when a goal has ended; see `Goals`.
+        respond: called with the field ``message`` of a service's response.
     """
 
-    def __init__(self, node: Node, ended: Callable[[bool, str], None], respond: Callable[[str], None]) -> None:
-        self._node, self._ended, self._respond = node, ended, respond
+    def __init__(self, node: Node, on_goal_end: Callable[[bool, str], None], respond: Callable[[str], None]) -> None:
+        self._node, self._ended, self._respond = node, on_goal_end, respond
         self._goals: dict[str, Goals] = {}
         self._publishers: dict[str, Publisher[Any]] = {}
-        self._launched: subprocess.Popen[bytes] | None = None
-        self._ending: threading.Thread | None = None
+        self._launch_process: subprocess.Popen[bytes] | None = None
+        self._end_thread: threading.Thread | None = None
 
     @property
     def is_active(self) -> bool:
-        """Whether a goal or a launch file of these requests is active."""
+        """Whether one of the goals, or the launch file, is active."""
         return self._is_launched or any(goals.is_active for goals in self._goals.values())
 
     def prepare(self, action: object) -> None:
-        """Create the clients for an action that take some time to connect.
+        """Create the clients and publishers for an action, because they take some time to connect.
 
-        A service gets its client when it is called, so that nothing waits for a service that only some commands need.
+        A client of a service is only created for a call, so that nothing waits for services that only some commands
+        need.
         """
         if isinstance(action, GoTo):
             self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._ended))
         elif isinstance(action, SendGoal) and action.action not in self._goals:
             self._goals[action.action] = Goals(self._node, action.type_name, action.action, self._ended)
         elif isinstance(action, Publish) and action.topic not in self._publishers:
-            kind = get_message(action.type_name)
-            self._publishers[action.topic] = self._node.create_publisher(kind, action.topic, _DEPTH)
+            message_class = get_message(action.type_name)
+            self._publishers[action.topic] = self._node.create_publisher(message_class, action.topic, _QUEUE_DEPTH)
 
     def send_pose(self, action: str, place: Place) -> bool:
-        """Send a goal to navigate to a place; return whether there is a server."""
+        """Send a goal to navigate to a place; return False if there is no server."""
         goals = self._goals[action]
         if goals.is_served:
-            goals.send(pose_goal(self._node, place))
+            goals.send(make_pose_goal(self._node, place))
             return True
         return False
 
     def send_goal(self, action: SendGoal, values: Values) -> bool:
-        """Send a goal; return whether there is a server."""
+        """Send a goal of any action; return False if there is no server."""
         goals = self._goals[action.action]
         if not goals.is_served:
             return False
         goal = get_action(action.type_name).Goal()
-        self._fill(goal, fill_template(action.goal, values))
+        self._set_fields(goal, fill_template(action.goal, values))
         goals.send(goal)
         return True
 
     def call(self, action: CallService, values: Values) -> bool:
-        """Call a service; return whether there is a server."""
+        """Call a service; return False if there is no server."""
         if not self._is_served(action):
             return False
         client = self._node.create_client(get_service(action.type_name), action.name)
         request = client.srv_type.Request()
-        self._fill(request, fill_template(action.request, values))
-        client.call_async(request).add_done_callback(partial(self._answered, client))
+        self._set_fields(request, fill_template(action.request, values))
+        client.call_async(request).add_done_callback(partial(self._receive_service_response, client))
         return True
 
     def publish(self, action: Publish, values: Values) -> None:
         """Publish a message."""
         publisher = self._publishers[action.topic]
         message = publisher.msg_type()
-        self._fill(message, fill_template(action.message, values))
+        self._set_fields(message, fill_template(action.message, values))
         publisher.publish(message)
 
     def launch(self, action: Launch, values: Values) -> None:
         """Start a launch file in a separate process, which replaces the previous one."""
         self._end_launch()
-        words = [f"{name}:={_word(value)}" for name, value in fill_template(action.arguments, values).items()]
-        command = python_command(["-m", "linkwright", "launch", action.package, action.file, *words])
-        self._launched = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
+        launch_arguments = [
+            f"{name}:={_format_argument(value)}" for name, value in fill_template(action.arguments, values).items()
+        ]
+        command = python_command(["-m", "linkwright", "launch", action.package, action.file, *launch_arguments])
+        self._launch_process = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
     def leave(self, but: str = "") -> None:
-        """Cancel the goals of these requests, except those of the action `but`, and end the launch file."""
+        """Cancel the goals of these requests, except goals of the action `but`, and end the launch file."""
         for name, goals in self._goals.items():
             if name != but:
                 goals.leave()
@@ -194,58 +197,58 @@ class Requests:
     def cancel_all(self) -> None:
         """End the launch file, and cancel all goals of the commands' actions.
 
-        Goals of other clients are included.
+        Goals that other clients have sent to these actions are included.
         """
         for goals in self._goals.values():
             goals.cancel_all()
         self._end_launch()
 
     def close(self) -> None:
-        """End all goals and the launch file, and wait for their end."""
+        """Cancel all goals, end the launch file, and wait for its end."""
         self.leave()
-        if self._ending is not None:
-            self._ending.join()
+        if self._end_thread is not None:
+            self._end_thread.join()
 
     @property
     def _is_launched(self) -> bool:
-        return self._launched is not None and self._launched.poll() is None
+        return self._launch_process is not None and self._launch_process.poll() is None
 
     def _end_launch(self) -> None:
         """Interrupt the launch file without waiting for its end."""
-        launched, self._launched = self._launched, None
-        if launched is None or launched.poll() is not None:
+        process, self._launch_process = self._launch_process, None
+        if process is None or process.poll() is not None:
             return
-        interrupt(launched)
-        self._ending = threading.Thread(target=_wait_or_kill, args=(launched,), daemon=True)
-        self._ending.start()
+        interrupt(process)
+        self._end_thread = threading.Thread(target=_wait_or_kill, args=(process,), daemon=True)
+        self._end_thread.start()
 
-    def _fill(self, message: Any, values: Any) -> None:
+    def _set_fields(self, message: Any, values: Any) -> None:
         stamp = self._node.get_clock().now().to_msg()
         for set_stamp in set_fields(message, values, expand_header_auto=True, expand_time_now=True):
             set_stamp(stamp)
 
     def _is_served(self, action: CallService) -> bool:
-        wanted = (EndpointKind.SERVICE, self._node.resolve_service_name(action.name), action.type_name)
+        service = (EndpointKind.SERVICE, self._node.resolve_service_name(action.name), action.type_name)
         return any(
-            (endpoint.kind, endpoint.name, endpoint.type_name) == wanted for endpoint in self._node.graph.endpoints()
+            (endpoint.kind, endpoint.name, endpoint.type_name) == service for endpoint in self._node.graph.endpoints()
         )
 
-    def _answered(self, client: Client[Any, Any], future: Any) -> None:
+    def _receive_service_response(self, client: Client[Any, Any], future: Any) -> None:
         self._node.destroy_client(client)
         text = getattr(future.result(), "message", "")
         if text and isinstance(text, str):
             self._respond(text)
 
 
-def _word(value: Any) -> str:
-    """Return the text of a launch argument's value."""
+def _format_argument(value: Any) -> str:
+    """Return the value of a launch argument as text."""
     return str(value).lower() if isinstance(value, bool) else format_value(value)
 
 
-def _wait_or_kill(launched: subprocess.Popen[bytes]) -> None:
+def _wait_or_kill(process: subprocess.Popen[bytes]) -> None:
     """Wait for an interrupted launch file to end, and kill it if it does not."""
     try:
-        launched.wait(_GRACE)
+        process.wait(_EXIT_TIMEOUT)
     except subprocess.TimeoutExpired:
-        launched.kill()
-        launched.wait()
+        process.kill()
+        process.wait()

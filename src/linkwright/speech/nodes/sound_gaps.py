@@ -1,7 +1,7 @@
-"""Detect missing sound from the stamps of blocks.
+"""Detect missing sound from the stamps of sound blocks.
 
-AudioDataStamped does not number its messages. Linkwright's sources stamp each block with the end of the previous one,
-and follow the clock slowly. A jump ahead therefore means that sound was lost in transit.
+AudioDataStamped does not number its messages. Linkwright's sources stamp each block with the end of the previous one
+and follow the clock only slowly. A jump forward therefore means that sound was lost in transit.
 """
 
 from __future__ import annotations
@@ -9,25 +9,25 @@ from __future__ import annotations
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.speech.sound.samples import RATE
 
-_MOST_BEHIND = 10 * NANOSECONDS_PER_SECOND
-"""A suspended source publishes its backlog late; one that is later than this has restarted."""
+_MAX_BEHIND = 10 * NANOSECONDS_PER_SECOND
+"""The maximum delay in ns of a source that publishes a backlog; a source that is later has restarted."""
 
-_MOST_AHEAD = NANOSECONDS_PER_SECOND
-_DRIFT = 0.01  # the fraction of a block by which stamps approach the clock with each block
+_MAX_AHEAD = NANOSECONDS_PER_SECOND
+_MAX_DRIFT = 0.01  # the share of a block's length by which its stamp can approach the clock
 
-_STEADY = 5 * 10**6
-_STEADY_BLOCKS = 3  # blocks without a jump, after which the publisher is taken to count samples
-_JUMP = 50 * 10**6
+_JITTER = 5 * 10**6
+_STEADY_BLOCKS = 3  # blocks without a jump, after which the publisher is assumed to count samples
+_MIN_GAP = 50 * 10**6
 
 
 class SampleStamps:
-    """Computes stamps of the blocks of a stream, in nanoseconds of a clock."""
+    """Computes the stamps of the blocks of a stream, in nanoseconds of a clock."""
 
     def __init__(self) -> None:
         self._next: int | None = None
 
     def restart(self) -> None:
-        """Start a new stream, unrelated to the previous one."""
+        """Start a new stream, whose stamps do not continue those of the previous one."""
         self._next = None
 
     def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
@@ -35,32 +35,32 @@ class SampleStamps:
 
         Args:
             samples: the number of samples in the block.
-            now: the time when its last sample was recorded, or later.
-            lost: seconds of sound missing in the block or before it: the stamp jumps over them, but at most one second
-                into the future.
+            now: the time in ns at which the last sample was recorded, or later.
+            lost: the seconds of sound that are missing in the block or before it. The stamp jumps over them, but at
+                most one second into the future.
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
-        began = max(0, now - length)
-        if self._next is not None and -_MOST_AHEAD < (behind := began - self._next) < _MOST_BEHIND:
-            most = round(_DRIFT * length)
-            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MOST_AHEAD)
-            began = self._next + min(max(behind, -most), most) + jump
-        self._next = began + length
-        return began
+        start = max(0, now - length)
+        if self._next is not None and -_MAX_AHEAD < (behind := start - self._next) < _MAX_BEHIND:
+            max_correction = round(_MAX_DRIFT * length)
+            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MAX_AHEAD)
+            start = self._next + min(max(behind, -max_correction), max_correction) + jump
+        self._next = start + length
+        return start
 
 
 class SoundGaps:
-    """Detects missing sound before a block from stamps, if the publisher counts samples."""
+    """Detects from stamps that sound is missing, if the publisher derives its stamps from a sample count."""
 
     def __init__(self) -> None:
         self._next: int | None = None
-        self._steady = 0
-        self._small = 0  # sum of jumps that are too small to report individually
+        self._steady_blocks = 0
+        self._small_jumps = 0  # sum of jumps that are too small to report individually
 
     def restart(self) -> None:
-        """Start a new stream whose publisher is assumed to stamp it in the same way."""
+        """Start a new stream of a publisher that is assumed to stamp in the same way as before."""
         self._next = None
-        self._small = 0
+        self._small_jumps = 0
 
     def missing(self, stamp: int, samples: int) -> float:
         """Return the seconds of sound that are missing before a block.
@@ -72,15 +72,17 @@ class SoundGaps:
         length = samples * NANOSECONDS_PER_SECOND // RATE
         jump = 0 if self._next is None else stamp - self._next
         self._next = stamp + length
-        if jump <= _STEADY:
-            # Only the stamps of a publisher that uses the arrival times of blocks can be early after they were late.
-            self._steady, self._small = (self._steady + 1, self._small) if jump >= -_STEADY else (0, 0)
+        if jump <= _JITTER:
+            # Stamps that are early after late ones only occur if a publisher stamps blocks with their arrival times.
+            self._steady_blocks, self._small_jumps = (
+                (self._steady_blocks + 1, self._small_jumps) if jump >= -_JITTER else (0, 0)
+            )
             return 0.0
-        if self._steady < _STEADY_BLOCKS:
-            self._steady = 0
+        if self._steady_blocks < _STEADY_BLOCKS:
+            self._steady_blocks = 0
             return 0.0
-        self._small += jump
-        if self._small <= _JUMP:
+        self._small_jumps += jump
+        if self._small_jumps <= _MIN_GAP:
             return 0.0
-        missing, self._small = self._small, 0
+        missing, self._small_jumps = self._small_jumps, 0
         return missing / NANOSECONDS_PER_SECOND

@@ -1,7 +1,7 @@
 """voice_commander of my_robot_voice: turns spoken commands into velocities, goals, service calls and messages.
 
 An engine of `linkwright.speech` recognises the sound on ``audio/audio_stamped``, and the command file defines the
-meaning of the words. Sound counts while ``voice/listen`` reports that a button is held, or always with
+meaning of the words. The node listens while ``voice/listen`` reports that a button is held, or always with
 ``open_listening``.
 """
 
@@ -23,34 +23,36 @@ from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
 from linkwright.speech.engine import EngineOptions, Heard, make_engine
 from linkwright.speech.nodes.audio_messages import (
-    AUDIO_DEPTH,
     AUDIO_INFO,
+    AUDIO_QUEUE_DEPTH,
     AUDIO_STAMPED,
-    AudioForm,
+    AudioFormat,
     AudioReader,
 )
 from linkwright.speech.nodes.conversation import Conversation
 from linkwright.speech.nodes.driving import Driver, Ending
 from linkwright.speech.nodes.listening import Listener
-from linkwright.speech.nodes.presses import SAY_IT_AGAIN, Presses
+from linkwright.speech.nodes.presses import PLEASE_REPEAT, Presses
 from linkwright.speech.nodes.requests import Requests
 from linkwright.speech.nodes.sound_gaps import SoundGaps
 
-_DEPTH = 10
-_LOOK_SECONDS = 0.5
+_QUEUE_DEPTH = 10
+_SOURCE_CHECK_SECONDS = 0.5
 _STRING = "std_msgs/msg/String"
 _BOOL = "std_msgs/msg/Bool"
 _TEXT_TOPICS = ("text", "partial_text", "command", "response")
-_MOST_LOST = 0.15
-"""Seconds of sound that may be missing in what is done. Of synthetic enrolled words with such holes and smaller ones
-none was taken for another one (0 of 480); of those from which 0.25 s were cut 5 of 60 were.
+_MAX_MISSING_SECONDS = 0.15
+"""The maximum of missing sound, in seconds, in a command that is executed.
+
+Of 480 synthetic enrolled words with gaps of up to this length, none was taken for another word. With gaps of 0.25 s,
+5 of 60 were.
 """
-_NEARLY = 0.5
-"""The part of the confidence asked for from which a result is worth telling. Noise has less."""
+_REPEAT_SHARE = 0.5
+"""The share of the required confidence above which the node asks to repeat a command. Noise has less."""
 
 
 class VoiceCommander(SingleNode):
-    """The running node.
+    """Recognises spoken commands, and executes them.
 
     Parameters:
 
@@ -59,9 +61,9 @@ class VoiceCommander(SingleNode):
     - ``words_file``: the file of the engine ``enrolled``.
     - ``commands_file``: the command file.
     - ``confidence``: 0 to 1; less certain commands are not executed.
-    - ``open_listening``: whether to listen without a held button.
+    - ``open_listening``: whether to listen even if no button is held.
     - ``speed`` in m/s, ``turn_speed`` in rad/s.
-    - ``silence_timeout``: seconds of silence after which an endless drive stops.
+    - ``silence_timeout``: the seconds without a command after which a drive without a limit stops.
     - ``confirmation_timeout``: seconds to wait for a confirmation.
     - ``stamped``: whether velocities are stamped; if not set, this follows the subscribers of ``cmd_vel``.
     - ``frame_id``: the frame of stamped velocities.
@@ -78,9 +80,9 @@ class VoiceCommander(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._listener: Listener | None = None
-        self._held = False
-        self._spoken = False
-        self._stopped = False
+        self._is_button_held = False
+        self._is_voice_command = False
+        self._has_stopped_early = False
         self._proposed = False
         with starting(self._node):
             self._start()
@@ -102,53 +104,56 @@ class VoiceCommander(SingleNode):
         model: str = node.declare_parameter("model", "").value
         words: str = node.declare_parameter("words_file", "").value
         file: str = node.declare_parameter("commands_file", "").value
-        self._confidence: float = node.declare_parameter("confidence", 0.5).value
-        if not 0.0 <= self._confidence <= 1.0:
-            raise bad_value("confidence", self._confidence, node.get_name())
+        self._min_confidence: float = node.declare_parameter("confidence", 0.5).value
+        if not 0.0 <= self._min_confidence <= 1.0:
+            raise bad_value("confidence", self._min_confidence, node.get_name())
         self._open: bool = node.declare_parameter("open_listening", False).value
         speed, turn_speed = self._positive("speed", 0.2), self._positive("turn_speed", 0.6)
-        silence, patience = self._positive("silence_timeout", 10.0), self._positive("confirmation_timeout", 10.0)
+        silence_timeout, confirmation_timeout = (
+            self._positive("silence_timeout", 10.0),
+            self._positive("confirmation_timeout", 10.0),
+        )
         stamped: bool | None = node.declare_parameter("stamped", ParameterType.BOOL).value
         frame_id: str = node.declare_parameter("frame_id", "").value
         log_unknown(node)
 
         commands = read_command_file(Path(file) if file else DEFAULT_FILE)
         publishers: dict[str, Publisher[Any]] = {
-            name: node.create_publisher(_STRING, f"voice/{name}", _DEPTH) for name in _TEXT_TOPICS
+            name: node.create_publisher(_STRING, f"voice/{name}", _QUEUE_DEPTH) for name in _TEXT_TOPICS
         }
         self._publish_text = {
-            name: lambda text, to=publisher: to.publish(to.msg_type(data=text))
+            name: lambda text, target=publisher: target.publish(target.msg_type(data=text))
             for name, publisher in publishers.items()
         }
         self._topic = VelocityTopic(node, "cmd_vel", stamped, frame_id)
-        self._driver = Driver(node, self._topic, speed, turn_speed, self._drive_ended)
-        self._requests = Requests(node, self._goal_ended, self._publish_text["response"])
+        self._driver = Driver(node, self._topic, speed, turn_speed, self._on_drive_end)
+        self._requests = Requests(node, self._on_goal_end, self._publish_text["response"])
         self._conversation = Conversation(
             node,
             commands,
             language_of(language) or ENGLISH,
             self._driver,
             self._requests,
-            patience,
+            confirmation_timeout,
             self._publish_text["command"],
             self._publish_text["response"],
         )
         self._commands = commands
         self._listen_to_texts()
-        # Use the steady clock: simulated time may be paused, and a pause must not hold back the silence check.
+        # Use the steady clock: a pause of simulated time must not delay the silence check.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
-        # Pages write enrolled words to the default file. A node that always listens ignores speech that is not a
-        # command.
+        self._silence_timer = node.create_timer(silence_timeout, self._on_silence, clock=clock, autostart=False)
+        # Pages write enrolled words to the default file only. A node that always listens does not answer speech that
+        # is not a command.
         self._presses = Presses(can_enrol=engine == "enrolled" and not words and not self._open)
-        self._proposal: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _DEPTH)
+        self._proposal_publisher: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _QUEUE_DEPTH)
         if engine:
-            where = words if engine == "enrolled" and words else model
+            model_path = words if engine == "enrolled" and words else model
             # Enrolled words may be in any language.
             languages = [language, *commands.languages] if engine == "enrolled" else [language]
             phrases = tuple(dict.fromkeys(text for language in languages for text in commands.phrases(language)))
-            given = EngineOptions(phrases, language, Path(where) if where else None)
-            self._listen(lambda: make_engine(engine, given), clock)
+            engine_options = EngineOptions(phrases, language, Path(model_path) if model_path else None)
+            self._start_listening(lambda: make_engine(engine, engine_options), clock)
 
     def _positive(self, name: str, default: float) -> float:
         value: float = self._node.declare_parameter(name, default).value
@@ -157,31 +162,33 @@ class VoiceCommander(SingleNode):
         return positive(self._node, name, value)
 
     def _listen_to_texts(self) -> None:
-        commander = Commander(self._lost)
+        commander = Commander(self._on_commander_lost)
         callback = commander.tracking_callback(lambda message: self._execute(message.data, by_voice=False))
-        commander.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _DEPTH))
+        commander.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _QUEUE_DEPTH))
 
     # --- listening -----------------------------------------------------------------------------------------------
 
-    def _listen(self, make: Any, clock: Clock) -> None:
+    def _start_listening(self, make_engine: Any, clock: Clock) -> None:
         node = self._node
-        self._listener = Listener(node, make, self._handle, self._press_heard, self._warn, self._failed)
+        self._listener = Listener(
+            node, make_engine, self._handle_result, self._end_press, self._log_problem, self._failed
+        )
         self._reader = AudioReader()
         self._gaps = SoundGaps()
         node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, LATCHED_QOS)
-        self._audio: Subscription[Any] = node.create_subscription(
-            AUDIO_STAMPED, "audio/audio_stamped", self._on_audio, AUDIO_DEPTH
+        self._audio_subscription: Subscription[Any] = node.create_subscription(
+            AUDIO_STAMPED, "audio/audio_stamped", self._on_audio, AUDIO_QUEUE_DEPTH
         )
-        self._audio.watch_lost(lambda _: self._deaf())
+        self._audio_subscription.watch_lost(lambda _: self._stop_without_sound())
         button: Subscription[Any] = node.create_subscription(
-            _BOOL, "voice/listen", lambda message: self._on_listen(message.data), _DEPTH
+            _BOOL, "voice/listen", lambda message: self._on_listen(message.data), _QUEUE_DEPTH
         )
         button.watch_lost(lambda _: self._on_listen(False))
-        node.create_timer(_LOOK_SECONDS, self._look, clock=clock)
+        node.create_timer(_SOURCE_CHECK_SECONDS, self._look, clock=clock)
 
     def _on_info(self, info: Any) -> None:
         try:
-            form = AudioForm.of(info)
+            form = AudioFormat.of(info)
         except LinkwrightError as error:
             self._node.get_logger().error(error.diagnostics[0].message)
             return
@@ -189,7 +196,7 @@ class VoiceCommander(SingleNode):
             self._reader = AudioReader(form)
 
     def _on_audio(self, message: Any) -> None:
-        if not (self._held or self._open) or self._listener is None:
+        if not (self._is_button_held or self._open) or self._listener is None:
             return
         samples = self._reader.read(message.audio.data)
         stamp = message.header.stamp
@@ -198,105 +205,110 @@ class VoiceCommander(SingleNode):
             self._listener.note_gap(missing)
             self._presses.note_gap()
             self._node.get_logger().warning(
-                phrase("{seconds} s of sound were lost during transmission", seconds=f"{missing:.1f}"),
+                phrase("{seconds} s of sound were lost in transmission", seconds=f"{missing:.1f}"),
                 throttle_duration_sec=5.0,
             )
         if not self._listener.hear(samples):
             self._presses.note_gap()
             self._node.get_logger().warning(
-                phrase("this machine is too slow for the speech engine: sound is dropped"), throttle_duration_sec=5.0
+                phrase("this machine is too slow for the speech engine, so sound is dropped"), throttle_duration_sec=5.0
             )
 
-    def _on_listen(self, held: bool) -> None:
-        if self._held and not held and self._listener is not None:
+    def _on_listen(self, is_held: bool) -> None:
+        if self._is_button_held and not is_held and self._listener is not None:
             self._listener.finish()
-        if held:
-            self._gaps.restart()  # the source does not publish while no button is held
-        if held and not self._held:
+        if is_held:
+            self._gaps.restart()  # there is no sound while no button is held
+        if is_held and not self._is_button_held:
             self._presses.begin()
             self._publish_proposal()
-        self._stopped = False
-        self._held = held
+        self._has_stopped_early = False
+        self._is_button_held = is_held
 
-    def _handle(self, heard: Heard) -> None:
-        if not heard.final:
-            self._publish_text["partial_text"](heard.text)
-            self._stop_early(heard.text)
+    def _handle_result(self, result: Heard) -> None:
+        if not result.final:
+            self._publish_text["partial_text"](result.text)
+            self._stop_early(result.text)
             return
-        self._publish_text["text"](heard.text)
-        stopped, self._stopped = self._stopped, False
-        # After a stop, only a command that contains the stop word is executed in this utterance: "go to the stop sign".
-        if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
+        self._publish_text["text"](result.text)
+        has_stopped, self._has_stopped_early = self._has_stopped_early, False
+        # After a stop, this utterance can only execute a command with the stop word in it, as "go to the stop sign".
+        if has_stopped and not (self._commands.is_stop(result.text) and self._commands.is_other_command(result.text)):
             return
-        if self._is_done_or_answered(heard):
+        if self._handle_final_result(result):
             self._presses.settle()
         else:
-            self._presses.note_unknown(heard)
+            self._presses.note_unknown(result)
 
-    def _is_done_or_answered(self, heard: Heard) -> bool:
-        """Execute a recognised text, or ask to repeat it; return False if neither applies."""
-        lost = 0.0 if self._listener is None else self._listener.lost_in(heard)
-        is_certain = heard.confidence >= self._confidence
-        if is_certain and lost <= _MOST_LOST and self._execute(heard.text, by_voice=True):
+    def _handle_final_result(self, result: Heard) -> bool:
+        """Execute a recognised text, or ask the user to repeat it; return False if neither was done."""
+        missing = 0.0 if self._listener is None else self._listener.missing_seconds(result)
+        is_certain = result.confidence >= self._min_confidence
+        if is_certain and missing <= _MAX_MISSING_SECONDS and self._execute(result.text, by_voice=True):
             return True
-        if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
-            self._conversation.stop(heard.text)
-        elif lost and (self._is_addressed or (heard.text and is_certain)):
-            self._conversation.answer(SAY_IT_AGAIN)
-        elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
-            self._conversation.answer(phrase("I am not sure that I heard '{text}': please repeat", text=heard.text))
+        if self._commands.is_stop(result.text) and (self._is_button_held or self._conversation.is_busy):
+            self._conversation.stop(result.text)
+        elif missing and (self._is_addressed or (result.text and is_certain)):
+            self._conversation.answer(PLEASE_REPEAT)
+        elif (
+            result.text
+            and not is_certain
+            and self._is_addressed
+            and result.confidence >= _REPEAT_SHARE * self._min_confidence
+        ):
+            self._conversation.answer(phrase("I am not sure that I heard '{text}', please repeat", text=result.text))
         else:
-            return bool(heard.text) and is_certain  # speech was not understood, and this was answered
+            return bool(result.text) and is_certain  # speech was not understood, and this was answered
         return True
 
-    def _press_heard(self) -> None:
-        """Handle the end of a button press whose sound was processed."""
+    def _end_press(self) -> None:
+        """Answer a button press after its sound was processed."""
         answer = self._presses.end()
         self._publish_proposal()
         if answer is not None and not self._open:
             self._conversation.answer(answer)
 
     def _publish_proposal(self) -> None:
-        """Publish whether enrolling is proposed, if this has changed."""
+        """Publish whether enrolling is proposed, if it has changed."""
         if self._presses.proposes_enrolling != self._proposed:
             self._proposed = self._presses.proposes_enrolling
-            self._proposal.publish(self._proposal.msg_type(data=self._proposed))
+            self._proposal_publisher.publish(self._proposal_publisher.msg_type(data=self._proposed))
 
     @property
     def _is_addressed(self) -> bool:
-        """Whether a result was addressed to the robot; results may arrive after the button was released."""
-        return self._held or not self._open
+        """Whether a result is meant for the robot; results can also arrive after the button was released."""
+        return self._is_button_held or not self._open
 
     def _stop_early(self, text: str) -> None:
-        """Stop on a partial result, unless the stop word belongs to another command."""
-        if not self._commands.is_stop(text) or self._commands.is_other(text):
+        """Stop on a partial result, unless the stop word is part of another command."""
+        if not self._commands.is_stop(text) or self._commands.is_other_command(text):
             return
-        if self._conversation.is_busy or (self._held and not self._stopped):
-            self._stopped = True
+        if self._conversation.is_busy or (self._is_button_held and not self._has_stopped_early):
+            self._has_stopped_early = True
             self._presses.settle()
             self._conversation.stop(text)
 
-    def _warn(self, problem: Diagnostic) -> None:
+    def _log_problem(self, problem: Diagnostic) -> None:
         logger = self._node.get_logger()
         logger.warning(localized(problem.message))
         if problem.hint:
             logger.warning(localized(problem.hint))
 
     def _failed(self, error: LinkwrightError) -> None:
-        finding = error.diagnostics[0]
+        diagnostic = error.diagnostics[0]
         logger = self._node.get_logger()
-        logger.fatal(finding.message)
-        if finding.hint:
-            logger.fatal(finding.hint)
+        logger.fatal(diagnostic.message)
+        if diagnostic.hint:
+            logger.fatal(diagnostic.hint)
         self._conversation.stop()
         if not self.finished.done():
             self.finished.set_result(1)
 
-    def _drive_ended(self, ending: Ending) -> None:
-        self._conversation.drive_ended(ending)
+    def _on_drive_end(self, ending: Ending) -> None:
+        self._conversation.on_drive_end(ending)
 
-    def _goal_ended(self, reached: bool, reason: str) -> None:
-        self._conversation.goal_ended(reached, reason)
+    def _on_goal_end(self, is_reached: bool, reason: str) -> None:
+        self._conversation.on_goal_end(is_reached, reason)
 
     # --- recognized text -----------------------------------------------------------------------------------------
 
@@ -306,29 +318,29 @@ class VoiceCommander(SingleNode):
             self._publish_text["text"](text)
         understood = self._conversation.handle(text)
         if understood:
-            self._spoken = by_voice
-            self._silence.reset()
+            self._is_voice_command = by_voice
+            self._silence_timer.reset()
         elif text and (self._is_addressed or not by_voice):
             self._conversation.answer(phrase("I did not understand '{text}'", text=text))
         return understood
 
-    def _silent(self) -> None:
-        self._silence.cancel()
+    def _on_silence(self) -> None:
+        self._silence_timer.cancel()
         if self._driver.is_endless:
             self._conversation.rest(phrase("I hear nothing, so I stop"))
 
     def _look(self) -> None:
-        """Stop when the audio source is lost while the robot executes its commands."""
-        if self._spoken and self._driver.is_endless and not self._audio.get_publisher_count():
-            self._deaf()
+        """Stop if the audio source is lost during a drive without a limit that was commanded by voice."""
+        if self._is_voice_command and self._driver.is_endless and not self._audio_subscription.get_publisher_count():
+            self._stop_without_sound()
 
-    def _deaf(self) -> None:
-        if self._spoken and self._conversation.is_busy:
+    def _stop_without_sound(self) -> None:
+        if self._is_voice_command and self._conversation.is_busy:
             self._conversation.stop()
             self._conversation.answer(phrase("the audio source stopped, so I stop"))
 
-    def _lost(self, publisher: EndpointInfo) -> None:
-        if not self._spoken and self._conversation.is_busy:
+    def _on_commander_lost(self, publisher: EndpointInfo) -> None:
+        if not self._is_voice_command and self._conversation.is_busy:
             self._conversation.stop()
             self._node.get_logger().warning(
                 localized(

@@ -33,136 +33,140 @@ _TOPICS: dict[ConversationPart, str] = {
     "command": "/voice/command",
     "response": "/voice/response",
 }
-_PROPOSE = "/voice/propose_enrolling"
-_LISTEN = "/voice/listen"
-_TEXT_INPUT = "/voice/text_input"
-_DEPTH = 10
-_LONGEST_TEXT = 500
-"""Characters of a command; longer ones are truncated."""
+_PROPOSAL_TOPIC = "/voice/propose_enrolling"
+_LISTEN_TOPIC = "/voice/listen"
+_TEXT_INPUT_TOPIC = "/voice/text_input"
+_QUEUE_DEPTH = 10
+_MAX_TEXT = 500
+"""The maximum length of a text in characters; longer texts are truncated."""
 
 
 class VoiceFeature(PageFeature):
-    """Publishes the speech of one page at a time, and sends recognized commands to the pages that watch.
+    """Publishes the sound of one page at a time, and sends recognized commands to the pages that watch.
 
-    The sound topics exist while a page has its microphone open, the other topics while a page watches.
+    The sound topics exist while any page has its microphone open, and the other topics while any page watches.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._node = self.context.node
         self._watchers: dict[Page, VoiceState | None] = {}
-        """With the last state sent to each."""
+        """The last state that was sent to each watching page."""
         self._subscriptions: list[Subscription[Any]] = []
         self._text_input: Publisher[Any] | None = None
         self._floor = Floor()
         self._budgets: dict[Page, SoundBudget] = {}
-        self._cut: set[Page] = set()
-        self._audio: AudioTopics | None = None
-        self._listen: Publisher[Any] | None = None
+        self._muted_pages: set[Page] = set()
+        self._audio_topics: AudioTopics | None = None
+        self._listen_publisher: Publisher[Any] | None = None
         self._holder: Page | None = None
-        self._receivers = 0
-        """The number of subscribers that have received the button's state."""
+        self._informed_subscribers = 0
+        """The number of subscribers that have received the state of the button."""
         self._text_count = 0
-        self._proposes = False
-        self._words = WordBook()
+        self._is_enrolling_proposed = False
+        self._word_book = WordBook()
 
     def opening(self) -> list[ServerMessage]:
-        """Return whether there is a node to talk to.
+        """Return the message that says whether a node executes commands.
 
-        Other nodes may answer, too, such as an object search node.
+        Other nodes, such as an object seeker, may answer as well.
         """
         return [VoiceNode(self._node.count_publishers(_TOPICS["command"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Publish sound or a text, set the talking page, or start or stop sending messages to a page."""
+        """Handle sound, a text, a microphone mode, or a request to start or stop watching, from a page."""
         if isinstance(message, SoundBlock):
-            self._hear(page, message)
+            self._receive_sound(page, message)
         elif isinstance(message, Talk):
-            self._cut.discard(page)
-            self._talk(page, message)
+            self._muted_pages.discard(page)
+            self._set_mode(page, message)
         elif isinstance(message, WatchVoice):
             self._watch(page, watched=message.watched)
         elif not isinstance(message, SayCommand):
-            self._words.receive(page, message)
+            self._word_book.receive(page, message)
         elif self._text_input is not None:
-            self._text_input.publish(self._text_input.msg_type(data=message.text[:_LONGEST_TEXT]))
+            self._text_input.publish(self._text_input.msg_type(data=message.text[:_MAX_TEXT]))
 
     def page_closed(self, page: Page) -> None:
-        """End the speech of a page."""
-        self._cut.discard(page)
-        self._words.page_closed(page)
-        self._talk(page, Talk("off"))
+        """End the microphone mode, the recording and the watching of a page."""
+        self._muted_pages.discard(page)
+        self._word_book.page_closed(page)
+        self._set_mode(page, Talk("off"))
         self._watch(page, watched=False)
 
     def close(self) -> None:
-        """Destroy the publishers and subscriptions."""
+        """Handle all pages as closed, which destroys the publishers and subscriptions."""
         for page in {*self._watchers, *self._budgets}:
             self.page_closed(page)
 
     # --- sound -------------------------------------------------------------------------------------------------
 
-    def _talk(self, page: Page, message: Talk) -> None:
+    def _set_mode(self, page: Page, message: Talk) -> None:
         self._floor.set(page, message.mode)
         if message.mode == "off":
             self._budgets.pop(page, None)
         elif page not in self._budgets:
             self._budgets[page] = SoundBudget(asyncio.get_running_loop().time)
-        if self._floor and self._audio is None:
-            self._audio = AudioTopics(self._node)
-            self._listen = self._node.create_publisher(
+        if self._floor and self._audio_topics is None:
+            self._audio_topics = AudioTopics(self._node)
+            self._listen_publisher = self._node.create_publisher(
                 "std_msgs/msg/Bool",
-                _LISTEN,
-                _DEPTH,
-                event_callbacks=PublisherEventCallbacks(matched=self._listeners_changed),
+                _LISTEN_TOPIC,
+                _QUEUE_DEPTH,
+                event_callbacks=PublisherEventCallbacks(matched=self._on_listeners_changed),
             )
-        if self._audio is not None:
-            self._audio.restart()
-        self._pass_on()
-        if not self._floor and self._audio is not None:
-            self._audio.close()
-            self._audio = None
-            if self._listen is not None:
-                self._node.destroy_publisher(self._listen)
-                self._listen = None
-        self._review()
+        if self._audio_topics is not None:
+            self._audio_topics.restart()
+        self._update_button()
+        if not self._floor and self._audio_topics is not None:
+            self._audio_topics.close()
+            self._audio_topics = None
+            if self._listen_publisher is not None:
+                self._node.destroy_publisher(self._listen_publisher)
+                self._listen_publisher = None
+        self._send_state()
 
-    def _pass_on(self) -> None:
-        """Publish whether a button is held; a press in another page starts a new command."""
+    def _update_button(self) -> None:
+        """Publish whether a button is held. If another page takes over, publish a release and a new press."""
         holder = self._floor.holder
-        if holder is self._holder or self._listen is None:
+        if holder is self._holder or self._listen_publisher is None:
             return
         if self._holder is not None:
-            self._publish_held(self._listen, held=False)
+            self._publish_button(self._listen_publisher, is_held=False)
         if holder is not None:
-            self._publish_held(self._listen, held=True)
+            self._publish_button(self._listen_publisher, is_held=True)
         self._holder = holder
 
-    def _publish_held(self, publisher: Publisher[Any], *, held: bool) -> None:
-        self._receivers = publisher.get_subscription_count()
-        publisher.publish(publisher.msg_type(data=held))
+    def _publish_button(self, publisher: Publisher[Any], *, is_held: bool) -> None:
+        self._informed_subscribers = publisher.get_subscription_count()
+        publisher.publish(publisher.msg_type(data=is_held))
 
-    def _listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
-        """Publish the button state again for subscribers that appear after the button was pressed.
+    def _on_listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
+        """Publish the button state again for a subscriber that appears after the button was pressed.
 
-        Other processes match with some delay. The topic is not latched, because manual publishers do not latch it
+        Other processes match with some delay. The topic is not latched, because other publishers on it do not latch it
         either.
         """
-        if event.current_count > self._receivers and self._holder is not None and self._listen is not None:
-            self._publish_held(self._listen, held=True)
-        self._receivers = min(self._receivers, event.current_count)
+        if (
+            event.current_count > self._informed_subscribers
+            and self._holder is not None
+            and self._listen_publisher is not None
+        ):
+            self._publish_button(self._listen_publisher, is_held=True)
+        self._informed_subscribers = min(self._informed_subscribers, event.current_count)
 
-    def _hear(self, page: Page, block: SoundBlock) -> None:
+    def _receive_sound(self, page: Page, block: SoundBlock) -> None:
         budget = self._budgets.get(page)
         if budget is None:
             return
         if not budget.spend(block.samples.size / RATE, block.lost):
-            self._cut.add(page)
-            self._talk(page, Talk("off"))
-        elif self._words.hear(page, block.samples):  # the sound is an example of a word
-            if self._audio is not None:
-                self._audio.restart()
-        elif page is self._floor.talker and self._audio is not None:
-            self._audio.publish(block.samples, block.lost)
+            self._muted_pages.add(page)
+            self._set_mode(page, Talk("off"))
+        elif self._word_book.hear(page, block.samples):  # the sound is an example of a word
+            if self._audio_topics is not None:
+                self._audio_topics.restart()
+        elif page is self._floor.talker and self._audio_topics is not None:
+            self._audio_topics.publish(block.samples, block.lost)
 
     # --- messages to pages -------------------------------------------------------------------------------------
 
@@ -173,46 +177,52 @@ class VoiceFeature(PageFeature):
             self._watchers[page] = None
         if self._watchers and not self._subscriptions:
             self._subscriptions = [
-                self._node.create_subscription("std_msgs/msg/String", topic, partial(self._send_text, part), _DEPTH)
+                self._node.create_subscription(
+                    "std_msgs/msg/String", topic, partial(self._send_text, part), _QUEUE_DEPTH
+                )
                 for part, topic in _TOPICS.items()
             ]
             self._subscriptions.append(
-                self._node.create_subscription("std_msgs/msg/Bool", _PROPOSE, self._handle_proposal, _DEPTH)
+                self._node.create_subscription(
+                    "std_msgs/msg/Bool", _PROPOSAL_TOPIC, self._handle_proposal, _QUEUE_DEPTH
+                )
             )
-            self._text_input = self._node.create_publisher("std_msgs/msg/String", _TEXT_INPUT, _DEPTH)
-            self.context.graph_changes.watch(self._review)
+            self._text_input = self._node.create_publisher("std_msgs/msg/String", _TEXT_INPUT_TOPIC, _QUEUE_DEPTH)
+            self.context.graph_changes.watch(self._send_state)
         elif not self._watchers and self._subscriptions:
-            self.context.graph_changes.unwatch(self._review)
+            self.context.graph_changes.unwatch(self._send_state)
             for subscription in self._subscriptions:
                 self._node.destroy_subscription(subscription)
             self._subscriptions.clear()
-            self._proposes = False
+            self._is_enrolling_proposed = False
             if self._text_input is not None:
                 self._node.destroy_publisher(self._text_input)
                 self._text_input = None
-        self._review()
+        self._send_state()
 
     def _send_text(self, part: ConversationPart, message: Any) -> None:
         self._text_count += 1
         for page in self._watchers:
-            page.send(ConversationText(self._text_count, part, message.data[:_LONGEST_TEXT]))
+            page.send(ConversationText(self._text_count, part, message.data[:_MAX_TEXT]))
 
     def _handle_proposal(self, message: Any) -> None:
-        self._proposes = message.data
-        self._review()
+        self._is_enrolling_proposed = message.data
+        self._send_state()
 
-    def _review(self) -> None:
-        """Send the changed state to the pages that watch."""
+    def _send_state(self) -> None:
+        """Send the state to each watching page if it has changed."""
         if not self._watchers:
             return
         graph = self._node.graph
-        sound = graph.count_subscribers(f"{NAMESPACE}/audio_stamped") + graph.count_subscribers(f"{NAMESPACE}/audio")
-        texts = graph.count_subscribers(_TEXT_INPUT)
-        proposes = self._proposes and graph.count_publishers(_PROPOSE) > 0
+        sound_subscribers = graph.count_subscribers(f"{NAMESPACE}/audio_stamped") + graph.count_subscribers(
+            f"{NAMESPACE}/audio"
+        )
+        text_subscribers = graph.count_subscribers(_TEXT_INPUT_TOPIC)
+        proposes = self._is_enrolling_proposed and graph.count_publishers(_PROPOSAL_TOPIC) > 0
         talker = self._floor.talker
-        for page, sent in self._watchers.items():
+        for page, sent_state in self._watchers.items():
             talking: Talking = "nobody" if talker is None else "you" if talker is page else "another"
-            state = VoiceState(talking, sound, texts, page in self._cut, proposes)
-            if state != sent:
+            state = VoiceState(talking, sound_subscribers, text_subscribers, page in self._muted_pages, proposes)
+            if state != sent_state:
                 self._watchers[page] = state
                 page.send(state)

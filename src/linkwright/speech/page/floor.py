@@ -1,4 +1,4 @@
-"""The page that currently talks among several, and the limits of its sound."""
+"""Which of several pages talks at the moment, and how much sound a page may send."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from linkwright.page.audience import Page
 from linkwright.page.protocol.voice import TalkMode
 
 _LEAD = 10.0
-"""Seconds of sound that may arrive at once, as after a stalled connection."""
+"""The seconds of sound that may arrive at once, as after a stalled connection."""
 
 _CLOCK_TOLERANCE = 1.05
-"""The factor by which the clock of a page's microphone may be faster than ours."""
+"""The factor by which a page's microphone may be faster than the server's clock."""
 
 
 class Floor:
-    """The pages that have a microphone open; the page that has held its button longest talks."""
+    """The pages with an open microphone. Of those that hold their button, the one that has held it longest talks."""
 
     def __init__(self) -> None:
         self._modes: dict[Page, TalkMode] = {}
@@ -24,7 +24,7 @@ class Floor:
         return bool(self._modes)
 
     def set(self, page: Page, mode: TalkMode) -> None:
-        """Set the microphone mode of a page, which is queued after pages with the same mode."""
+        """Set the microphone mode of a page. It takes its turn after pages with the same mode."""
         if self._modes.get(page) == mode:
             return
         self._modes.pop(page, None)
@@ -33,22 +33,22 @@ class Floor:
 
     @property
     def holder(self) -> Page | None:
-        """The page that holds its button and talks."""
+        """The page that holds its button and talks; None if no button is held."""
         return self._first("held")
 
     @property
     def talker(self) -> Page | None:
-        """The page whose sound is published."""
+        """The page whose sound is published; None if no microphone is open."""
         return self.holder or self._first("open")
 
     def _first(self, mode: TalkMode) -> Page | None:
-        return next((page for page, its in self._modes.items() if its == mode), None)
+        return next((page for page, page_mode in self._modes.items() if page_mode == mode), None)
 
 
 class SoundBudget:
-    """The sound that a page may send, and the loss that it may report: as much of each as time passes.
+    """Limits the sound that a page sends and the loss that it reports: to as many seconds as have passed.
 
-    The two are counted separately because lost sound may be sent as silence.
+    The two are counted separately, because a page may send silence for lost sound.
 
     Args:
         clock: returns the time in seconds.
@@ -56,14 +56,14 @@ class SoundBudget:
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
-        self._at = clock()
-        self._sound = self._lost = _LEAD
+        self._last_time = clock()
+        self._sound_budget = self._loss_budget = _LEAD
 
     def spend(self, sound: float, lost: float) -> bool:
-        """Return whether a number of seconds of sound and of loss is within the limits, and count it."""
+        """Count seconds of sound and of loss, and return whether they are within the limits."""
         now = self._clock()
-        gained = (now - self._at) * _CLOCK_TOLERANCE
-        self._at = now
-        self._sound = min(_LEAD, self._sound + gained) - sound
-        self._lost = min(_LEAD, self._lost + gained) - lost
-        return self._sound >= 0.0 and self._lost >= 0.0
+        credit = (now - self._last_time) * _CLOCK_TOLERANCE
+        self._last_time = now
+        self._sound_budget = min(_LEAD, self._sound_budget + credit) - sound
+        self._loss_budget = min(_LEAD, self._loss_budget + credit) - lost
+        return self._sound_budget >= 0.0 and self._loss_budget >= 0.0

@@ -1,4 +1,4 @@
-"""Enrol words: a page's recording becomes an example of a word in the user's file."""
+"""Enrol words: add the recordings of a page to the user's file of words."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from linkwright.page.protocol.voice_words import (
     WatchWords,
 )
 from linkwright.speech.enrolled.enrolment import enrol
-from linkwright.speech.enrolled.words import TAKES, Words, name_problem, words_path
+from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Words, name_problem, words_path
 from linkwright.speech.sound.samples import RATE, Samples
 
-_LONGEST = 8 * RATE
-"""Samples of a recording that are stored."""
+_MAX_SAMPLES = 8 * RATE
+"""The maximum number of samples of a recording."""
 
 
 class Recording:
-    """A word that is being recorded.
+    """The recording of a word, in progress.
 
     Args:
         name: the name of the word.
@@ -44,8 +44,8 @@ class Recording:
         self._length = 0
 
     def add(self, samples: Samples) -> None:
-        """Append the next block; a recording that is too long is cut off at its end."""
-        if self._length < _LONGEST:
+        """Append the next block, unless the recording is already too long."""
+        if self._length < _MAX_SAMPLES:
             self._blocks.append(samples)
             self._length += samples.size
 
@@ -56,18 +56,18 @@ class Recording:
 
 
 class WordBook:
-    """The user's file of words and the pages that show it.
+    """Changes the user's file of words, and sends its content to the pages that show it.
 
-    The file is read again before each change, because other programs write it.
+    The file is read again before each change, because other programs also write it.
     """
 
     def __init__(self) -> None:
         self._watchers: set[Page] = set()
         self._recordings: dict[Page, Recording] = {}
-        self._judged = 0
+        self._take_count = 0
 
     def receive(self, page: Page, message: object) -> None:
-        """Carry out the request of a page."""
+        """Handle a request of a page."""
         match message:
             case WatchWords(watched=True):
                 self._watchers.add(page)
@@ -77,51 +77,51 @@ class WordBook:
             case BeginTake(name=name):
                 self._recordings[page] = Recording(name.strip())
             case EndTake(has_gaps=has_gaps):
-                self._judge(page, has_gaps=has_gaps)
+                self._add_take(page, has_gaps=has_gaps)
             case RemoveWord(name=name):
                 self._change(page, lambda words: words.remove(name))
             case RenameWord(name=name, new_name=new_name):
                 self._change(page, lambda words: _rename(words, name, new_name.strip()))
             case ImportWords(text=text):
-                self._change(page, lambda words: _merge(words, text))
+                self._change(page, lambda words: _import_words(words, text))
             case AskWordsFile():
                 self._send_file(page)
 
     def hear(self, page: Page, samples: Samples) -> bool:
-        """Add sound of a page that is recording a word; return whether the page is recording."""
+        """Add sound to the recording of a page; return whether the page is recording a word."""
         recording = self._recordings.get(page)
         if recording is not None:
             recording.add(samples)
         return recording is not None
 
     def page_closed(self, page: Page) -> None:
-        """Remove a page and its recording."""
+        """Forget a page and its recording."""
         self._watchers.discard(page)
         self._recordings.pop(page, None)
 
-    def _judge(self, page: Page, *, has_gaps: bool) -> None:
+    def _add_take(self, page: Page, *, has_gaps: bool) -> None:
         recording = self._recordings.pop(page, None)
         if recording is None:
             return
         samples = recording.samples
         findings: list[Diagnostic] = []
         if self._change(page, lambda words: findings.extend(enrol(words, recording.name, samples, has_gaps))):
-            found = next(iter(translated(findings)), None)
+            finding = next(iter(translated(findings)), None)
             peak = float(np.max(np.abs(samples.astype(np.int32)), initial=0)) / 32768
-            self._judged += 1
+            self._take_count += 1
             page.send(
                 TakeJudged(
-                    self._judged,
+                    self._take_count,
                     recording.name,
-                    found.code if found else None,
-                    str(found.message) if found else "",
+                    finding.code if finding else None,
+                    str(finding.message) if finding else "",
                     peak,
                     samples.size / RATE,
                 )
             )
 
     def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
-        """Change the file and send it to all pages; if this fails, send the page the reason."""
+        """Change the file, and send it to all pages; if this fails, send the reason to the page."""
         try:
             words = _read()
             change(words)
@@ -143,20 +143,20 @@ class WordBook:
         except LinkwrightError as error:
             words, problem = Words(), problem or _text(error)
         enrolled = [EnrolledWord(name, len(words.takes(name))) for name in words.names]
-        page.send(VoiceWords(enrolled, TAKES, display_path(words_path()), problem))
+        page.send(VoiceWords(enrolled, RECOMMENDED_TAKES, display_path(words_path()), problem))
 
     def _send_file(self, page: Page) -> None:
         try:
             page.send(VoiceWordsFile(words_path().read_text(encoding="utf-8")))
         except (OSError, UnicodeDecodeError):
-            self._send(page)  # which reports the error, or that there are no words
+            self._send(page)  # this sends the error, or that there are no words
 
 
 def _read() -> Words:
-    """Return the words of the user's file, which may not exist.
+    """Return the words in the user's file; no words if there is no file.
 
     Raises:
-        LinkwrightError: VOICE202 or VOICE203.
+        LinkwrightError: VOICE202, the file cannot be read; VOICE203, it is damaged.
     """
     path = words_path()
     return Words.read(path) if path.exists() else Words()
@@ -170,10 +170,10 @@ def _rename(words: Words, name: str, new_name: str) -> None:
     if reason is not None:
         message = phrase("a word cannot be named '{name}': {reason}", name=new_name, reason=reason)
         raise LinkwrightError(Diagnostic("VOICE204", message))
-    takes_of = {
+    takes_by_name = {
         new_name if name_of_word == name else name_of_word: words.takes(name_of_word) for name_of_word in words.names
     }
-    for name_of_word, takes in takes_of.items():
+    for name_of_word, takes in takes_by_name.items():
         words.remove(name_of_word)
         for take in takes:
             words.add(name_of_word, take)
@@ -181,17 +181,17 @@ def _rename(words: Words, name: str, new_name: str) -> None:
         words.remove(name)
 
 
-def _merge(words: Words, text: str) -> None:
+def _import_words(words: Words, text: str) -> None:
     with ScratchFolder("words") as folder:
         path = Path(folder) / "words.json"
         path.write_text(text, encoding="utf-8", errors="replace")
-        others = Words.read(path)
-    for name in others.names:
+        imported = Words.read(path)
+    for name in imported.names:
         words.remove(name)
-        for take in others.takes(name):
+        for take in imported.takes(name):
             words.add(name, take)
 
 
 def _text(error: LinkwrightError) -> str:
-    """Return the error as text, in the language of the terminal."""
+    """Return the message of an error, in the language of the terminal."""
     return str(next(iter(translated(error.diagnostics))).message)

@@ -1,1 +1,1 @@
-"""Sound as samples: format, files and features."""
+"""Sound as samples: formats, files and features."""

@@ -1,7 +1,7 @@
 """Voice activity detection: compares the energy of frames with an adaptive noise floor.
 
-During silence, the floor of each band follows the power of the band. During speech it falls with the power, and rises
-only to the minimum of the band in the last 0.8 s (minimum statistics, after R. Martin). A fan that is switched on thus
+During silence, the floor of each band follows the power of the band. During speech it falls with the power, but rises
+only to the minimum of the band in the last 0.8 s (minimum statistics, after R. Martin). So a fan that is switched on
 counts as speech for no longer than that.
 """
 
@@ -15,26 +15,26 @@ from numpy.typing import NDArray
 from linkwright.speech.sound.spectra import BANDS, Powers
 
 HANGOVER = 40
-"""Frames without speech after which an utterance is over: 0.4 s, longer than the closure of a plosive."""
+"""The frames without speech after which an utterance ends: 0.4 s, longer than the closure of a plosive."""
 
-_LEAST_POWER = 1.0  # below the noise of any microphone at 16 bits
-_BEGINS, _GOES_ON = 3.0, 2.0  # dB above the floor, mean over all bands in the last frames
-_IN_A_TAKE = 4.0  # dB, for an example, which must be clear
-_MOST_OF_A_BAND = 25.0  # dB: a single band, as in a whistle, is not speech
-_BELOW_THE_LOUDEST = 45.0  # dB: softer sound does not belong to a take, regardless of the noise
-_SMOOTHED = 3  # number of frames
-_TO_BEGIN = 4  # number of consecutive frames
-_WATCHED = 80  # number of frames in which the minimum is searched for
-_OVER_THE_LEAST = 1.4  # ratio of the noise's mean to its minimum, for sums of three frames
-_UP, _DOWN = 0.05, 0.08  # fractions by which the floor approaches the level with each frame
+_MIN_POWER = 1.0  # below the noise of any microphone at 16 bits
+_START_LEVEL, _CONTINUE_LEVEL = 3.0, 2.0  # dB above the floor, mean over all bands in the last frames
+_TAKE_LEVEL = 4.0  # dB, for an example, which must be clear
+_MAX_BAND_LEVEL = 25.0  # dB: a single band, as in a whistle, is not speech
+_MAX_BELOW_LOUDEST = 45.0  # dB: softer sound does not belong to a take, regardless of the noise
+_SMOOTHING_FRAMES = 3  # number of frames
+_START_FRAMES = 4  # number of consecutive frames
+_MINIMUM_FRAMES = 80  # number of frames in which the minimum is searched for
+_MEAN_TO_MINIMUM = 1.4  # ratio of the noise's mean to its minimum, for sums of three frames
+_RISE_RATE, _FALL_RATE = 0.05, 0.08  # fractions by which the floor approaches the level with each frame
 
-_LOUDEST = 12  # number of frames
-_SOFTER = 7.0  # dB below the loudest: speech at the microphone is louder than other sounds by this amount
-_SOFT_BEGINNING = 8  # frames by which a word may start before it reaches this level
-_ENOUGH = 15  # the minimum number of frames for measuring the noise
-_UNSTEADY = 1.2  # dB, deviation of the level: 1 for steady noise, 2 and more for babble
-_OVER_STEADY = 5.0  # dB, median above that of steady noise: up to 4 for steady noise, 8 and more for babble
-_DEVIATIONS = 1.5  # standard deviations by which swelling noise exceeds its mean
+_LOUDEST_FRAMES = 12  # number of frames
+_SPEECH_RANGE = 7.0  # dB below the loudest: speech at the microphone is louder than other sounds by this amount
+_SOFT_START_FRAMES = 8  # frames by which a word may start before it reaches this level
+_MIN_NOISE_FRAMES = 15  # the minimum number of frames for measuring the noise
+_MIN_UNSTEADY_DEVIATION = 1.2  # dB, deviation of the level: 1 for steady noise, 2 and more for babble
+_MIN_UNSTEADY_LEVEL = 5.0  # dB, median above that of steady noise: up to 4 for steady noise, 8 and more for babble
+_NOISE_DEVIATIONS = 1.5  # standard deviations by which unsteady noise exceeds its mean
 
 
 class VoiceActivity:
@@ -49,76 +49,78 @@ class VoiceActivity:
     def __init__(self) -> None:
         self.speaking = False
         self.quiet_frames = 0
-        self.floor: NDArray[np.float64] = np.full(BANDS, _LEAST_POWER)
-        self._last: deque[NDArray[np.float64]] = deque(maxlen=_SMOOTHED)
-        self._watched: deque[NDArray[np.float64]] = deque(maxlen=_WATCHED)
-        self._seen = 0
-        self._loud = 0
+        self.floor: NDArray[np.float64] = np.full(BANDS, _MIN_POWER)
+        self._last_frames: deque[NDArray[np.float64]] = deque(maxlen=_SMOOTHING_FRAMES)
+        self._smoothed_frames: deque[NDArray[np.float64]] = deque(maxlen=_MINIMUM_FRAMES)
+        self._frame_count = 0
+        self._loud_frames = 0
 
     def step(self, frame: NDArray[np.float64]) -> bool:
         """Process the next frame, shape ``(BANDS,)``; return `speaking`."""
-        self._last.append(frame)
-        smooth = np.maximum(sum(self._last) / len(self._last), _LEAST_POWER)
-        self._watched.append(smooth)
-        self._seen += 1
-        if self._seen == 1:
-            self.floor = smooth
-        # Runs a hundred times a second: minimum and maximum take half the time of clip and mean.
-        bands = np.minimum(np.maximum(10.0 * np.log10(smooth / self.floor), 0.0), _MOST_OF_A_BAND)
-        loud = float(bands.sum()) / BANDS > (_GOES_ON if self.speaking else _BEGINS)
-        self._loud = self._loud + 1 if loud else 0
-        self.quiet_frames = 0 if loud else self.quiet_frames + 1
-        if self._loud >= _TO_BEGIN:
+        self._last_frames.append(frame)
+        smoothed = np.maximum(sum(self._last_frames) / len(self._last_frames), _MIN_POWER)
+        self._smoothed_frames.append(smoothed)
+        self._frame_count += 1
+        if self._frame_count == 1:
+            self.floor = smoothed
+        # This runs a hundred times a second: minimum and maximum take half the time of clip and mean.
+        band_levels = np.minimum(np.maximum(10.0 * np.log10(smoothed / self.floor), 0.0), _MAX_BAND_LEVEL)
+        is_loud = float(band_levels.sum()) / BANDS > (_CONTINUE_LEVEL if self.speaking else _START_LEVEL)
+        self._loud_frames = self._loud_frames + 1 if is_loud else 0
+        self.quiet_frames = 0 if is_loud else self.quiet_frames + 1
+        if self._loud_frames >= _START_FRAMES:
             self.speaking = True
         elif self.quiet_frames >= HANGOVER:
             self.speaking = False
-        self._follow(smooth, loud=loud)
+        self._follow(smoothed, loud=is_loud)
         return self.speaking
 
     def end(self) -> None:
-        """End the utterance, even if speech follows."""
+        """End the utterance, even if more speech follows."""
         self.speaking = False
-        self._loud = 0
+        self._loud_frames = 0
 
-    def _follow(self, smooth: NDArray[np.float64], *, loud: bool) -> None:
-        lower = smooth < self.floor
-        rate = np.where(lower, _DOWN, 0.0 if loud else max(_UP, 1.0 / self._seen))
-        self.floor = self.floor + rate * (smooth - self.floor)
-        if self._seen % 10 == 0 and len(self._watched) == _WATCHED:
-            self.floor = np.maximum(self.floor, _OVER_THE_LEAST * np.min(self._watched, axis=0))
+    def _follow(self, smoothed: NDArray[np.float64], *, loud: bool) -> None:
+        is_lower = smoothed < self.floor
+        rate = np.where(is_lower, _FALL_RATE, 0.0 if loud else max(_RISE_RATE, 1.0 / self._frame_count))
+        self.floor = self.floor + rate * (smoothed - self.floor)
+        if self._frame_count % 10 == 0 and len(self._smoothed_frames) == _MINIMUM_FRAMES:
+            self.floor = np.maximum(self.floor, _MEAN_TO_MINIMUM * np.min(self._smoothed_frames, axis=0))
 
 
 def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Return the level of noise that swells and fades, such as other people's talk around a word.
+    """Return the level of unsteady noise that swells and fades, such as other people's talk around a word.
 
     The floor follows the minimum of such noise, and most of the noise is far above it. The level before the speech, and
     its deviation, distinguish this noise from steady noise and from a word that starts softly.
 
     Args:
         powers: the powers of an utterance and of the sound before it.
-        floor: the assumed power of the noise, shape ``(BANDS,)``.
+        floor: the power of the noise, as assumed so far, shape ``(BANDS,)``.
 
     Returns:
-        The power of each band, never below the floor, shape ``(BANDS,)``; None if the floor describes the noise.
+        The power of each band, at least the floor, shape ``(BANDS,)``; None if the noise is steady.
     """
-    before = np.maximum(powers[: _first_loud(powers) - _SOFT_BEGINNING], _LEAST_POWER)
-    if len(before) < _ENOUGH:
+    lead_in = np.maximum(powers[: _first_loud(powers) - _SOFT_START_FRAMES], _MIN_POWER)
+    if len(lead_in) < _MIN_NOISE_FRAMES:
         return None
-    smooth = (before[:-2] + before[1:-1] + before[2:]) / 3.0
-    steady = np.minimum(floor, _OVER_THE_LEAST * smooth.min(axis=0))  # the floor may not have fallen to the noise yet
-    above = np.mean(10.0 * np.log10(before / steady), axis=1)
-    changes = np.convolve(above, np.full(_SMOOTHED, 1.0 / _SMOOTHED), "valid")
-    if np.median(above) < _OVER_STEADY or changes.std() < _UNSTEADY:
+    smoothed = (lead_in[:-2] + lead_in[1:-1] + lead_in[2:]) / 3.0
+    steady_noise = np.minimum(
+        floor, _MEAN_TO_MINIMUM * smoothed.min(axis=0)
+    )  # the floor may not have fallen to the noise yet
+    level = np.mean(10.0 * np.log10(lead_in / steady_noise), axis=1)
+    smoothed_level = np.convolve(level, np.full(_SMOOTHING_FRAMES, 1.0 / _SMOOTHING_FRAMES), "valid")
+    if np.median(level) < _MIN_UNSTEADY_LEVEL or smoothed_level.std() < _MIN_UNSTEADY_DEVIATION:
         return None
-    noise: NDArray[np.float64] = np.maximum(floor, before.mean(axis=0) + _DEVIATIONS * before.std(axis=0))
+    noise: NDArray[np.float64] = np.maximum(floor, lead_in.mean(axis=0) + _NOISE_DEVIATIONS * lead_in.std(axis=0))
     return noise
 
 
 def _first_loud(powers: Powers) -> int:
-    """Return the index of the first frame within `_SOFTER` dB of the loudest, at least `_SOFT_BEGINNING`."""
-    totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHED, 1.0 / _SMOOTHED), "same")
-    loudest = np.sort(totals)[-_LOUDEST:].mean()
-    return max(_SOFT_BEGINNING, int(np.argmax(totals > 10.0 ** (-_SOFTER / 10.0) * loudest)))
+    """Return the first frame within `_SPEECH_RANGE` dB of the loudest frames, at least `_SOFT_START_FRAMES`."""
+    totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHING_FRAMES, 1.0 / _SMOOTHING_FRAMES), "same")
+    loudest = np.sort(totals)[-_LOUDEST_FRAMES:].mean()
+    return max(_SOFT_START_FRAMES, int(np.argmax(totals > 10.0 ** (-_SPEECH_RANGE / 10.0) * loudest)))
 
 
 def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
@@ -128,20 +130,20 @@ def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
         The first frame of the section, the frame after its last, and the noise floor, shape ``(BANDS,)``; the two
         frames are equal if there is no speech.
     """
-    if len(powers) < _TO_BEGIN:
-        return 0, 0, np.full(BANDS, _LEAST_POWER)
-    smooth = np.maximum(powers, _LEAST_POWER)
-    smooth[1:-1] = (smooth[:-2] + smooth[1:-1] + smooth[2:]) / 3.0
-    floor = np.maximum(_LEAST_POWER, _OVER_THE_LEAST * np.quantile(smooth, 0.1, axis=0))
-    above = np.mean(np.clip(10.0 * np.log10(smooth / floor), 0.0, _MOST_OF_A_BAND), axis=1)
-    # A browser's noise suppression gradually reduces the noise, so at first the noise is far above the floor.
-    totals = smooth.sum(axis=1)
-    heard = totals > 10.0 ** (-_BELOW_THE_LOUDEST / 10.0) * totals.max()
-    loud = np.flatnonzero((above > _IN_A_TAKE) & heard)
-    if not len(loud):
+    if len(powers) < _START_FRAMES:
+        return 0, 0, np.full(BANDS, _MIN_POWER)
+    smoothed = np.maximum(powers, _MIN_POWER)
+    smoothed[1:-1] = (smoothed[:-2] + smoothed[1:-1] + smoothed[2:]) / 3.0
+    floor = np.maximum(_MIN_POWER, _MEAN_TO_MINIMUM * np.quantile(smoothed, 0.1, axis=0))
+    level = np.mean(np.clip(10.0 * np.log10(smoothed / floor), 0.0, _MAX_BAND_LEVEL), axis=1)
+    # A browser's noise suppression reduces the noise only gradually, so at first the noise is far above the floor.
+    totals = smoothed.sum(axis=1)
+    is_audible = totals > 10.0 ** (-_MAX_BELOW_LOUDEST / 10.0) * totals.max()
+    loud_frames = np.flatnonzero((level > _TAKE_LEVEL) & is_audible)
+    if not len(loud_frames):
         return 0, 0, floor
-    cuts = np.flatnonzero(np.diff(loud) > HANGOVER) + 1
-    longest = max(np.split(loud, cuts), key=len)
-    if len(longest) < _TO_BEGIN:
+    cuts = np.flatnonzero(np.diff(loud_frames) > HANGOVER) + 1
+    longest = max(np.split(loud_frames, cuts), key=len)
+    if len(longest) < _START_FRAMES:
         return 0, 0, floor
     return int(longest[0]), int(longest[-1]) + 1, floor

@@ -1,4 +1,4 @@
-"""The microphone, accessed through PortAudio with the library sounddevice."""
+"""Record from the microphone through PortAudio, with the library sounddevice."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install
 from linkwright.speech.sound.resampling import Resampler
 from linkwright.speech.sound.samples import RATE, Samples
 
-_FULL = 32_768.0
+_FULL_SCALE = 32_768.0
 
 
 class Microphone:
-    """Records until it is closed.
+    """Records from a microphone until it is closed.
 
     A device that cannot be read at 16 kHz is read at its own rate and resampled.
 
     Args:
         device: a number or part of a name, as ``python -m sounddevice`` lists them; empty for the system's default.
-        block: the approximate number of samples per block.
-        heard: called with each block, in a thread of PortAudio.
+        block_size: the number of samples in a block, about.
+        on_samples: called with each block, in a thread of PortAudio.
 
     Raises:
         LinkwrightError: VOICE412, PortAudio is missing; VOICE413, the device does not exist or cannot be opened.
     """
 
-    def __init__(self, device: str, block: int, heard: Callable[[Samples], None]) -> None:
-        sounddevice = _library()
-        chosen: int | str | None = int(device) if device.isdigit() else device or None
-        self._on_samples = heard
+    def __init__(self, device: str, block_size: int, on_samples: Callable[[Samples], None]) -> None:
+        sounddevice = _load_sounddevice()
+        device_or_name: int | str | None = int(device) if device.isdigit() else device or None
+        self._on_samples = on_samples
         self._resampler: Resampler | None = None
         try:
-            rate = self._rate_of(sounddevice, chosen)
+            rate = self._choose_rate(sounddevice, device_or_name)
             self._stream = sounddevice.InputStream(
-                device=chosen,
+                device=device_or_name,
                 samplerate=rate,
-                blocksize=block * rate // RATE,
+                blocksize=block_size * rate // RATE,
                 channels=1,
                 dtype="int16",
                 callback=self._receive,
@@ -58,23 +58,23 @@ class Microphone:
         """Stop recording."""
         self._stream.close()
 
-    def _rate_of(self, sounddevice: Any, chosen: int | str | None) -> int:
+    def _choose_rate(self, sounddevice: Any, device_or_name: int | str | None) -> int:
         try:
-            sounddevice.check_input_settings(device=chosen, channels=1, dtype="int16", samplerate=RATE)
+            sounddevice.check_input_settings(device=device_or_name, channels=1, dtype="int16", samplerate=RATE)
         except sounddevice.PortAudioError:
-            rate: int = round(sounddevice.query_devices(chosen, "input")["default_samplerate"])
+            rate: int = round(sounddevice.query_devices(device_or_name, "input")["default_samplerate"])
             self._resampler = Resampler(rate)
             return rate
         return RATE
 
     def _receive(self, data: Any, _frames: int, _time: Any, _status: Any) -> None:
         samples: Samples = np.array(data[:, 0], dtype=np.int16)
-        self._on_samples(samples if self._resampler is None else self._resampler.feed(samples / _FULL))
+        self._on_samples(samples if self._resampler is None else self._resampler.feed(samples / _FULL_SCALE))
 
 
-def _library() -> Any:
+def _load_sounddevice() -> Any:
     hint = phrase(
-        "install PortAudio (apt install libportaudio2), or use the microphone of the browser, which needs nothing"
+        "install PortAudio (apt install libportaudio2), or use the browser's microphone, which needs no installation"
     )
     try:
         import sounddevice  # type: ignore[import-untyped, import-not-found, unused-ignore]

@@ -1,4 +1,4 @@
-"""The format of sound in this room."""
+"""The format of sound in speech recognition."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 RATE = 16_000
-"""Samples a second. Engines of speech are trained at this rate; microphones are resampled to it where they are read."""
+"""Samples per second. Speech engines are trained at this rate; microphones are resampled to it where they are read."""
 
 BLOCK = RATE // 10
-"""Samples of the blocks in which microphones deliver: 100 ms."""
+"""The samples in a block of a microphone: 100 ms."""
 
 Samples: TypeAlias = NDArray[np.int16]
-"""Mono PCM of 16 bits, little-endian, shape ``(n,)``, at `RATE`."""
+"""Mono 16-bit PCM, shape ``(n,)``, at `RATE`."""

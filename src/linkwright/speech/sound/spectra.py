@@ -1,7 +1,7 @@
 """Mel spectra of a stream, for voice activity detection and recognition.
 
-Windows of 25 ms every 10 ms, a first-order pre-emphasis, 26 triangular bands from 80 to 7600 Hz of equal width on the
-mel scale (O'Shaughnessy's, as in HTK).
+Windows of 25 ms every 10 ms, a first-order pre-emphasis, and 26 triangular bands from 80 to 7600 Hz of equal width on
+the mel scale (O'Shaughnessy's, as in HTK).
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from numpy.typing import NDArray
 from linkwright.speech.sound.samples import RATE, Samples
 
 HOP = RATE // 100
-"""Samples from a frame to the next: 10 ms."""
+"""The samples from one frame to the next: 10 ms."""
 
 WINDOW = RATE // 40
-"""Samples that a frame is computed from: 25 ms."""
+"""The samples from which a frame is computed: 25 ms."""
 
 BANDS = 26
 
 Powers: TypeAlias = NDArray[np.float64]
-"""Power of each band, shape ``(frames, BANDS)``; 1: white noise of one step of 16 bits, effective."""
+"""The power of each band, shape ``(frames, BANDS)``; 1 is white noise with an RMS of one 16-bit step."""
 
-_FFT = 512
-_LOWEST, _HIGHEST = 80.0, 7600.0  # Hz
+_FFT_SIZE = 512
+_MIN_FREQUENCY, _MAX_FREQUENCY = 80.0, 7600.0  # Hz
 _PRE_EMPHASIS = 0.97
 
 
@@ -35,23 +35,23 @@ class MelFrames:
 
     def __init__(self) -> None:
         self._buffer: NDArray[np.float64] = np.zeros(0)
-        self._last = 0.0
+        self._last_sample = 0.0
 
     def feed(self, samples: Samples) -> Powers:
-        """Process the next block, and return the frames that it completes, if there are any."""
+        """Process the next block, and return the frames that it completes; the array may be empty."""
         if not len(samples):
             return np.zeros((0, BANDS))
         values = samples.astype(np.float64)
         emphasised = values.copy()
-        emphasised[0] -= _PRE_EMPHASIS * self._last
+        emphasised[0] -= _PRE_EMPHASIS * self._last_sample
         emphasised[1:] -= _PRE_EMPHASIS * values[:-1]
-        self._last = float(values[-1])
+        self._last_sample = float(values[-1])
         self._buffer = np.concatenate((self._buffer, emphasised))
         count = (len(self._buffer) - WINDOW) // HOP + 1
         if count <= 0:
             return np.zeros((0, BANDS))
         frames = np.lib.stride_tricks.sliding_window_view(self._buffer, WINDOW)[: (count - 1) * HOP + 1 : HOP]
-        spectrum = np.abs(np.fft.rfft(frames * _SHAPE, _FFT)) ** 2
+        spectrum = np.abs(np.fft.rfft(frames * _WINDOW_SHAPE, _FFT_SIZE)) ** 2
         self._buffer = self._buffer[count * HOP :]
         powers: Powers = spectrum @ _FILTERS
         return powers
@@ -62,21 +62,21 @@ def mel_frames(samples: Samples) -> Powers:
     return MelFrames().feed(samples)
 
 
-def _filters() -> NDArray[np.float64]:
-    """Return the filters of the bands, shape ``(_FFT // 2 + 1, BANDS)``.
+def _mel_filters() -> NDArray[np.float64]:
+    """Return the filters of the mel bands, shape ``(_FFT // 2 + 1, BANDS)``.
 
-    Each sums to 1, so white noise is equal in all bands.
+    Each filter sums to 1, so that white noise is equal in all bands.
     """
-    lowest, highest = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_LOWEST, _HIGHEST))
-    mel = np.linspace(lowest, highest, BANDS + 2)
+    min_mel, max_mel = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_MIN_FREQUENCY, _MAX_FREQUENCY))
+    mel = np.linspace(min_mel, max_mel, BANDS + 2)
     edges = 700.0 * (10.0 ** (mel / 2595.0) - 1.0)
-    hertz = np.arange(_FFT // 2 + 1) * RATE / _FFT
-    rising = (hertz[:, None] - edges[None, :-2]) / np.diff(edges)[:-1]
-    falling = (edges[None, 2:] - hertz[:, None]) / np.diff(edges)[1:]
+    frequencies = np.arange(_FFT_SIZE // 2 + 1) * RATE / _FFT_SIZE
+    rising = (frequencies[:, None] - edges[None, :-2]) / np.diff(edges)[:-1]
+    falling = (edges[None, 2:] - frequencies[:, None]) / np.diff(edges)[1:]
     bands = np.maximum(0.0, np.minimum(rising, falling))
     return np.asarray(bands / bands.sum(axis=0))
 
 
-_WINDOWED = np.hamming(WINDOW)
-_SHAPE = _WINDOWED / np.sqrt(np.sum(_WINDOWED**2))
-_FILTERS = _filters()
+_HAMMING = np.hamming(WINDOW)
+_WINDOW_SHAPE = _HAMMING / np.sqrt(np.sum(_HAMMING**2))
+_FILTERS = _mel_filters()

@@ -1,6 +1,6 @@
-"""Read WAV files in any common format, and write them as 16 kHz mono.
+"""Read WAV files in all common formats, and write 16 kHz mono files.
 
-Python's module `wave` reads neither floating point nor the extensible form that many recorders write.
+Python's module `wave` reads neither floating point nor the extensible format that many recorders write.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
 from linkwright.files.input_files import read_file
-from linkwright.speech.sound.resampling import HIGHEST_RATE, LOWEST_RATE, resample
+from linkwright.speech.sound.resampling import MAX_RATE, MIN_RATE, resample
 from linkwright.speech.sound.samples import RATE, Samples
 
-_LARGEST = 1 << 30  # bytes
+_MAX_FILE_SIZE = 1 << 30  # bytes
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
-_OTHER_FORMS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "IMA ADPCM", 0x31: "GSM", 0x55: "MP3"}
-_DEPTHS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}
+_OTHER_FORMATS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "IMA ADPCM", 0x31: "GSM", 0x55: "MP3"}
+_SUPPORTED_FORMATS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}
 
 
 @dataclass(frozen=True, slots=True)
 class _Form:
-    """The format in the ``fmt`` chunk."""
+    """The format that the ``fmt`` chunk declares."""
 
     kind: int
     channels: int
@@ -35,105 +35,115 @@ class _Form:
 
 
 def read_wav(path: str | os.PathLike[str]) -> Samples:
-    """Read a WAV file: PCM of 8 to 32 bits or floating point, channels averaged, resampled to `RATE`.
+    """Read a WAV file: PCM of 8 to 32 bits or floating point; channels are averaged and resampled to `RATE`.
 
-    A truncated file, for example from a recorder that was killed, gives its existing samples.
+    A truncated file, for example of a recorder that was killed, gives the samples that it contains.
 
     Raises:
-        LinkwrightError: VOICE401, it cannot be read; VOICE402, it is not a WAV file, or its format is not supported.
+        LinkwrightError: VOICE401, the file cannot be read; VOICE402, it is not a WAV file, or its format is not
+            supported.
     """
-    shown = display_path(Path(path))
+    path_text = display_path(Path(path))
     try:
-        data = read_file(path, _LARGEST)
+        data = read_file(path, _MAX_FILE_SIZE)
     except OSError as error:
-        message = phrase("cannot read '{path}': {reason}", path=shown, reason=foreign(error.strerror))
+        message = phrase("cannot read '{path}': {reason}", path=path_text, reason=foreign(error.strerror))
         raise LinkwrightError(Diagnostic("VOICE401", message, hint=missing_file_hint(Path(path)))) from None
-    return parse_wav(data, shown)
+    return parse_wav(data, path_text)
 
 
 def parse_wav(data: bytes, name: str) -> Samples:
     """Read the bytes of a WAV file.
 
     Args:
-        data: all of the file.
-        name: its name in errors.
+        data: the whole file.
+        name: the name of the file in errors.
 
     Raises:
         LinkwrightError: VOICE402, it is not a WAV file, or its format is not supported.
     """
-    form, sound = _chunks(data, name)
-    if (form.kind, form.bits) not in _DEPTHS:
-        kind = _OTHER_FORMS.get(form.kind, "PCM" if form.kind == _PCM else f"0x{form.kind:04x}")
-        raise _no_wav(
-            name, phrase("its samples are {kind} of {bits} bits, which is not supported", kind=kind, bits=form.bits)
+    wav_format, sample_bytes = _read_chunks(data, name)
+    if (wav_format.kind, wav_format.bits) not in _SUPPORTED_FORMATS:
+        format_name = _OTHER_FORMATS.get(
+            wav_format.kind, "PCM" if wav_format.kind == _PCM else f"0x{wav_format.kind:04x}"
         )
-    if not 1 <= form.channels <= 64:
-        raise _no_wav(name, phrase("it has {channels} channels", channels=form.channels))
-    if not LOWEST_RATE <= form.rate <= HIGHEST_RATE:
-        raise _no_wav(
+        raise _wav_error(
+            name,
+            phrase(
+                ("its samples are {kind} with {bits} bits, which is not supported"),
+                kind=format_name,
+                bits=wav_format.bits,
+            ),
+        )
+    if not 1 <= wav_format.channels <= 64:
+        raise _wav_error(name, phrase("it has {channels} channels", channels=wav_format.channels))
+    if not MIN_RATE <= wav_format.rate <= MAX_RATE:
+        raise _wav_error(
             name,
             phrase(
                 "its rate is {rate} Hz, but {lowest} to {highest} Hz are supported",
-                rate=form.rate,
-                lowest=LOWEST_RATE,
-                highest=HIGHEST_RATE,
+                rate=wav_format.rate,
+                lowest=MIN_RATE,
+                highest=MAX_RATE,
             ),
         )
-    frame = form.channels * form.bits // 8
-    values = _values(sound[: len(sound) // frame * frame], form).reshape(-1, form.channels)
+    frame_size = wav_format.channels * wav_format.bits // 8
+    values = _values(sample_bytes[: len(sample_bytes) // frame_size * frame_size], wav_format).reshape(
+        -1, wav_format.channels
+    )
     if not np.isfinite(values).all():
-        raise _no_wav(name, phrase("some of its samples are infinite or not numbers"))
-    return resample(values.mean(axis=1), form.rate)
+        raise _wav_error(name, phrase("some of its samples are infinite or NaN"))
+    return resample(values.mean(axis=1), wav_format.rate)
 
 
 def wav_bytes(samples: Samples) -> bytes:
     """Return samples as the bytes of a WAV file: 16 bits, mono, at `RATE`."""
-    sound = samples.astype("<i2").tobytes()
-    head = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(sound), b"WAVE", b"fmt ", 16, _PCM, 1, RATE,
-                       2 * RATE, 2, 16, b"data", len(sound))  # fmt: skip
-    return head + sound
+    sample_bytes = samples.astype("<i2").tobytes()
+    header = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(sample_bytes), b"WAVE", b"fmt ", 16, _PCM, 1, RATE,
+                       2 * RATE, 2, 16, b"data", len(sample_bytes))  # fmt: skip
+    return header + sample_bytes
 
 
-def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
-    """Return the format and the bytes of the samples."""
+def _read_chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
+    """Return the format, and the bytes of the samples."""
     if data[:4] != b"RIFF" or data[8:12] != b"WAVE":
-        raise _no_wav(name, phrase("it does not begin like a WAV file"))
-    form: _Form | None = None
-    at = 12
-    while at + 8 <= len(data):
-        kind, size = data[at : at + 4], int.from_bytes(data[at + 4 : at + 8], "little")
-        body = data[at + 8 : at + 8 + size]
-        if kind == b"fmt " and len(body) >= 16:
+        raise _wav_error(name, phrase("it has no header of a WAV file"))
+    wav_format: _Form | None = None
+    offset = 12
+    while offset + 8 <= len(data):
+        chunk_id, size = data[offset : offset + 4], int.from_bytes(data[offset + 4 : offset + 8], "little")
+        body = data[offset + 8 : offset + 8 + size]
+        if chunk_id == b"fmt " and len(body) >= 16:
             tag, channels, rate, _, _, bits = struct.unpack("<HHIIHH", body[:16])
             if tag == _EXTENSIBLE and len(body) >= 26:
                 tag = int.from_bytes(body[24:26], "little")
-            form = _Form(tag, channels, rate, bits)
-        elif kind == b"data":
-            if form is None:
-                raise _no_wav(name, phrase("its samples are stored before the chunk with their format"))
-            return form, body
-        at += 8 + size + size % 2
-    raise _no_wav(name, phrase("it contains no samples"))
+            wav_format = _Form(tag, channels, rate, bits)
+        elif chunk_id == b"data":
+            if wav_format is None:
+                raise _wav_error(name, phrase("the chunk with its samples comes before the chunk with their format"))
+            return wav_format, body
+        offset += 8 + size + size % 2
+    raise _wav_error(name, phrase("it contains no samples"))
 
 
-def _values(sound: bytes, form: _Form) -> NDArray[np.float64]:
+def _values(sample_bytes: bytes, form: _Form) -> NDArray[np.float64]:
     """Return the samples of all channels, interleaved, full scale at 1."""
     if form.kind == _FLOAT:
-        return np.frombuffer(sound, f"<f{form.bits // 8}").astype(np.float64)
+        return np.frombuffer(sample_bytes, f"<f{form.bits // 8}").astype(np.float64)
     if form.bits == 8:
-        return (np.frombuffer(sound, np.uint8).astype(np.float64) - 128.0) / 128.0
+        return (np.frombuffer(sample_bytes, np.uint8).astype(np.float64) - 128.0) / 128.0
     if form.bits == 24:
-        wide = np.zeros((len(sound) // 3, 4), np.uint8)
-        wide[:, 1:] = np.frombuffer(sound, np.uint8).reshape(-1, 3)
-        return wide.reshape(-1).view("<i4").astype(np.float64) / 2.0**31
-    return np.frombuffer(sound, f"<i{form.bits // 8}").astype(np.float64) / 2.0 ** (form.bits - 1)
+        widened = np.zeros((len(sample_bytes) // 3, 4), np.uint8)
+        widened[:, 1:] = np.frombuffer(sample_bytes, np.uint8).reshape(-1, 3)
+        return widened.reshape(-1).view("<i4").astype(np.float64) / 2.0**31
+    return np.frombuffer(sample_bytes, f"<i{form.bits // 8}").astype(np.float64) / 2.0 ** (form.bits - 1)
 
 
-def _no_wav(name: str, why: Phrase) -> LinkwrightError:
+def _wav_error(name: str, why: Phrase) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "VOICE402",
             phrase("'{path}' cannot be read as a WAV file: {why}", path=name, why=why),
-            hint=phrase("write it as PCM of 16 bits, as with 'ffmpeg -i FILE -ar 16000 -ac 1 OUT.wav'"),
+            hint=phrase("convert it to 16-bit PCM, for example with 'ffmpeg -i FILE -ar 16000 -ac 1 OUT.wav'"),
         )
     )

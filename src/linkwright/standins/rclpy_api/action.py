@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class ActionServer(action_server.ActionServer):
-    """An action server, which executes goals."""
+    """An action server of rclpy, which also reports how many entities it has."""
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return the number of entities of the server: three services, and a timer that drops old results."""
@@ -22,7 +22,7 @@ class ActionServer(action_server.ActionServer):
 
 
 class ActionClient(action_client.ActionClient):
-    """An action client, which sends goals."""
+    """An action client of rclpy, which also reports how many entities it has."""
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return the number of entities of the client: three service clients and two subscriptions.
@@ -33,19 +33,19 @@ class ActionClient(action_client.ActionClient):
 
 
 def get_action_names_and_types(node: Node) -> NamesAndTypes:
-    """Return the names of all actions in the graph, with their types."""
+    """Return the name and the types of each action in the graph."""
     return node.get_action_names_and_types()
 
 
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the names of the actions for which a node has clients, with their types."""
+    """Return the name and the types of each action for which a node has a client."""
     return node.context.graph.get_action_client_names_and_types_by_node(remote_node_name, remote_node_namespace)
 
 
 def get_action_server_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the names of the actions for which a node has servers, with their types."""
+    """Return the name and the types of each action for which a node has a server."""
     return node.context.graph.get_action_server_names_and_types_by_node(remote_node_name, remote_node_namespace)

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from linkwright.wire.background import BackgroundTransport
 
-_LONGEST_JOINING_S = 3.0
-_open: weakref.WeakSet[Context] = weakref.WeakSet()
+_MAX_JOIN_WAIT_S = 3.0
+_open_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context:
@@ -45,16 +45,16 @@ class Context:
         self._callbacks: list[Callable[[], Callable[[], object] | None]] = []
         self._initialized = False
         self._ok = False
-        self._ended_by_signal = False
+        self._was_ended_by_signal = False
         self._domain_id: int | None = None
         self._graph = graph
         self._logging: Logging | None = None
-        self._joining: BackgroundTransport | None = None
+        self._joining_transport: BackgroundTransport | None = None
         self.ros_arguments = RosArguments()
 
     @property
     def enable_rosout(self) -> bool:
-        """Whether nodes publish their log messages, which a command-line option can disable."""
+        """Whether nodes publish their log messages on ``/rosout``; a command-line option can disable this."""
         return self.ros_arguments.rosout_logs is not False
 
     @property
@@ -67,7 +67,7 @@ class Context:
         """The graph of the context's nodes, which joins the network on first use by a node."""
         with self._lock:
             if self._graph is None:
-                self._graph = self._new_graph()
+                self._graph = self._create_graph()
             return self._graph
 
     def wait_for_network(self) -> None:
@@ -75,9 +75,9 @@ class Context:
 
         Without this wait, DDS would delay the first timers.
         """
-        joining, self._joining = self._joining, None
-        if joining is not None:
-            joining.wait_until_ready(_LONGEST_JOINING_S)
+        transport, self._joining_transport = self._joining_transport, None
+        if transport is not None:
+            transport.wait_until_ready(_MAX_JOIN_WAIT_S)
 
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
@@ -110,7 +110,7 @@ class Context:
                 self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)
                 logging.write_to(self._logging.sink)
             self._initialized = self._ok = True
-        _open.add(self)
+        _open_contexts.add(self)
         shut_down_on_signal(self)
 
     def ok(self) -> bool:
@@ -133,7 +133,7 @@ class Context:
     def on_shutdown(self, callback: Callable[[], object]) -> None:
         """Register a callback for the shutdown; if the context is already shut down, call it now.
 
-        The context holds bound methods by weak references.
+        The context keeps only weak references to bound methods.
 
         Raises:
             TypeError: `callback` is not callable.
@@ -142,8 +142,8 @@ class Context:
             raise TypeError(f"callback should be a callable, got {type(callback)}")
         with self._lock:
             if not self._initialized or self._ok:
-                held = weakref.WeakMethod(callback) if inspect.ismethod(callback) else lambda: callback
-                self._callbacks.append(held)
+                callback_reference = weakref.WeakMethod(callback) if inspect.ismethod(callback) else lambda: callback
+                self._callbacks.append(callback_reference)
                 return
         callback()
 
@@ -151,32 +151,32 @@ class Context:
         """Shut the context down: executors stop spinning, and the nodes leave the graph.
 
         Raises:
-            RclError: the context was not initialised, or was already shut down other than by a signal.
+            RclError: the context was not initialised, or was already shut down, unless a signal did this.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")
-        if not self._ok and not self._ended_by_signal:
+        if not self._ok and not self._was_ended_by_signal:
             raise RclError("Context must be initialized before it can be shutdown: it was shut down already")
-        self._ended_by_signal = False
-        self._end()
+        self._was_ended_by_signal = False
+        self._complete_shutdown()
 
     def try_shutdown(self) -> None:
         """Shut the context down, unless it is not initialised or already shut down."""
-        if self._initialized and (self._ok or self._ended_by_signal):
+        if self._initialized and (self._ok or self._was_ended_by_signal):
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
         """Stop the executors from a signal handler; `shutdown` must complete the shutdown later.
 
-        A signal can arrive at any point of the program, so this function does only what is safe there.
+        A signal can arrive at any point of the program, so this method does only what is safe in a signal handler.
         """
         if self._ok:
-            self._ended_by_signal = True
+            self._was_ended_by_signal = True
             self._ok = False
             self._notify()
 
     def destroy(self) -> None:
-        """Call `try_shutdown`, under rclpy's name."""
+        """Shut the context down if necessary, like `try_shutdown`."""
         self.try_shutdown()
 
     def __enter__(self) -> Self:
@@ -189,7 +189,7 @@ class Context:
     ) -> None:
         self.try_shutdown()
 
-    def _end(self) -> None:
+    def _complete_shutdown(self) -> None:
         self._ok = False
         self._notify()
         with self._lock:
@@ -200,20 +200,20 @@ class Context:
             logging.shutdown()
             self._logging.close()
             self._logging = None
-        _open.discard(self)
+        _open_contexts.discard(self)
 
     def _notify(self) -> None:
         callbacks, self._callbacks = self._callbacks, []
-        for held in callbacks:
-            callback = held()
+        for callback_reference in callbacks:
+            callback = callback_reference()
             if callback is not None:
                 callback()
 
-    def _new_graph(self) -> Graph:
+    def _create_graph(self) -> Graph:
         from linkwright.wire.joining import join
 
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
-        self._joining = join(graph, domain_id=self._domain_id)
+        self._joining_transport = join(graph, domain_id=self._domain_id)
         return graph
 
 
@@ -241,14 +241,14 @@ def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
     except LinkwrightError as error:
         text = str(error)
         if "unknown ROS argument" in text:
-            unknown = text.partition("'")[2].partition("'")[0]
-            raise UnknownROSArgsError(f"Found unknown ROS arguments: {[unknown]}") from error
+            unknown_argument = text.partition("'")[2].partition("'")[0]
+            raise UnknownROSArgsError(f"Found unknown ROS arguments: {[unknown_argument]}") from error
         raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {list(arguments)}: {text}") from error
 
 
-def _end_all() -> None:
-    for context in tuple(_open):
+def _shut_down_all() -> None:
+    for context in tuple(_open_contexts):
         context.try_shutdown()
 
 
-atexit.register(_end_all)
+atexit.register(_shut_down_all)

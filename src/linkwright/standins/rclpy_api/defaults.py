@@ -1,4 +1,4 @@
-"""The default context, which functions use if they receive no context."""
+"""The default context, which is used by functions that are called without a context."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _lock = threading.RLock()
 
 
-class _Default:
+class _DefaultState:
     context: Context | None = None
 
 
@@ -23,33 +23,33 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
     """Return the default context, and create one if none exists.
 
     Args:
-        shutting_down: whether to return the existing context only and forget it, so that the next call creates a new
+        shutting_down: whether to return only an existing context and to forget it, so that the next call creates a new
             one.
 
     Raises:
-        RclError: `shutting_down` is set, and there is no context.
+        RclError: `shutting_down` is True, and there is no default context.
     """
     with _lock:
         if shutting_down:
-            if _Default.context is None:
+            if _DefaultState.context is None:
                 raise RclError(
                     "Context must be initialized before it can be shutdown: rclpy.init() has not been called"
                 )
-            context, _Default.context = _Default.context, None
+            context, _DefaultState.context = _DefaultState.context, None
             return context
-        if _Default.context is None:
-            _Default.context = Context()
-        return _Default.context
+        if _DefaultState.context is None:
+            _DefaultState.context = Context()
+        return _DefaultState.context
 
 
 def has_default_context() -> bool:
-    """Return whether a default context exists, that is, was requested and not shut down since."""
-    return _Default.context is not None
+    """Return whether a default context was created and has not been shut down."""
+    return _DefaultState.context is not None
 
 
 def is_default(context: Context | None) -> bool:
     """Return whether a context is the default context; None means the default context."""
-    return context is None or context is _Default.context
+    return context is None or context is _DefaultState.context
 
 
 def use_graph(graph: Graph, args: Sequence[str]) -> Context:
@@ -65,14 +65,14 @@ def use_graph(graph: Graph, args: Sequence[str]) -> Context:
         RuntimeError: the default context is already initialised.
     """
     with _lock:
-        if _Default.context is not None and _Default.context.ok():
+        if _DefaultState.context is not None and _DefaultState.context.ok():
             raise RuntimeError("rclpy.init() has been called already")
-        context = _Default.context = Context(graph)
+        context = _DefaultState.context = Context(graph)
     context.init(args, initialize_logging=False)
     return context
 
 
-def check_initialized(context: Context, what: str) -> None:
+def check_initialized(context: Context, action: str) -> None:
     """Raise NotInitializedError unless a context is initialised and not shut down."""
     if not context.ok():
-        raise NotInitializedError(what)
+        raise NotInitializedError(action)

@@ -1,4 +1,4 @@
-"""The exceptions of rclpy that `linkwright.graph` does not raise, and rclpy's names of all exceptions."""
+"""The exceptions of rclpy that `linkwright.graph` lacks, and a function that gives all exceptions rclpy's names."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ __all__ = [
     "name_as_rclpy",
 ]
 
-_MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
-"""The modules of exception classes; the others import from the last one."""
+_EXCEPTION_MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
+"""The modules of rclpy's exception classes; a class in several modules gets the name of the last one."""
 
 
 class NoTypeSupportImportedException(Exception):
-    """Raised when a class is not an interface class that can be used."""
+    """Raised when a class is not a message, service or action class."""
 
     def __init__(self) -> None:
         super().__init__("no type_support imported")
@@ -49,13 +49,17 @@ class UnsupportedEventTypeError(RCLError):
 def name_as_rclpy() -> None:
     """Rename the exception classes, so that tracebacks and logs show rclpy's names.
 
-    An example is ``rclpy.exceptions.InvalidNodeNameException``.
+    For example, they show ``rclpy.exceptions.InvalidNodeNameException``.
     """
-    for module in _MODULES:
-        described = table.find(module)
-        assert described is not None
-        for name, entry in described.names.items():
+    for module in _EXCEPTION_MODULES:
+        module_table = table.find(module)
+        assert module_table is not None
+        for name, entry in module_table.names.items():
             if entry.origin.startswith("linkwright."):
-                found = getattr(import_module(entry.origin), entry.name)
-                if isinstance(found, type) and issubclass(found, Exception):
-                    found.__module__, found.__name__, found.__qualname__ = module, name, name
+                exception_class = getattr(import_module(entry.origin), entry.name)
+                if isinstance(exception_class, type) and issubclass(exception_class, Exception):
+                    exception_class.__module__, exception_class.__name__, exception_class.__qualname__ = (
+                        module,
+                        name,
+                        name,
+                    )

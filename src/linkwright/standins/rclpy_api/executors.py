@@ -1,4 +1,4 @@
-"""Executors, which use the default context unless another one is given (rclpy ``executors``)."""
+"""Executors, which use the default context unless they receive another one (rclpy ``executors``)."""
 
 from __future__ import annotations
 

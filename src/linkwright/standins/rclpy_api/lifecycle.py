@@ -10,11 +10,11 @@ from linkwright.standins.rclpy_api.node import Node
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A managed node; the base class of users' managed nodes.
+    """A managed node, and the base class of users' managed nodes.
 
     Args:
         node_name: the name of the node.
-        enable_communication_interface: whether the node offers services for transitions and publishes its transitions.
+        enable_communication_interface: whether the node offers services for transitions, and publishes them.
         callback_group: the callback group of these services.
         arguments: further arguments of `Node`.
 

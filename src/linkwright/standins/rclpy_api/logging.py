@@ -1,4 +1,4 @@
-"""The loggers of the process, which outlive contexts (rclpy ``logging``)."""
+"""The loggers of the process, which exist independently of contexts (rclpy ``logging``)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def write_to(sink: LogSink) -> None:
 
 
 def is_configured() -> bool:
-    """Return whether the loggers are redirected from the console."""
+    """Return whether the loggers write to a sink other than the console."""
     return len(_sinks) > 1
 
 
@@ -37,7 +37,7 @@ root_logger = Logger("", write, time.time_ns, LEVELS)
 
 
 def get_logger(name: str) -> Logger:
-    """Return the logger with the given name; dots separate the levels of the hierarchy.
+    """Return the logger with a name, in which dots separate the levels of the hierarchy.
 
     Raises:
         ValueError: the name is empty.
@@ -53,12 +53,12 @@ def initialize() -> None:
 
 
 def shutdown() -> None:
-    """Direct the output of all loggers to the console again."""
+    """Make all loggers write to the console again."""
     del _sinks[1:]
 
 
 def clear_config() -> None:
-    """Direct the output of all loggers to the console again, and reset their levels."""
+    """Make all loggers write to the console again, and reset their levels."""
     shutdown()
     initialize()
 
@@ -69,17 +69,17 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logger_effective_level(name: str) -> LogLevel:
-    """Return the effective level of a logger: its own level, or else the inherited level."""
+    """Return the level that a logger uses: the level that was set for it, or else the inherited level."""
     return LEVELS.effective_level(name)
 
 
 def get_logger_level(name: str) -> LogLevel:
-    """Return a logger's own level, or UNSET if it has none."""
+    """Return the level that was set for a logger, or UNSET if none was set."""
     return LEVELS.own_level(name)
 
 
 def get_logging_severity_from_string(log_severity: str) -> LogLevel:
-    """Return the severity with the given name.
+    """Return the severity with a name, such as ``INFO``.
 
     Raises:
         RuntimeError: there is no such severity.

@@ -1,4 +1,4 @@
-"""Validation and expansion of names, which rclpy distributes over several modules."""
+"""Validates and expands names; the functions are in several modules of rclpy."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
     """
-    _raise(name, names.topic_name_problem(name), is_service=is_service)
+    _raise_if_invalid(name, names.topic_name_problem(name), is_service=is_service)
     return True
 
 
@@ -50,12 +50,12 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
     problem = names.topic_name_problem(name)
     if problem is None and not name.startswith("/"):
         problem = "topic name must be absolute, it must lead with a '/'", 0
-    _raise(name, problem, is_service=is_service)
+    _raise_if_invalid(name, problem, is_service=is_service)
     return True
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """Return the absolute name of a topic that a node refers to.
+    """Return the absolute name of a topic for a name that a node uses.
 
     Raises:
         ValueError: one of the names is not valid.
@@ -87,7 +87,7 @@ def validate_parameter_name(name: str) -> bool:
     return True
 
 
-def _raise(name: str, problem: names.Problem | None, *, is_service: bool) -> None:
+def _raise_if_invalid(name: str, problem: names.Problem | None, *, is_service: bool) -> None:
     if problem is None:
         return
     if is_service:

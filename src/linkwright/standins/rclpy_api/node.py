@@ -15,20 +15,20 @@ from linkwright.standins.rclpy_api.context import Context, read_ros_arguments
 from linkwright.standins.rclpy_api.defaults import check_initialized, get_default_context
 
 
-def _overrides(
+def _parameter_overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """Return the parameter overrides of a node from command lines. The first command line takes precedence."""
+    """Return the parameter overrides of a node from command lines; the first one takes precedence."""
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}
-    for line in reversed(command_lines):
-        overrides |= line.parameters_for(full_name)
+    for arguments in reversed(command_lines):
+        overrides |= arguments.parameters_for(full_name)
     return overrides
 
 
 class Node(GraphNode):
-    """A node; the base class of users' nodes.
+    """A node in the graph of a context, and the base class of users' nodes.
 
     Args:
         node_name: the name of the node, which the command line can change.
@@ -68,10 +68,10 @@ class Node(GraphNode):
         # The name is mangled so that it cannot collide with attributes of users' nodes.
         self.__context = get_default_context() if context is None else context
         check_initialized(self.__context, "cannot create node")
-        own = read_ros_arguments(cli_args or [])
-        command_lines = [own, self.__context.ros_arguments] if use_global_arguments else [own]
+        node_arguments = read_ros_arguments(cli_args or [])
+        command_lines = [node_arguments, self.__context.ros_arguments] if use_global_arguments else [node_arguments]
         remappings = [rule for line in command_lines for rule in line.remappings_for(node_name)]
-        overrides = _overrides(node_name, namespace or "/", remappings, command_lines)
+        overrides = _parameter_overrides(node_name, namespace or "/", remappings, command_lines)
         overrides |= {parameter.name: parameter.value for parameter in parameter_overrides or ()}
         graph = self.__context.graph
         super().__init__(
@@ -95,5 +95,5 @@ class Node(GraphNode):
 
     @property
     def context(self) -> Context:
-        """The node's context."""
+        """The context to which the node belongs."""
         return self.__context

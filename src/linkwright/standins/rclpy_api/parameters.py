@@ -1,4 +1,4 @@
-"""Conversion of parameters from messages, strings and files (rclpy ``parameter``)."""
+"""Parameter services, and parameters from strings and files (rclpy ``parameter``)."""
 
 from __future__ import annotations
 
@@ -23,8 +23,7 @@ class ParameterService(ParameterServices):
 def get_parameter_value(string_value: str) -> Any:
     """Convert a string to the value of a parameter (rcl_interfaces/msg/ParameterValue).
 
-    The string is parsed as YAML. If the result is not a valid parameter value, the parameter has the string itself as
-    its value.
+    The string is parsed as YAML. If the result is not a valid parameter value, the string itself is the value.
     """
     if not string_value.strip():
         return Parameter("", value=string_value).get_parameter_value()
@@ -40,7 +39,7 @@ def parameter_dict_from_yaml_file(
     target_nodes: Sequence[str] | None = None,
     namespace: str = "",
 ) -> dict[str, Any]:
-    """Return the parameters in a file, as a mapping of name -> rcl_interfaces/msg/Parameter.
+    """Return the parameters in a file (rcl_interfaces/msg/Parameter) by name.
 
     Args:
         parameter_file: the path of the parameter file.
@@ -49,27 +48,31 @@ def parameter_dict_from_yaml_file(
         namespace: a prefix of each parameter name, followed by a dot.
 
     Raises:
-        RuntimeError: the file contains none of the nodes.
+        RuntimeError: the file has no parameters for the nodes.
         LinkwrightError: the file cannot be read.
     """
     # The leading slash of a node name is optional, both in `target_nodes` and in the file.
-    rules: dict[str, dict[str, Any]] = {}
+    values_by_node: dict[str, dict[str, Any]] = {}
     for pattern, values in read_parameter_file(parameter_file):
-        rules.setdefault(_absolute(pattern), {}).update(values)
-    wanted = list(rules) if target_nodes is None else [name for name in map(_absolute, target_nodes) if name in rules]
-    if target_nodes is not None and use_wildcard and ANY_NODE in rules:
-        wanted.insert(0, ANY_NODE)
+        values_by_node.setdefault(_absolute_name(pattern), {}).update(values)
+    node_names = (
+        list(values_by_node)
+        if target_nodes is None
+        else [name for name in map(_absolute_name, target_nodes) if name in values_by_node]
+    )
+    if target_nodes is not None and use_wildcard and ANY_NODE in values_by_node:
+        node_names.insert(0, ANY_NODE)
     if not use_wildcard:
-        wanted = [name for name in wanted if name != ANY_NODE]
-    if target_nodes and not wanted:
+        node_names = [name for name in node_names if name != ANY_NODE]
+    if target_nodes and not node_names:
         raise RuntimeError(f"Param file does not contain any parameters for {', '.join(target_nodes)}")
-    found: dict[str, Any] = {}
-    for pattern in wanted:
-        for name, value in rules[pattern].items():
+    parameters: dict[str, Any] = {}
+    for pattern in node_names:
+        for name, value in values_by_node[pattern].items():
             full_name = f"{namespace}.{name}" if namespace else name
-            found[full_name] = Parameter(full_name, value=value).to_parameter_msg()
-    return found
+            parameters[full_name] = Parameter(full_name, value=value).to_parameter_msg()
+    return parameters
 
 
-def _absolute(pattern: str) -> str:
+def _absolute_name(pattern: str) -> str:
     return "/" + pattern.lstrip("/")

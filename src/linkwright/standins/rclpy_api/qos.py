@@ -1,4 +1,4 @@
-"""Deprecated names of QoS policies that programs still use, and QoS overrides (rclpy ``qos``)."""
+"""Deprecated names of QoS policy values, and QoS overrides by parameters (rclpy ``qos``)."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from linkwright.graph.qos.profile import (
 )
 
 
-class _OldName:
+class _DeprecatedName:
     """A descriptor for the deprecated name of a policy value.
 
-    Reading the attribute returns the value, and warns that it has a new name.
+    Reading the attribute returns the value and prints a deprecation warning with the new name.
     """
 
-    def __init__(self, policy: type[QoSPolicyEnum], old: str, new: str) -> None:
+    def __init__(self, policy: type[QoSPolicyEnum], old_name: str, new_name: str) -> None:
         self._policy = policy
-        self._old = old
-        self._new = new
+        self._old_name = old_name
+        self._new = new_name
 
     def __get__(self, instance: Any, owner: Any) -> QoSPolicyEnum:
         kind = self._policy.__name__
-        warnings.warn(f"{kind}.{self._old} is deprecated. Use {kind}.{self._new} instead.", stacklevel=2)
+        warnings.warn(f"{kind}.{self._old_name} is deprecated. Use {kind}.{self._new} instead.", stacklevel=2)
         return self._policy[self._new]
 
 
@@ -40,17 +40,17 @@ def add_old_names() -> None:
     An example is ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``.
     """
     for policy in (DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy):
-        word = policy.__name__.removesuffix("Policy").upper()
+        policy_name = policy.__name__.removesuffix("Policy").upper()
         for value in policy:
             if value.name != "BEST_AVAILABLE":
-                old = f"RMW_QOS_POLICY_{word}_{value.name}"
-                setattr(policy, old, _OldName(policy, old, value.name))
+                old_name = f"RMW_QOS_POLICY_{policy_name}_{value.name}"
+                setattr(policy, old_name, _DeprecatedName(policy, old_name, value.name))
 
 
 def declare_qos_parameters(
     entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
 ) -> QoSProfile:
-    """Declare the parameters that override the QoS of a publisher or subscription, and apply them.
+    """Declare the parameters that override the QoS of a publisher or subscription, and apply their values.
 
     Args:
         entity_type: ``Publisher`` or ``Subscription``.
@@ -66,8 +66,8 @@ def declare_qos_parameters(
         InvalidQosOverridesError: the profile is rejected, or a value is invalid for its policy.
     """
     entity: Literal["publisher", "subscription"] = "publisher" if issubclass(entity_type, Publisher) else "subscription"
-    overridden = override_qos(node, entity, topic_name, qos, options)
+    overridden_profile = override_qos(node, entity, topic_name, qos, options)
     for kind in options.policy_kinds:
         policy = kind.name.lower()
-        setattr(qos, policy, getattr(overridden, policy))
+        setattr(qos, policy, getattr(overridden_profile, policy))
     return qos

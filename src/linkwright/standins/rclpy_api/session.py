@@ -1,4 +1,4 @@
-"""The functions of the package ``rclpy`` itself, for initialisation, shutdown and spinning."""
+"""The functions of the package ``rclpy`` for initialisation, shutdown and spinning."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _lock = threading.RLock()
 
 
-class _Global:
+class _GlobalState:
     executor: Executor | None = None
 
 
@@ -58,20 +58,20 @@ def init(
 
     Args:
         args: the command line; None for ``sys.argv``.
-        context: the context; None for the default context.
+        context: the context to initialise; None for the default context.
         domain_id: the domain ID of the network; None for the value of ROS_DOMAIN_ID, or 0 if the variable is not set.
-        signal_handler_options: the signals that shut contexts down; None for all signals if the context is the default
-            context, and for no signals otherwise.
+        signal_handler_options: the signals that shut contexts down. None means all signals if `context` is None, or
+            else no signals.
 
     Raises:
         RuntimeError: the context is already initialised.
     """
-    chosen = get_default_context() if context is None else context
+    target_context = get_default_context() if context is None else context
     if signal_handler_options is None:
         signal_handler_options = SignalHandlerOptions.ALL if context is None else SignalHandlerOptions.NO
     install_signal_handlers(signal_handler_options)
-    chosen.init(args, domain_id=domain_id)
-    return InitContextManager(chosen)
+    target_context.init(args, domain_id=domain_id)
+    return InitContextManager(target_context)
 
 
 def ok(*, context: Context | None = None) -> bool:
@@ -83,40 +83,40 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
     """Shut a context down.
 
     Args:
-        context: the context; None for the default context.
+        context: the context to shut down; None for the default context.
         uninstall_handlers: whether to restore the previous signal handlers; None to do so for the default context only.
 
     Raises:
         RclError: the context is not initialised, or already shut down.
     """
     _end_global_executor(context)
-    default = is_default(context)
-    ends = get_default_context(shutting_down=True) if context is None or default else context
-    ends.shutdown()
-    if uninstall_handlers or (uninstall_handlers is None and default):
+    is_default_context = is_default(context)
+    target_context = get_default_context(shutting_down=True) if context is None or is_default_context else context
+    target_context.shutdown()
+    if uninstall_handlers or (uninstall_handlers is None and is_default_context):
         uninstall_signal_handlers()
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
     """Shut a context down, unless it is not initialised or already shut down."""
-    default = is_default(context)
-    if default and not has_default_context():
+    is_default_context = is_default(context)
+    if is_default_context and not has_default_context():
         return
-    if default:
+    if is_default_context:
         _end_global_executor(context)
         get_default_context(shutting_down=True).try_shutdown()
     elif context is not None:
         context.try_shutdown()
-    if uninstall_handlers or (uninstall_handlers is None and default):
+    if uninstall_handlers or (uninstall_handlers is None and is_default_context):
         uninstall_signal_handlers()
 
 
 def get_global_executor() -> Executor:
     """Return the global executor, which belongs to the default context."""
     with _lock:
-        if _Global.executor is None:
-            _Global.executor = SingleThreadedExecutor()
-        return _Global.executor
+        if _GlobalState.executor is None:
+            _GlobalState.executor = SingleThreadedExecutor()
+        return _GlobalState.executor
 
 
 def create_node(node_name: str, **arguments: Any) -> Node:
@@ -129,7 +129,7 @@ def create_node(node_name: str, **arguments: Any) -> Node:
 
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
-    """Wait for one callback of a node and run it.
+    """Run one callback of a node, and wait for it if necessary.
 
     Args:
         node: the node.
@@ -137,13 +137,13 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
         timeout_sec: the maximum time to wait, in seconds; None for no limit.
     """
     runner = get_global_executor() if executor is None else executor
-    added = runner.add_node(node)
+    was_added = runner.add_node(node)
     try:
         runner.spin_once(timeout_sec=timeout_sec)
     finally:
         # If a callback of the node calls this function, the node already belongs to the executor and must not be
         # removed.
-        if added is not False:
+        if was_added is not False:
             runner.remove_node(node)
 
 
@@ -155,13 +155,13 @@ def spin(node: Node, executor: Executor | None = None) -> None:
         executor: the executor; None for the global executor.
     """
     runner = get_global_executor() if executor is None else executor
-    added = runner.add_node(node)
+    was_added = runner.add_node(node)
     try:
         runner.spin()
     finally:
         # If a callback of the node calls this function, the node already belongs to the executor and must not be
         # removed.
-        if added is not False:
+        if was_added is not False:
             runner.remove_node(node)
 
 
@@ -177,20 +177,20 @@ def spin_until_future_complete(
         timeout_sec: the maximum time to wait, in seconds; None for no limit.
     """
     runner = get_global_executor() if executor is None else executor
-    added = runner.add_node(node)
+    was_added = runner.add_node(node)
     try:
         runner.spin_until_future_complete(future, timeout_sec)
     finally:
         # If a callback of the node calls this function, the node already belongs to the executor and must not be
         # removed.
-        if added is not False:
+        if was_added is not False:
             runner.remove_node(node)
 
 
 def _end_global_executor(context: Context | None) -> None:
     with _lock:
-        executor = _Global.executor
+        executor = _GlobalState.executor
         if executor is None or (context is not None and executor.context is not context):
             return
-        _Global.executor = None
+        _GlobalState.executor = None
     executor.shutdown(0)

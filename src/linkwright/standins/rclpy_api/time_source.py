@@ -1,4 +1,4 @@
-"""Sets clocks from ``/clock`` (rclpy ``time_source``); a node's own clock does not need this module."""
+"""Sets clocks from ``/clock`` (rclpy ``time_source``). The clock of a node does not need this module."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class TimeSource:
         self._clock_sub: Subscription[Any] | None = None
         self._node: weakref.ref[Node] | None = None
         self._clocks: weakref.WeakSet[ROSClock] = weakref.WeakSet()
-        self._last = Time(clock_type=ClockType.ROS_TIME)
+        self._last_time = Time(clock_type=ClockType.ROS_TIME)
         self._active = False
         if node is not None:
             self.attach_node(node)
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the clocks follow ``/clock``."""
+        """Whether the clocks use the simulated time of ``/clock``."""
         return self._active
 
     @ros_time_is_active.setter
@@ -54,7 +54,7 @@ class TimeSource:
             self._unsubscribe()
 
     def attach_node(self, node: Node) -> None:
-        """Follow the parameter of a node, and detach any other node."""
+        """Follow ``use_sim_time`` of a node, and detach the node that was attached before."""
         self.detach_node()
         self._node = weakref.ref(node)
         if not node.has_parameter(USE_SIM_TIME_NAME):
@@ -63,7 +63,7 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._on_set_parameters)
 
     def detach_node(self) -> None:
-        """Stop following a node's parameter, without changing the clocks."""
+        """Stop following the node's parameter and ``/clock``; the clocks keep their time."""
         node = self._get_node()
         if node is not None:
             self._unsubscribe()
@@ -71,22 +71,22 @@ class TimeSource:
         self._node = None
 
     def attach_clock(self, clock: Clock) -> None:
-        """Add a clock that is set from ``/clock``.
+        """Add a clock to set from ``/clock``.
 
         Raises:
-            ValueError: the clock does not have ROS time.
+            ValueError: the clock is not a ROS time clock.
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")  # noqa: TRY004 - as in rclpy
-        clock.set_ros_time_override(self._last)
+        clock.set_ros_time_override(self._last_time)
         clock.set_ros_time_is_active(self._active)
         self._clocks.add(clock)
 
     def clock_callback(self, msg: Any) -> None:
         """Set the clocks from a message of ``/clock``."""
-        self._last = Time.from_msg(msg.clock)
+        self._last_time = Time.from_msg(msg.clock)
         for clock in self._clocks:
-            clock.set_ros_time_override(self._last)
+            clock.set_ros_time_override(self._last_time)
 
     def _on_set_parameters(self, parameters: Sequence[Parameter]) -> None:
         for parameter in parameters:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TypedDict
 
-_SIZE = 32
+_HASH_SIZE = 32
 
 
 class TypeHashDictionary(TypedDict):
-    """The parts of a type hash."""
+    """A type hash as a dictionary: the version of the hashing rules, and the 32 bytes of the hash."""
 
     version: int
     value: bytes
 
 
 class TypeHash:
-    """A type hash and the version of the hashing rules; version -1 means that there is no hash.
+    """A type hash with the version of the hashing rules, which is -1 without a hash.
 
     Raises:
         AssertionError: the value does not have 32 bytes.
@@ -23,7 +23,7 @@ class TypeHash:
 
     __slots__ = ("_value", "_version")
 
-    def __init__(self, version: int = -1, value: bytes = bytes(_SIZE)) -> None:
+    def __init__(self, version: int = -1, value: bytes = bytes(_HASH_SIZE)) -> None:
         self.version = version
         self.value = value
 
@@ -39,13 +39,13 @@ class TypeHash:
 
     @property
     def value(self) -> bytes:
-        """The hash of 32 bytes."""
+        """The 32 bytes of the hash."""
         return self._value
 
     @value.setter
     def value(self, value: bytes) -> None:
         assert isinstance(value, bytes)
-        assert len(value) == _SIZE
+        assert len(value) == _HASH_SIZE
         self._value = value
 
     def __eq__(self, other: object) -> bool:

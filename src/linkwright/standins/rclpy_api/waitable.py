@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 @dataclass
 class NumberOfEntities:
-    """The number of entities of each kind, as a sum that can be extended with ``+``."""
+    """The number of entities of each kind; two objects can be added with ``+``."""
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0
@@ -17,4 +17,4 @@ class NumberOfEntities:
     num_events: int = 0
 
     def __add__(self, other: NumberOfEntities) -> NumberOfEntities:
-        return NumberOfEntities(*(one + another for one, another in zip(astuple(self), astuple(other), strict=True)))
+        return NumberOfEntities(*(left + right for left, right in zip(astuple(self), astuple(other), strict=True)))

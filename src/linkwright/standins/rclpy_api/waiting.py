@@ -36,11 +36,11 @@ def wait_for_message(
     """
     if args:
         (time_to_wait,) = args
-    received: Future[Any] = Future()
+    message_future: Future[Any] = Future()
 
     def receive(message: Any) -> None:
-        if not received.done():
-            received.set_result(message)
+        if not message_future.done():
+            message_future.set_result(message)
 
     subscription = node.create_subscription(
         msg_type, topic, receive, qos_profile, callback_group=ReentrantCallbackGroup()
@@ -48,8 +48,8 @@ def wait_for_message(
     executor = SingleThreadedExecutor(context=node.context)
     subscription.set_dispatcher(executor)
     try:
-        executor.spin_until_future_complete(received, time_to_wait)
+        executor.spin_until_future_complete(message_future, time_to_wait)
     finally:
         node.destroy_subscription(subscription)
         executor.shutdown()
-    return received.done(), received.result() if received.done() else None
+    return message_future.done(), message_future.result() if message_future.done() else None

@@ -6,7 +6,7 @@ from typing import Any
 from linkwright.messages import to_csv, to_dict, to_yaml
 from linkwright.messages.message import Message
 
-_CUT = "..."
+_ELLIPSIS = "..."
 
 
 def message_to_yaml(
@@ -17,7 +17,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """Convert a message to YAML; if `msg` is bytes, the YAML contains a ``!!binary`` value."""
+    """Return a message as YAML; bytes become a mapping with the key ``bytes`` and a ``!!binary`` value."""
     if isinstance(msg, bytes):
         import yaml
 
@@ -26,7 +26,7 @@ def message_to_yaml(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """Convert a message to comma-separated values; if `msg` is bytes, return Python's ``repr``."""
+    """Return the values of a message separated by commas; for bytes, return their Python literal."""
     if isinstance(msg, bytes):
         return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -35,7 +35,7 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Convert a message to a dictionary of plain values; if `msg` is bytes, its only key is ``bytes``."""
+    """Return a message as a dictionary of plain values; bytes become the value of the key ``bytes``."""
     if isinstance(msg, bytes):
         return OrderedDict(bytes=msg)
     return to_dict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -56,7 +56,7 @@ def convert_value(
 ) -> Any:
     """Convert a value to plain Python values.
 
-    Strings and containers, including nested ones, are truncated to `truncate_length`.
+    Strings, lists and tuples, including nested ones, are truncated to `truncate_length`.
     """
 
     def convert(item: Any) -> Any:
@@ -65,15 +65,15 @@ def convert_value(
     if isinstance(value, bytes):
         value = value.decode("latin-1")
     if isinstance(value, str):
-        cut = truncate_length is not None and len(value) > truncate_length
-        return value[:truncate_length] + _CUT if cut else value
+        is_cut = truncate_length is not None and len(value) > truncate_length
+        return value[:truncate_length] + _ELLIPSIS if is_cut else value
     if isinstance(value, dict):
         return type(value)((key, convert(item)) for key, item in value.items())
     if isinstance(value, (tuple, list)):
-        plain = [convert(item) for item in value[:truncate_length]]
+        plain_values = [convert(item) for item in value[:truncate_length]]
         if truncate_length is not None and len(value) > truncate_length:
-            plain.append(_CUT)
-        return type(value)(plain)
+            plain_values.append(_ELLIPSIS)
+        return type(value)(plain_values)
     if isinstance(value, Message):
         return message_to_ordereddict(value, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
     return value

@@ -1,4 +1,4 @@
-"""Lists the interfaces of all packages."""
+"""Lists interfaces and their files (the API of ``rosidl_runtime_py.get_interfaces``)."""
 
 from collections.abc import Iterable
 
@@ -18,22 +18,22 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     Raises:
         LookupError: one of the packages does not exist.
     """
-    return _by_package(("msg", "srv", "action"), package_names)
+    return _interfaces_by_package(("msg", "srv", "action"), package_names)
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the messages of each package, such as ``msg/String``."""
-    return _by_package(("msg",), package_names)
+    return _interfaces_by_package(("msg",), package_names)
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the services of each package, such as ``srv/SetBool``."""
-    return _by_package(("srv",), package_names)
+    return _interfaces_by_package(("srv",), package_names)
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the actions of each package, such as ``action/Fibonacci``."""
-    return _by_package(("action",), package_names)
+    return _interfaces_by_package(("action",), package_names)
 
 
 def get_interface_path(interface_name: str) -> str:
@@ -54,15 +54,15 @@ def get_interface_path(interface_name: str) -> str:
     return str(path)
 
 
-def _by_package(kinds: tuple[str, ...], package_names: Iterable[str]) -> dict[str, list[str]]:
-    wanted = set(package_names)
-    found: dict[str, list[str]] = {}
+def _interfaces_by_package(kinds: tuple[str, ...], package_names: Iterable[str]) -> dict[str, list[str]]:
+    requested_packages = set(package_names)
+    names_by_package: dict[str, list[str]] = {}
     for kind in kinds:
         for name in LIBRARY.names(kind):
-            package, _, rest = name.partition("/")
-            if not wanted or package in wanted:
-                found.setdefault(package, []).append(rest)
-    missing = sorted(wanted - set(found) - set(get_interface_packages()))
-    if missing:
-        raise LookupError(phrase("Unknown package '{missing}'", missing=missing[0]))
-    return {package: sorted(names) for package, names in sorted(found.items())}
+            package, _, interface_name = name.partition("/")
+            if not requested_packages or package in requested_packages:
+                names_by_package.setdefault(package, []).append(interface_name)
+    missing_packages = sorted(requested_packages - set(names_by_package) - set(get_interface_packages()))
+    if missing_packages:
+        raise LookupError(phrase("there is no package '{missing}'", missing=missing_packages[0]))
+    return {package: sorted(names) for package, names in sorted(names_by_package.items())}

@@ -8,10 +8,10 @@ from linkwright.messages import set_fields
 def set_message_fields(
     msg: Any, values: dict[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[Any]:
-    """Set the fields of a message.
+    """Set the fields of a message from a dictionary.
 
     Returns:
-        Functions that set the stamps given as ``now``; call them when the message is sent.
+        A function for each ``auto`` or ``now``; call it with the Time at which the message is sent, to set the stamp.
 
     Raises:
         AttributeError: a field does not exist.

@@ -24,7 +24,7 @@ def get_action(identifier: str) -> Any:
 
 
 def get_interface(identifier: str) -> Any:
-    """Return the class of the message, service or action with a name."""
+    """Return the class of the message, service or action with the given full name."""
     return _found(classes.get_interface, identifier, "interface")
 
 
@@ -33,19 +33,19 @@ def import_message_from_namespaced_type(message_type: Any) -> Any:
     return classes.get_message("/".join(message_type.namespaced_name()))
 
 
-def _found(getter: Any, identifier: str, what: str) -> Any:
+def _found(getter: Any, identifier: str, kind_name: str) -> Any:
     # Raise the same exceptions as importing the generated module would, because callers expect them.
     name = split_name(identifier)
     if name is None or name.kind is None:
-        raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")
+        raise ValueError(f"Expected the full name of a {kind_name}, got '{identifier}'")
     try:
         return getter(identifier)
     except LinkwrightError as error:
-        known = LIBRARY.names(name.kind, name.package)
+        existing_names = LIBRARY.names(name.kind, name.package)
         if not any(LIBRARY.names(kind, name.package) for kind in ("msg", "srv", "action")):
             raise ModuleNotFoundError(
                 phrase("No module named '{package}'", package=name.package), name=name.package
             ) from error
-        if identifier in known:
-            raise ValueError(f"Expected '{identifier}' to be a {what}") from error
+        if identifier in existing_names:
+            raise ValueError(f"Expected '{identifier}' to be a {kind_name}") from error
         raise AttributeError(str(error)) from error

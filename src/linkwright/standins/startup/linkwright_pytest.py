@@ -15,9 +15,9 @@ from typing import Any
 
 import pytest
 
-_PLUGIN = "launch_pytest"
-_ITEMS = "launch_testing.pytest.hooks"
-_DESCRIPTION = b"generate_test_description"
+_PLUGIN_PACKAGE = "launch_pytest"
+_HOOKS_MODULE = "launch_testing.pytest.hooks"
+_DESCRIPTION_FUNCTION = b"generate_test_description"
 _MARKERS = (
     "launch(fixture, shutdown=False): a test beside a launch (launch_pytest)",
     "launch_test: mark of generate_test_description of a file of launch tests (launch_testing)",
@@ -52,33 +52,33 @@ class _Hooks:
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> Any:
     """Collect a file as one launch test if the marker of its ``generate_test_description`` requests it."""
-    if _is_real("launch_testing") or _DESCRIPTION not in module_path.read_bytes():
+    if _is_real("launch_testing") or _DESCRIPTION_FUNCTION not in module_path.read_bytes():
         return None
-    return importlib.import_module(_ITEMS)._collect_marked(module_path, parent)
+    return importlib.import_module(_HOOKS_MODULE)._collect_marked(module_path, parent)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
-    """Register the plugin of ``launch_pytest`` once a test module has imported this package."""
+    """Register the plugin of ``launch_pytest`` after a test module has imported ``launch_pytest``."""
     manager = collector.config.pluginmanager
-    if not _is_ours(sys.modules.get(_PLUGIN)):
+    if not _is_stand_in(sys.modules.get(_PLUGIN_PACKAGE)):
         return None
     if any(
         manager.has_plugin(plugin_name) or manager.is_blocked(plugin_name)
-        for plugin_name in (_PLUGIN, f"{_PLUGIN}.plugin")
+        for plugin_name in (_PLUGIN_PACKAGE, f"{_PLUGIN_PACKAGE}.plugin")
     ):
         return None
-    plugin = importlib.import_module(f"{_PLUGIN}.plugin")
+    plugin = importlib.import_module(f"{_PLUGIN_PACKAGE}.plugin")
 
-    manager.register(plugin, _PLUGIN)
+    manager.register(plugin, _PLUGIN_PACKAGE)
     return plugin.pytest_pycollect_makeitem(collector, name, obj)
 
 
-def _is_ours(module: ModuleType | None) -> bool:
+def _is_stand_in(module: ModuleType | None) -> bool:
     return str(getattr(module, "__file__", "")).endswith(".txt")
 
 
 def _is_real(package: str) -> bool:
-    """Return whether the real package is installed and takes precedence over ours."""
-    found = PathFinder.find_spec(package)
-    return found is not None and found.origin is not None and not found.origin.endswith(".txt")
+    """Return whether the real package is installed and takes precedence over the stand-in."""
+    spec = PathFinder.find_spec(package)
+    return spec is not None and spec.origin is not None and not spec.origin.endswith(".txt")

@@ -1,7 +1,7 @@
 """Makes the stand-ins importable in every Python process with this folder on its ``PYTHONPATH``.
 
-Linkwright is imported only when the program imports a module of ours that no other finder provides. If a real rclpy is
-importable, none of our modules is provided, because the nodes of one accept only its own message classes.
+Linkwright is imported only when the program imports a stand-in that no other finder provides. If a real rclpy is
+importable, the stand-ins are not provided, because the nodes of each rclpy accept only its own message classes.
 """
 
 # This module uses os.path, because it runs in every Python process and pathlib is slow to import.
@@ -13,84 +13,84 @@ import os
 import sys
 from importlib.machinery import ModuleSpec, PathFinder
 
-_HERE = os.path.dirname(os.path.abspath(__file__))
-_TABLES = os.path.join(os.path.dirname(_HERE), "tables")
-_LINKWRIGHT = os.path.dirname(os.path.dirname(os.path.dirname(_HERE)))
+_STARTUP_FOLDER = os.path.dirname(os.path.abspath(__file__))
+_TABLES_FOLDER = os.path.join(os.path.dirname(_STARTUP_FOLDER), "tables")
+_SOURCE_FOLDER = os.path.dirname(os.path.dirname(os.path.dirname(_STARTUP_FOLDER)))
 
-_OURS = os.path.join(_LINKWRIGHT, "linkwright", "")
-_SIGNALS = os.path.join("rclpy_api", "signals.py")
-"""The name of the signal handler, which may run at any point of the program."""
-_STANDARD_LIBRARY = os.path.join(os.path.dirname(os.__file__), "")
+_LINKWRIGHT_PREFIX = os.path.join(_SOURCE_FOLDER, "linkwright", "")
+_SIGNALS_PATH = os.path.join("rclpy_api", "signals.py")
+"""The end of the path of the signal handler's module; the handler may run at any point of the program."""
+_STANDARD_LIBRARY_PREFIX = os.path.join(os.path.dirname(os.__file__), "")
 
-_WITH_ANY_ROS = frozenset({"tf_transformations"})
-"""Stand-ins that use neither messages nor nodes, so that they work with a real ROS."""
+_ROS_INDEPENDENT = frozenset({"tf_transformations"})
+"""Stand-ins that also work with a real ROS, because they use neither messages nor nodes."""
 
 _INTERFACE_KINDS = ("msg", "srv", "action")
-_INTERFACE_ENDINGS = ("_msgs", "_interfaces", "_srvs", "_msg", "_srv", "_action", "_actions")
-_OTHER_INTERFACES = frozenset({"turtlesim"})
-_PARENTS_LOOKED_AT = 5
+_INTERFACE_SUFFIXES = ("_msgs", "_interfaces", "_srvs", "_msg", "_srv", "_action", "_actions")
+_OTHER_INTERFACE_PACKAGES = frozenset({"turtlesim"})
+_MAX_PARENT_FOLDERS = 5
 
 
 class StandIns:
-    """Finds the stand-ins, after all other finders have failed."""
+    """A finder of the stand-ins, which Python uses after all other finders have failed."""
 
     def __init__(self) -> None:
         self._names: frozenset[str] | None = None
-        self._real_ros: bool | None = None
-        self._searching = False
+        self._has_real_ros: bool | None = None
+        self._is_searching = False
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         """Return the spec of a stand-in or interface module, or None for another module."""
-        if self._searching or name.startswith("_"):
+        if self._is_searching or name.startswith("_"):
             return None
-        top, _, rest = name.partition(".")
-        if rest:
-            return self.interface(name) if rest.partition(".")[0] in _INTERFACE_KINDS else None
-        if self.has(top):
-            if top not in _WITH_ANY_ROS and self.has_real_ros():
+        top_level_name, _, submodules = name.partition(".")
+        if submodules:
+            return self.interface(name) if submodules.partition(".")[0] in _INTERFACE_KINDS else None
+        if self.has(top_level_name):
+            if top_level_name not in _ROS_INDEPENDENT and self.has_real_ros():
                 return None
             _make_importable()
             from linkwright.standins import modules
 
             modules.install()
-            return _with_ros_field_checks(modules.find_spec(name))
-        return self.interface(name) if _may_hold_interfaces(top) else None
+            return _enable_field_checks(modules.find_spec(name))
+        return self.interface(name) if _may_contain_interfaces(top_level_name) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
         """Return the spec of an interface module, or None for another module."""
-        if self._searching or self.has_real_ros():
+        if self._is_searching or self.has_real_ros():
             return None
-        self._searching = True
+        self._is_searching = True
         try:
             _make_importable()
             from linkwright.standins.interfaces import find_spec
 
-            return _with_ros_field_checks(find_spec(name))
+            return _enable_field_checks(find_spec(name))
         finally:
-            self._searching = False
+            self._is_searching = False
 
     def has(self, name: str) -> bool:
-        """Return whether there is a stand-in for a module name."""
+        """Return whether a stand-in exists for the name of a top-level module."""
         if self._names is None:
             try:
-                self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES))
+                self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES_FOLDER))
             except OSError:
                 self._names = frozenset()
         return name in self._names
 
     def has_real_ros(self) -> bool:
-        """Return whether an rclpy other than ours is installed."""
-        if self._real_ros is None:
-            found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _TABLES])
-            self._real_ros = found is not None and found.origin is not None
-        return self._real_ros
+        """Return whether an rclpy that is not the stand-in is installed."""
+        if self._has_real_ros is None:
+            spec = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _TABLES_FOLDER])
+            self._has_real_ros = spec is not None and spec.origin is not None
+        return self._has_real_ros
 
 
 class SourceFolders:
-    """Finds stand-ins and interface modules that have the name of a source folder, before all others.
+    """Finds stand-ins and interface modules that a source folder of the same name would hide.
 
-    Without this finder, Python would import such a folder as an empty module, for example ``my_msgs/msg``, or
-    ``launch`` next to ``package.xml``.
+    This finder comes before all others. Without it, Python would import such a folder, for example ``my_msgs/msg`` or
+    ``launch`` next to ``package.xml``, as an empty module.
     """
 
     def __init__(self, stand_ins: StandIns) -> None:
@@ -109,33 +109,37 @@ class SourceFolders:
         """Return whether a folder that is not a Python package hides the stand-in with the same name."""
         if not self._stand_ins.has(name):
             return False
-        found = PathFinder.find_spec(name)
-        return found is not None and found.origin is None
+        spec = PathFinder.find_spec(name)
+        return spec is not None and spec.origin is None
 
 
-def _may_hold_interfaces(package: str) -> bool:
+def _may_contain_interfaces(package: str) -> bool:
     """Return whether a package may contain interface files, so that Linkwright must be imported."""
-    if _is_loaded("linkwright.messages") or package.endswith(_INTERFACE_ENDINGS) or package in _OTHER_INTERFACES:
+    if (
+        _is_loaded("linkwright.messages")
+        or package.endswith(_INTERFACE_SUFFIXES)
+        or package in _OTHER_INTERFACE_PACKAGES
+    ):
         return True
     shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
-    return any(os.path.isfile(os.path.join(folder, package, "package.xml")) for folder in (*shares, *_near_folders()))
+    return any(os.path.isfile(os.path.join(folder, package, "package.xml")) for folder in (*shares, *_nearby_folders()))
 
 
 def _is_loaded(name: str) -> bool:
-    """Return whether a module is completely imported.
+    """Return whether the import of a module is complete.
 
-    Imports that the module makes during its own import must not be handled here.
+    While a module is being imported, the imports that it makes must not be handled here.
     """
     module = sys.modules.get(name)
     return module is not None and not getattr(module.__spec__, "_initializing", False)
 
 
-def _near_folders() -> list[str]:
-    """Return the folders that may contain packages of the workspace to which the program belongs."""
+def _nearby_folders() -> list[str]:
+    """Return the folders near the program that may contain packages of its workspace."""
     current = os.getcwd()
     folders = [current, os.path.join(current, "src")]
     program = os.path.abspath(sys.argv[0]) if getattr(sys, "argv", [""])[0] else current
-    for _ in range(_PARENTS_LOOKED_AT):
+    for _ in range(_MAX_PARENT_FOLDERS):
         program = os.path.dirname(program)
         folders.append(program)
     return folders
@@ -143,19 +147,19 @@ def _near_folders() -> list[str]:
 
 def _make_importable() -> None:
     """Append the folders of Linkwright and its dependencies to ``sys.path``."""
-    for folder in (_LINKWRIGHT, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
+    for folder in (_SOURCE_FOLDER, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
         if folder and folder not in sys.path:
             sys.path.append(folder)
 
 
-def _with_ros_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
-    """Enable the field checks of the ROS distribution in a user's program, and return the spec.
+def _enable_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
+    """Return `spec`, and enable the field checks of the ROS distribution in a user's program.
 
-    Messages are then checked as strictly as by that distribution. A command of Linkwright in the shell is not a user's
-    program, because it runs our own nodes.
+    Messages are then checked as strictly as in that distribution. The checks stay off in commands of Linkwright,
+    because these run Linkwright's nodes.
     """
-    named = "ROS_DISTRO" in os.environ or "ROS_PYTHON_CHECK_FIELDS" in os.environ
-    if spec is not None and named and not _is_loaded("linkwright.cli"):
+    is_distribution_set = "ROS_DISTRO" in os.environ or "ROS_PYTHON_CHECK_FIELDS" in os.environ
+    if spec is not None and is_distribution_set and not _is_loaded("linkwright.cli"):
         from linkwright.messages import checks, distribution
 
         if distribution.checks_fields_as_ros():
@@ -165,8 +169,8 @@ def _with_ros_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
 
 def _run_next_sitecustomize() -> None:
     """Run the next ``sitecustomize`` on the path, which this module hides."""
-    others = [entry for entry in sys.path if os.path.abspath(entry) != _HERE]
-    spec = PathFinder.find_spec("sitecustomize", others)
+    other_entries = [entry for entry in sys.path if os.path.abspath(entry) != _STARTUP_FOLDER]
+    spec = PathFinder.find_spec("sitecustomize", other_entries)
     if spec is None or spec.loader is None:
         return
     from importlib.util import module_from_spec  # imported late because the module is large
@@ -179,8 +183,8 @@ def _run_next_sitecustomize() -> None:
 def _report_with_hint(kind: type[BaseException], error: BaseException, traceback: object) -> None:
     """Print an uncaught error, with a hint if a ROS module or a name in one is missing.
 
-    Ctrl-C does not print a traceback while a node waits for messages or is still being imported. If Ctrl-C interrupts
-    the user's own code, the traceback shows the location.
+    After Ctrl-C, no traceback is printed if a node was waiting for messages or was still being imported. If Ctrl-C
+    interrupted the user's code, the traceback shows the location.
     """
     if kind is KeyboardInterrupt and _is_between_messages(traceback):
         return
@@ -199,16 +203,16 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Return whether a traceback ends in our code, in code called by it, or in an import."""
-    is_ours, modules = False, 0
+    """Return whether a traceback ends in Linkwright's code, in code that it calls, or in an import."""
+    is_ours, module_count = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above
         traceback = traceback.tb_next  # type: ignore[attr-defined]
-        modules += code.co_name == "<module>"  # the program itself, and the modules it imports
-        if not code.co_filename.endswith(_SIGNALS):
-            ours = code.co_filename.startswith(_OURS)
-            is_ours = ours or (is_ours and code.co_filename.startswith((_STANDARD_LIBRARY, "<")))
-    return modules > 1 or is_ours
+        module_count += code.co_name == "<module>"  # the program itself, and the modules it imports
+        if not code.co_filename.endswith(_SIGNALS_PATH):
+            is_own_code = code.co_filename.startswith(_LINKWRIGHT_PREFIX)
+            is_ours = is_own_code or (is_ours and code.co_filename.startswith((_STANDARD_LIBRARY_PREFIX, "<")))
+    return module_count > 1 or is_ours
 
 
 _stand_ins = StandIns()

@@ -9,10 +9,10 @@ from linkwright.standins.tf2_api.interface import BufferInterface
 
 
 class Buffer(transform_waiting.Buffer, BufferInterface):
-    """Stores transforms, waits for transforms, and transforms messages from one frame to another.
+    """Stores transforms, waits for them, and transforms messages into other frames.
 
     Args:
-        cache_time: the duration for which transforms are stored; 10 seconds by default.
+        cache_time: the duration for which transforms are stored; None for 10 seconds.
         node: a node that offers the service ``tf2_frames``; the buffer is cleared when the node's clock jumps back.
     """
 

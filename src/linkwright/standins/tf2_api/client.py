@@ -21,7 +21,7 @@ from linkwright.standins.tf2_api.interface import NO_TIME, BufferInterface
 if TYPE_CHECKING:
     from linkwright.standins.rclpy_api.node import Node
 
-_ERRORS: dict[int, type[TransformException]] = {
+_EXCEPTION_CLASSES: dict[int, type[TransformException]] = {
     1: LookupException,
     2: ConnectivityException,
     3: ExtrapolationException,
@@ -29,19 +29,19 @@ _ERRORS: dict[int, type[TransformException]] = {
     5: TimeoutException,
     6: TransformException,
 }
-"""The exceptions by the numbers of tf2_msgs/msg/TF2Error."""
+"""The exception classes by the error numbers of tf2_msgs/msg/TF2Error."""
 
 _NO_ERROR = 0
 
 
 class BufferClient(BufferInterface):
-    """Requests transforms from a buffer server through its action; another thread must spin the node.
+    """Requests transforms from a buffer server through an action; another thread must spin the node.
 
     Args:
         node: the node of the client.
         ns: the name of the action.
-        check_frequency: ignored, because the client does not poll.
-        timeout_padding: the time to wait for the response in addition to the timeout of the lookup, as a duration or in
+        check_frequency: accepted for compatibility and ignored, because the client does not poll.
+        timeout_padding: the additional time to wait for the response after the timeout of a lookup, as a duration or in
             seconds.
     """
 
@@ -54,8 +54,8 @@ class BufferClient(BufferInterface):
     ) -> None:
         super().__init__()
         self.node = node
-        self._lookup = get_action("tf2_msgs/action/LookupTransform")
-        self.action_client = ActionClient(node, self._lookup, ns)
+        self._lookup_action = get_action("tf2_msgs/action/LookupTransform")
+        self.action_client = ActionClient(node, self._lookup_action, ns)
         self.check_frequency = check_frequency
         self.timeout_padding = (
             timeout_padding if isinstance(timeout_padding, Duration) else Duration(seconds=timeout_padding)
@@ -71,11 +71,11 @@ class BufferClient(BufferInterface):
         Raises:
             TransformException: there is no transform or no response.
         """
-        return self._ask(
-            self._lookup.Goal(
+        return self._request_transform(
+            self._lookup_action.Goal(
                 target_frame=target_frame,
                 source_frame=source_frame,
-                source_time=_message(time),
+                source_time=_time_message(time),
                 timeout=timeout.to_msg(),
                 advanced=False,
             ),
@@ -96,13 +96,13 @@ class BufferClient(BufferInterface):
         Raises:
             TransformException: there is no transform or no response.
         """
-        return self._ask(
-            self._lookup.Goal(
+        return self._request_transform(
+            self._lookup_action.Goal(
                 target_frame=target_frame,
                 source_frame=source_frame,
-                source_time=_message(source_time),
+                source_time=_time_message(source_time),
                 timeout=timeout.to_msg(),
-                target_time=_message(target_time),
+                target_time=_time_message(target_time),
                 fixed_frame=fixed_frame,
                 advanced=True,
             ),
@@ -133,30 +133,30 @@ class BufferClient(BufferInterface):
             return False
         return True
 
-    def _ask(self, goal: Any, timeout: Duration) -> Any:
+    def _request_transform(self, goal: Any, timeout: Duration) -> Any:
         if not self.action_client.server_is_ready():
             raise TimeoutException(phrase("The BufferServer is not ready."))
         wait_sec = (timeout.nanoseconds + self.timeout_padding.nanoseconds) / 1e9
-        sent = self.action_client.send_goal_async(goal)
-        if not sent.wait(wait_sec) or sent.cancelled():
-            raise TimeoutException(_NO_ANSWER.format("in the specified time"))
-        handle = sent.result()
+        goal_future = self.action_client.send_goal_async(goal)
+        if not goal_future.wait(wait_sec) or goal_future.cancelled():
+            raise TimeoutException(_NO_RESPONSE_TEXT.format("in the specified time"))
+        handle = goal_future.result()
         if handle is None or not handle.accepted:
-            raise TimeoutException(_NO_ANSWER.format("with accepted status"))
-        asked = handle.get_result_async()
-        answer = asked.result() if asked.wait(wait_sec) else None
-        if answer is None:
-            raise TimeoutException(_NO_ANSWER.format("in the specified time"))
-        result = answer.result
+            raise TimeoutException(_NO_RESPONSE_TEXT.format("with accepted status"))
+        result_future = handle.get_result_async()
+        response = result_future.result() if result_future.wait(wait_sec) else None
+        if response is None:
+            raise TimeoutException(_NO_RESPONSE_TEXT.format("in the specified time"))
+        result = response.result
         if result.error.error != _NO_ERROR:
-            raise _ERRORS.get(result.error.error, TransformException)(result.error.error_string)
+            raise _EXCEPTION_CLASSES.get(result.error.error, TransformException)(result.error.error_string)
         return result.transform
 
 
-_NO_ANSWER = phrase(
+_NO_RESPONSE_TEXT = phrase(
     "The LookupTransform goal sent to the BufferServer did not come back {}. Something is likely wrong with the server."
 )
 
 
-def _message(time: Any) -> Any:
+def _time_message(time: Any) -> Any:
     return time.to_msg() if isinstance(time, Time) else time

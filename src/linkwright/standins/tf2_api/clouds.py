@@ -28,28 +28,32 @@ def transform_points(point_cloud: ArrayLike, transform: Any) -> NDArray[np.float
     pose = getattr(transform, "transform", transform)
     rotation, translation = pose.rotation, pose.translation
     matrix = rotation_matrix([rotation.x, rotation.y, rotation.z, rotation.w])
-    moved: NDArray[np.float64] = np.asarray(point_cloud) @ matrix.T + [translation.x, translation.y, translation.z]
-    return moved
+    transformed_points: NDArray[np.float64] = np.asarray(point_cloud) @ matrix.T + [
+        translation.x,
+        translation.y,
+        translation.z,
+    ]
+    return transformed_points
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
     """Transform a point cloud into the parent frame of a transform.
 
-    Only the fields x, y and z change.
+    All fields except x, y and z are copied unchanged.
 
     Args:
         cloud: the point cloud (sensor_msgs/msg/PointCloud2).
-        transform: the transform (geometry_msgs/msg/TransformStamped), whose header becomes the header of the new cloud.
+        transform: the transform (geometry_msgs/msg/TransformStamped); its header becomes the header of the new cloud.
     """
     points = read_points(cloud).copy()
-    moved = transform_points(np.stack([points[axis] for axis in _AXES], axis=-1), transform)
+    transformed_points = transform_points(np.stack([points[axis] for axis in _AXES], axis=-1), transform)
     for column, axis in enumerate(_AXES):
-        points[axis] = moved[:, column]
+        points[axis] = transformed_points[:, column]
     return create_cloud(transform.header, cloud.fields, points, cloud.point_step)
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return the message unchanged; the conversion to a message for types that are messages."""
+    """Return a message unchanged, because it does not need to be converted to a message."""
     return msg
 
 
@@ -58,7 +62,7 @@ from_msg_msg = to_msg_msg
 
 def register() -> None:
     """Register the transformation of point clouds in the registry that all buffers share."""
-    kind = get_message("sensor_msgs/msg/PointCloud2")
-    TransformRegistration().add(kind, do_transform_cloud)
-    ConvertRegistration().add_to_msg(kind, to_msg_msg)
-    ConvertRegistration().add_from_msg(kind, from_msg_msg)
+    cloud_class = get_message("sensor_msgs/msg/PointCloud2")
+    TransformRegistration().add(cloud_class, do_transform_cloud)
+    ConvertRegistration().add_to_msg(cloud_class, to_msg_msg)
+    ConvertRegistration().add_from_msg(cloud_class, from_msg_msg)

@@ -1,4 +1,4 @@
-"""The registries of types that can be transformed and converted (tf2_ros ``buffer_interface``)."""
+"""The registries of functions that transform and convert types (tf2_ros ``buffer_interface``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Conversion = Callable[[Any], Any]
 
 
 class TypeException(Exception):
-    """Raised when a type has not been registered.
+    """Raised when no function is registered for a type.
 
     Attributes:
         errstr: the error message.
@@ -32,7 +32,7 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """The functions that transform each type, in one registry that all objects of this class share."""
+    """The functions that transform values, by type; all objects of this class share one registry."""
 
     _by_type: ClassVar[dict[Any, Transformation]] = {}
 
@@ -49,7 +49,7 @@ class TransformRegistration:
         return _found(self._by_type, key)
 
     def print_me(self) -> None:
-        """Print the registry."""
+        """Print the registered types and their functions."""
         print(self._by_type)  # the purpose of this method is to print
 
 
@@ -103,7 +103,7 @@ class ConvertRegistration:
 def convert(a: Any, b_type: Any) -> Any:
     """Convert a value to another type, through a message if necessary.
 
-    If the value has this type already, a copy is returned.
+    If the value already has this type and no conversion is registered, return a copy.
 
     Raises:
         TypeException: the conversion is not registered.
@@ -125,7 +125,7 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
     return obj
 
 
-def _found(table: dict[Any, F], key: Any) -> F:
-    if key not in table:
+def _found(registry: dict[Any, F], key: Any) -> F:
+    if key not in registry:
         raise TypeException(f"Type {key} is not loaded or supported")
-    return table[key]
+    return registry[key]

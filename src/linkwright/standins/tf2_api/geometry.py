@@ -1,4 +1,4 @@
-"""Registers the messages of geometry_msgs with the buffers (``import tf2_geometry_msgs``)."""
+"""Registers the transformations of geometry_msgs messages (``import tf2_geometry_msgs``)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.graph.transforms import geometry as transform_geometry
 from linkwright.messages import get_message
 from linkwright.standins.tf2_api.conversion import ConvertRegistration, TransformRegistration
 
-_TRANSFORMATIONS = {
+_TRANSFORM_FUNCTIONS = {
     "PointStamped": transform_geometry.do_transform_point,
     "PolygonStamped": transform_geometry.do_transform_polygon_stamped,
     "PoseStamped": transform_geometry.do_transform_pose_stamped,
@@ -19,7 +19,7 @@ _TRANSFORMATIONS = {
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return the message unchanged; the conversion to a message for types that are messages."""
+    """Return a message unchanged, because it does not need to be converted to a message."""
     return msg
 
 
@@ -27,9 +27,9 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register the transformation of geometry_msgs messages in the registry that all buffers share."""
-    for name, transformation in _TRANSFORMATIONS.items():
-        kind = get_message(f"geometry_msgs/msg/{name}")
-        TransformRegistration().add(kind, transformation)
-        ConvertRegistration().add_to_msg(kind, to_msg_msg)
-        ConvertRegistration().add_from_msg(kind, from_msg_msg)
+    """Register the transformations of geometry_msgs messages in the registry that all buffers share."""
+    for name, transformation in _TRANSFORM_FUNCTIONS.items():
+        message_class = get_message(f"geometry_msgs/msg/{name}")
+        TransformRegistration().add(message_class, transformation)
+        ConvertRegistration().add_to_msg(message_class, to_msg_msg)
+        ConvertRegistration().add_from_msg(message_class, from_msg_msg)

@@ -11,7 +11,7 @@ NO_TIME = Duration()
 
 
 class BufferInterface:
-    """Looks up transforms and applies them to messages."""
+    """The base class of buffers, which applies transforms to messages; subclasses look the transforms up."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -22,9 +22,9 @@ class BufferInterface:
         """Transform a stamped object into another frame.
 
         Args:
-            object_stamped: the object, whose type must be registered; ``import tf2_geometry_msgs`` registers the types
-                of geometry_msgs.
-            target_frame: the frame to transform the object into.
+            object_stamped: the object to transform. Its type must be registered; ``import tf2_geometry_msgs`` registers
+                the types of geometry_msgs.
+            target_frame: the frame into which the object is transformed.
             timeout: the maximum time to wait for the transform.
             new_type: the type to convert the result to; None for no conversion.
 
@@ -34,8 +34,8 @@ class BufferInterface:
         """
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
-        found = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)
-        result = do_transform(object_stamped, found)
+        stamped_transform = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)
+        result = do_transform(object_stamped, stamped_transform)
         return result if new_type is None else convert(result, new_type)
 
     def transform_full(
@@ -55,24 +55,24 @@ class BufferInterface:
         """
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
-        found = self.lookup_transform_full(
+        stamped_transform = self.lookup_transform_full(
             target_frame, target_time, header.frame_id, Time.from_msg(header.stamp), fixed_frame, timeout
         )
-        result = do_transform(object_stamped, found)
+        result = do_transform(object_stamped, stamped_transform)
         return result if new_type is None else convert(result, new_type)
 
-    def lookup_transform(self, *_question: Any, **_options: Any) -> Any:
+    def lookup_transform(self, *_frames_and_times: Any, **_options: Any) -> Any:
         """Return the transform from the source frame to the target frame at a time."""
         raise NotImplementedException
 
-    def lookup_transform_full(self, *_question: Any, **_options: Any) -> Any:
+    def lookup_transform_full(self, *_frames_and_times: Any, **_options: Any) -> Any:
         """Return the transform between two frames at different times, through a fixed frame."""
         raise NotImplementedException
 
-    def can_transform(self, *_question: Any, **_options: Any) -> Any:
+    def can_transform(self, *_frames_and_times: Any, **_options: Any) -> Any:
         """Return whether `lookup_transform` would return a transform."""
         raise NotImplementedException
 
-    def can_transform_full(self, *_question: Any, **_options: Any) -> Any:
+    def can_transform_full(self, *_frames_and_times: Any, **_options: Any) -> Any:
         """Return whether `lookup_transform_full` would return a transform."""
         raise NotImplementedException

@@ -16,7 +16,7 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Adds the transforms of ``/tf`` and ``/tf_static`` to a buffer.
+    """Subscribes to ``/tf`` and ``/tf_static``, and adds their transforms to a buffer.
 
     The callbacks are in a reentrant group, so that another callback of the node can wait for a transform.
 
@@ -65,7 +65,7 @@ class TransformListener:
             self.dedicated_listener_thread.start()
 
     def unregister(self) -> None:
-        """Destroy the subscriptions."""
+        """Destroy the subscriptions, and stop the thread that spins the node."""
         subscriptions, self._subscriptions = self._subscriptions, []
         for subscription in subscriptions:
             self.node.destroy_subscription(subscription)
@@ -92,7 +92,7 @@ class TransformListener:
 
 
 class StaticTransformListener(TransformListener):
-    """Adds the transforms of ``/tf_static`` to a buffer.
+    """Subscribes to ``/tf_static`` only, and adds its transforms to a buffer.
 
     Args:
         buffer: the buffer to fill.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import IO, Any
 
-_CODES = {"red": 91, "yellow": 93}
+_COLOUR_CODES = {"red": 91, "yellow": 93}
 
 
 def is_tty(stream: object) -> bool:
@@ -15,8 +15,8 @@ def is_tty(stream: object) -> bool:
 
 
 def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, alt_text: str | None = None) -> str:
-    """Return a message in a colour if the output is a terminal, otherwise with the prefix `alt_text`."""
-    code = _CODES.get(color, 0) if isinstance(color, str) else color
+    """Return a message in a colour if the output is a terminal, or else with the prefix `alt_text`."""
+    code = _COLOUR_CODES.get(color, 0) if isinstance(color, str) else color
     if code and is_tty(sys.stderr if file is None else file):
         return f"\x1b[{code}m{msg}\x1b[0m"
     return f"{alt_text or ''}{msg}"
@@ -25,7 +25,7 @@ def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, 
 def message(
     msg: object, *args: Any, file: IO[str] | None = None, alt_text: str | None = None, color: str | None = None
 ) -> None:
-    """Print a message to standard error."""
+    """Print a message to a stream, by default standard error."""
     stream = sys.stderr if file is None else file
     print(colorize(msg, color, stream, alt_text), *args, file=stream)
 

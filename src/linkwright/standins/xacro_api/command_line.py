@@ -11,20 +11,20 @@ REMAP = ":="
 
 
 def load_mappings(argv: Iterable[str]) -> dict[str, str]:
-    """Parse the arguments ``name:=value``.
+    """Return the values of the arguments ``name:=value`` by name.
 
-    Empty values and names with a single leading ``_`` are skipped.
+    Arguments with an empty name or value, or with a single leading ``_`` in the name, are skipped.
 
     Raises:
         RuntimeError: an argument contains ``:=`` twice.
     """
     mappings = {}
-    for word in argv:
-        if REMAP not in word:
+    for argument in argv:
+        if REMAP not in argument:
             continue
-        name, value, *rest = (part.strip() for part in word.split(REMAP))
-        if rest:
-            raise RuntimeError(f"'{word}' has more than one '{REMAP}'")
+        name, value, *extra_parts = (part.strip() for part in argument.split(REMAP))
+        if extra_parts:
+            raise RuntimeError(f"'{argument}' has more than one '{REMAP}'")
         if name and value and not (len(name) > 1 and name[0] == "_" and name[1] != "_"):
             mappings[name] = value
     return mappings
@@ -39,10 +39,10 @@ def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argpa
 
     Returns:
         The options ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the
-        file, or None if no file is given.
+        file, or None unless the command line names exactly one file.
 
     Raises:
-        SystemExit: a usage error.
+        SystemExit: the command line is invalid.
     """
     parser = argparse.ArgumentParser(prog="xacro", usage="%(prog)s [options] <input>")
     parser.add_argument("-o", dest="output", metavar="FILE", help="write to this file instead of standard output")

@@ -1,7 +1,8 @@
 """Converts between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
 
-The nodes are minidom's, with two differences: elements are serialized in the format of ros/xacro, and elements and
-texts record their locations. ros/xacro instead replaces minidom's writing method for the entire process.
+The documents consist of minidom nodes with two differences: elements are serialized in the format of ros/xacro, and
+elements and texts record their locations. In contrast, ros/xacro replaces minidom's writing method for the entire
+process.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ class DomElement(minidom.Element):
     """A minidom element that records its location.
 
     Attributes:
-        place: the source text and the offset of the element, or None.
+        place: the source text and the offset of the element; None if the element was not read from a text.
     """
 
     place: tuple[SourceText, int] | None = None
@@ -31,8 +32,8 @@ class DomElement(minidom.Element):
         An element that contains only text is written on one line.
         """
         attributes = dict(self.attributes.items())
-        written = "".join(f' {name}="{escape_text(attributes[name])}"' for name in sorted(attributes))
-        writer.write(f"{indent}<{self.tagName}{written}")
+        attributes_text = "".join(f' {name}="{escape_text(attributes[name])}"' for name in sorted(attributes))
+        writer.write(f"{indent}<{self.tagName}{attributes_text}")
         children = self.childNodes
         if not children:
             writer.write(f"/>{newl}")
@@ -50,7 +51,7 @@ class DomText(minidom.Text):
     """Character data that is serialized identically in all versions of Python.
 
     Attributes:
-        place: the source text and the offset of the character data, or None.
+        place: the source text and the offset of the data; None if the data was not read from a text.
     """
 
     __slots__ = ("place",)
@@ -67,99 +68,101 @@ def escape_text(text: str) -> str:
 
 
 def fill(target: minidom.Document, document: Document) -> None:
-    """Fill a minidom document from a tree; an existing root element is reused if it is a `DomElement`."""
-    old = target.documentElement
-    kept = old if isinstance(old, DomElement) else None
+    """Replace the content of a minidom document with a tree; a root that is a `DomElement` is reused."""
+    old_root = target.documentElement
+    reusable_root = old_root if isinstance(old_root, DomElement) else None
     for node in list(target.childNodes):
         target.removeChild(node)
-    before = [_leaf(target, node) for node in document.prolog]
+    prolog_nodes = [_dom_leaf(target, node) for node in document.prolog]
     target.doctype = None
     if document.doctype is not None:
-        target.doctype = _doctype(document.doctype)
-        before.insert(document.doctype_index, target.doctype)
-    root = _tree(target, document.root, kept)
-    for node in [*before, root, *(_leaf(target, node) for node in document.epilog)]:
+        target.doctype = _dom_doctype(document.doctype)
+        prolog_nodes.insert(document.doctype_index, target.doctype)
+    root = _dom_tree(target, document.root, reusable_root)
+    for node in [*prolog_nodes, root, *(_dom_leaf(target, node) for node in document.epilog)]:
         target.appendChild(node)
 
 
 def read(document: minidom.Document) -> Document:
     """Convert a minidom document to a tree; nodes that `fill` created keep their locations."""
     root = document.documentElement
-    element = _element(root)
+    element = _tree_element(root)
     pending: list[tuple[Any, Element]] = [(root, element)]
     while pending:
         original, copy = pending.pop()
         for child in original.childNodes:
             if child.nodeType == minidom.Node.ELEMENT_NODE:
-                twin = _element(child)
-                pending.append((child, twin))
-                copy.children.append(twin)
+                child_copy = _tree_element(child)
+                pending.append((child, child_copy))
+                copy.children.append(child_copy)
             else:
                 node = _node(child)
                 if node is not None:
                     copy.children.append(node)
     place = getattr(root, "place", None)
     result = Document(element, place[0] if place else None)
-    after = False
+    is_after_root = False
     for child in document.childNodes:
         if child is root:
-            after = True
+            is_after_root = True
         elif child.nodeType == minidom.Node.DOCUMENT_TYPE_NODE:
             result.doctype, result.doctype_index = child.toxml(), len(result.prolog)
         else:
             node = _node(child)
             if isinstance(node, (Comment, ProcessingInstruction)):
-                (result.epilog if after else result.prolog).append(node)
+                (result.epilog if is_after_root else result.prolog).append(node)
     return result
 
 
 def is_same(document: minidom.Document, tree: Document) -> bool:
-    """Return whether a document still matches a tree, so that the locations in the tree are valid."""
+    """Return whether a document has the elements and attributes of a tree, so that the tree's locations apply."""
     pending = [(document.documentElement, tree.root)]
     while pending:
-        theirs, ours = pending.pop()
-        if theirs is None or theirs.tagName != ours.tag:
+        dom_element, tree_element = pending.pop()
+        if dom_element is None or dom_element.tagName != tree_element.tag:
             return False
-        if dict(theirs.attributes.items()) != ours.attributes:
+        if dict(dom_element.attributes.items()) != tree_element.attributes:
             return False
-        elements = [child for child in theirs.childNodes if child.nodeType == minidom.Node.ELEMENT_NODE]
-        inside = list(ours.elements())
-        if len(elements) != len(inside):
+        elements = [child for child in dom_element.childNodes if child.nodeType == minidom.Node.ELEMENT_NODE]
+        tree_children = list(tree_element.elements())
+        if len(elements) != len(tree_children):
             return False
-        pending.extend(zip(elements, inside, strict=True))
+        pending.extend(zip(elements, tree_children, strict=True))
     return True
 
 
-def _tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> DomElement:
-    top, spaces = _create(owner, root, {}, kept)
-    pending = [(root, top, spaces)]
+def _dom_tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> DomElement:
+    dom_root, namespaces = _create(owner, root, {}, kept)
+    pending = [(root, dom_root, namespaces)]
     while pending:
-        original, made, spaces = pending.pop()
+        original, dom_parent, namespaces = pending.pop()
         for child in original.children:
             if isinstance(child, Element):
-                below, inner = _create(owner, child, spaces, None)
+                dom_child, child_namespaces = _create(owner, child, namespaces, None)
                 if child.children:
-                    pending.append((child, below, inner))
-                made.appendChild(below)
+                    pending.append((child, dom_child, child_namespaces))
+                dom_parent.appendChild(dom_child)
             else:
-                made.appendChild(_leaf(owner, child))
-    return top
+                dom_parent.appendChild(_dom_leaf(owner, child))
+    return dom_root
 
 
 def _create(
-    owner: minidom.Document, element: Element, spaces: Mapping[str, str], kept: DomElement | None
+    owner: minidom.Document, element: Element, namespaces: Mapping[str, str], kept: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
     """Create the minidom element for an element, without its children.
 
+    If `kept` is not None, it is emptied and reused.
+
     Returns:
-        The minidom element, and the namespaces in scope in its content.
+        The minidom element, and the XML namespaces by prefix that apply to its content.
     """
-    declared = {name: value for name, value in element.attributes.items() if name.startswith("xmlns")}
-    if declared:
-        spaces = {**spaces, **{name.partition(":")[2]: value for name, value in declared.items()}}
-    prefix, colon, local = element.tag.rpartition(":")
-    space = spaces.get(prefix if colon else _NO_PREFIX)
-    node = kept if kept is not None else DomElement(element.tag, space, prefix or None, local)
+    declarations = {name: value for name, value in element.attributes.items() if name.startswith("xmlns")}
+    if declarations:
+        namespaces = {**namespaces, **{name.partition(":")[2]: value for name, value in declarations.items()}}
+    prefix, colon, local_name = element.tag.rpartition(":")
+    namespace = namespaces.get(prefix if colon else _NO_PREFIX)
+    node = kept if kept is not None else DomElement(element.tag, namespace, prefix or None, local_name)
     if kept is not None:
         kept.tagName = kept.nodeName = element.tag
         for name in list(kept.attributes.keys()):
@@ -169,22 +172,22 @@ def _create(
     node.ownerDocument = owner
     node.place = (element.source, element.offset) if element.source else None
     for name, value in element.attributes.items():
-        if name in declared:
+        if name in declarations:
             node.setAttributeNS(XMLNS_NAMESPACE, name, value)
         elif ":" in name:
-            node.setAttributeNS(spaces.get(name.partition(":")[0]), name, value)
+            node.setAttributeNS(namespaces.get(name.partition(":")[0]), name, value)
         else:
             node.setAttribute(name, value)
-    return node, spaces
+    return node, namespaces
 
 
-def _leaf(owner: minidom.Document, node: Node) -> Any:
+def _dom_leaf(owner: minidom.Document, node: Node) -> Any:
     if isinstance(node, Text) and not node.cdata:
-        made = DomText()
-        made.data = node.data
-        made.ownerDocument = owner
-        made.place = (node.source, node.offset) if node.source else None
-        return made
+        dom_text = DomText()
+        dom_text.data = node.data
+        dom_text.ownerDocument = owner
+        dom_text.place = (node.source, node.offset) if node.source else None
+        return dom_text
     if isinstance(node, Text):
         return owner.createCDATASection(node.data)
     if isinstance(node, Comment):
@@ -193,7 +196,7 @@ def _leaf(owner: minidom.Document, node: Node) -> Any:
     return owner.createProcessingInstruction(node.target, node.data)
 
 
-def _doctype(text: str) -> minidom.DocumentType:
+def _dom_doctype(text: str) -> minidom.DocumentType:
     name = text.split(None, 2)[1].rstrip(">")
     doctype = minidom.parseString(f"{text}<{name}/>").doctype  # noqa: S318 - our reader has let it pass
     assert doctype is not None, "the text is a declaration"
@@ -201,7 +204,7 @@ def _doctype(text: str) -> minidom.DocumentType:
     return doctype
 
 
-def _element(node: Any) -> Element:
+def _tree_element(node: Any) -> Element:
     attributes = dict(node.attributes.items())
     place = getattr(node, "place", None)
     return Element(node.tagName, attributes, *place) if place else Element(node.tagName, attributes)

@@ -1,4 +1,4 @@
-"""The exceptions of the module ``xacro`` that programs catch, which carry Linkwright's diagnostics."""
+"""The exceptions of the module ``xacro``, with Linkwright's diagnostics."""
 
 from __future__ import annotations
 
@@ -13,22 +13,24 @@ class XacroException(LinkwrightError):
     """Raised for an error in a description.
 
     Args:
-        msg: the message.
+        msg: the message; None for a message from `exc` or `suffix` only.
         suffix: a text to append to the message.
         exc: the exception that caused this error.
         macro: the macro that contains the error.
 
     Attributes:
-        suffix: the argument `suffix`.
-        exc: the argument `exc`.
-        macros: the macro and the macros that call it.
+        suffix: the text that was appended to the message.
+        exc: the exception that caused this error.
+        macros: the macro that contains the error, then the macros that call it.
     """
 
     def __init__(
         self, msg: object = None, suffix: object = None, exc: BaseException | None = None, macro: object = None
     ) -> None:
-        words = " ".join(str(part) for part in (msg, exc, suffix) if part is not None and str(part))
-        super().__init__(Diagnostic("XAC706", foreign(words) or phrase("xacro failed")))
+        message_text = " ".join(
+            str(component) for component in (msg, exc, suffix) if component is not None and str(component)
+        )
+        super().__init__(Diagnostic("XAC706", foreign(message_text) or phrase("xacro failed")))
         self.suffix = suffix
         self.exc = exc
         self.macros = [] if macro is None else [macro]
@@ -59,7 +61,7 @@ class TextError(XacroException):
 class MalformedError(LinkwrightError, ExpatError):
     """Raised for a description that is not XML.
 
-    `lineno` and `offset` are the line and the column of the error.
+    `lineno` is the line of the error, starting at 1, and `offset` is the column, starting at 0.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -92,7 +94,7 @@ def translate_error(error: LinkwrightError, call: XacroCall | None) -> Linkwrigh
     diagnostics = error.diagnostics
     if isinstance(error, (XacroException, MalformedError)):
         return error
-    malformed = diagnostics[0].code.startswith("XML2")
+    is_malformed = diagnostics[0].code.startswith("XML2")
     if call is None:
-        return MalformedError(diagnostics) if malformed else TextError(diagnostics)
-    return MalformedFileError(call, diagnostics) if malformed else ExpansionError(call, diagnostics)
+        return MalformedError(diagnostics) if is_malformed else TextError(diagnostics)
+    return MalformedFileError(call, diagnostics) if is_malformed else ExpansionError(call, diagnostics)

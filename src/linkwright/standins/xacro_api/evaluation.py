@@ -26,14 +26,14 @@ def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
     If the string is a single expression, the result has the type of the expression's value.
 
     Args:
-        text: the string.
-        symbols: names for expressions, in addition to the names that xacro provides.
+        text: the string to evaluate.
+        symbols: the values of names in expressions, in addition to the names that xacro provides.
 
     Raises:
         XacroException: the string cannot be evaluated.
     """
     session = _session()
-    return _checked(lambda: session.evaluate(text, _scope(session, symbols)))
+    return _with_xacro_errors(lambda: session.evaluate(text, _create_scope(session, symbols)))
 
 
 def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str, Any] | None = None) -> Any:
@@ -45,10 +45,10 @@ def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str,
     from linkwright.xacro.expressions.expression import compile_expression
 
     session = _session()
-    scope = _scope(session, globals)
+    scope = _create_scope(session, globals)
     if locals is not None:
-        scope = Scope(scope, session, _View(locals, session))
-    return _checked(lambda: compile_expression(expr).evaluate(scope))
+        scope = Scope(scope, session, _SymbolView(locals, session))
+    return _with_xacro_errors(lambda: compile_expression(expr).evaluate(scope))
 
 
 def eval_extension(s: str) -> str:
@@ -58,7 +58,7 @@ def eval_extension(s: str) -> str:
         XacroException: the substitution cannot be evaluated.
     """
     session = _session()
-    return _checked(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
+    return _with_xacro_errors(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
 
 
 def load_yaml(filename: str) -> Any:
@@ -69,11 +69,11 @@ def load_yaml(filename: str) -> Any:
     """
     session = _session()
     STATE.all_includes.append(abs_filename_spec(filename))
-    return YamlListWrapper.wrap(_checked(lambda: session.load_yaml(filename)))
+    return YamlListWrapper.wrap(_with_xacro_errors(lambda: session.load_yaml(filename)))
 
 
 def dotify(mapping: Any = (), **items: Any) -> YamlDictWrapper:
-    """Return a mapping whose keys, at all levels, are also available as attributes."""
+    """Return a copy of a mapping that also provides its keys, at all levels, as attributes."""
     result: YamlDictWrapper = YamlListWrapper.wrap(dict(mapping, **items))
     return result
 
@@ -82,8 +82,8 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
     """Convert the value of a condition to a boolean.
 
     Args:
-        value: the value.
-        condition: the source of the condition, for the error message.
+        value: the value of the condition.
+        condition: the source text of the condition, for the error message.
 
     Raises:
         XacroException: the value is a string that is neither true, false nor an integer.
@@ -91,12 +91,12 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
     try:
         return truth(value)
     except ValueError:
-        what = f"the condition '{condition}'" if condition is not None else "the condition"
-        raise XacroException(f"{what} gives '{value}', which is neither true nor false") from None
+        subject = f"the condition '{condition}'" if condition is not None else "the condition"
+        raise XacroException(f"{subject} gives '{value}', which is neither true nor false") from None
 
 
 def is_valid_name(name: str) -> bool:
-    """Return whether a string is valid as the name of a property or macro.
+    """Return whether a string is a valid name for a property or macro.
 
     A valid name is a Python identifier that is not a keyword.
     """
@@ -104,12 +104,12 @@ def is_valid_name(name: str) -> bool:
 
 
 def create_global_symbols() -> dict[str, Any]:
-    """Return the names that xacro provides in expressions, with their values."""
+    """Return the names that xacro provides to expressions, with their values."""
     return dict(_session().globals.values)
 
 
 class ConstructUnits(enum.Enum):
-    """The YAML tags for values with units, each with the size of the unit in metres or radians."""
+    """The YAML tags for values with units, as pairs of the tag and the size of the unit in metres or radians."""
 
     radians = ("!radians", yamldata.UNITS["!radians"])
     degrees = ("!degrees", yamldata.UNITS["!degrees"])
@@ -120,7 +120,7 @@ class ConstructUnits(enum.Enum):
 
 
 class YamlDictWrapper(dict[Any, Any]):
-    """A mapping whose keys are also available as attributes."""
+    """A mapping that also provides its keys as attributes."""
 
     def __getattr__(self, item: str) -> Any:
         try:
@@ -130,11 +130,11 @@ class YamlDictWrapper(dict[Any, Any]):
 
 
 class YamlListWrapper(list[Any]):
-    """A sequence that wraps its mappings in `YamlDictWrapper`."""
+    """A sequence from a YAML file; see `wrap`."""
 
     @staticmethod
     def wrap(item: Any) -> Any:
-        """Wrap the mappings in a value in `YamlDictWrapper`, and its sequences in `YamlListWrapper`."""
+        """Return a value with all mappings as `YamlDictWrapper` and all lists as `YamlListWrapper`."""
         if isinstance(item, dict):
             return YamlDictWrapper({key: YamlListWrapper.wrap(value) for key, value in item.items()})
         if isinstance(item, list):
@@ -142,7 +142,7 @@ class YamlListWrapper(list[Any]):
         return item
 
 
-class _View(dict[str, Any]):
+class _SymbolView(dict[str, Any]):
     """A dictionary view of a symbol table, which evaluates values on access if necessary."""
 
     __slots__ = ("_session", "_table")
@@ -160,7 +160,7 @@ class _View(dict[str, Any]):
         if isinstance(value, (YamlDictWrapper, YamlListWrapper)):
             return yamldata.dotted(value)
         if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the value is the symbol table of a namespace
-            return Namespace(None, self._session, _View(value, self._session))
+            return Namespace(None, self._session, _SymbolView(value, self._session))
         return value
 
     def __iter__(self) -> Any:
@@ -170,20 +170,20 @@ class _View(dict[str, Any]):
         return self[name] if name in self._table else default
 
 
-def _scope(session: Session, symbols: Mapping[str, Any] | None) -> Scope:
-    return Scope(session.globals, session, _View({} if symbols is None else symbols, session))
+def _create_scope(session: Session, symbols: Mapping[str, Any] | None) -> Scope:
+    return Scope(session.globals, session, _SymbolView({} if symbols is None else symbols, session))
 
 
 def _session() -> Session:
     file = abs_filename_spec("text")
-    return Inputs(file, STATE.arguments, root_dir=_root()).session()
+    return Inputs(file, STATE.arguments, root_dir=_root_folder()).session()
 
 
-def _root() -> str:
+def _root_folder() -> str:
     return "" if str(STATE.root_dir) == "." else str(STATE.root_dir)
 
 
-def _checked(evaluate: Callable[[], _Result]) -> _Result:
+def _with_xacro_errors(evaluate: Callable[[], _Result]) -> _Result:
     try:
         return evaluate()
     except Fault as fault:

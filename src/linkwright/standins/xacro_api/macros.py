@@ -1,4 +1,4 @@
-"""Macros as the module ``xacro`` presents them to programs."""
+"""Macros in the API of the module ``xacro``."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from linkwright.xacro.macros import parse_parameters
 
 
 class Macro:
-    """A macro.
+    """The definition of a macro.
 
     Attributes:
-        name: the name of the macro.
+        name: the name of the macro, without the prefix ``xacro:``.
         body: the element that defines the macro.
         params: the names of the parameters.
-        defaultmap: parameter -> the name of the caller's property to use, if any, and the source of the default.
+        defaultmap: for each parameter with a default, the name of the caller's property to use and the default text;
+            each may be None.
         history: for each definition, the files that were being processed at that time.
     """
 
@@ -33,25 +34,29 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
     """Parse the first parameter in a list of macro parameters.
 
     Returns:
-        The name of the parameter, its default and the rest of the list. The default is None for a parameter without a
-        default. Otherwise it is a pair of the name of the caller's property to use, or None, and a default text, or
-        None.
+        The name of the parameter, its default, and the rest of the list. The default is None for a parameter without a
+        default, and otherwise a pair: the name of the caller's property to use, and the default text. Each part of the
+        pair may be None.
 
     Raises:
         XacroException: a quotation mark is not closed.
         IndexError: the list is empty.
     """
     try:
-        first, *others = parse_parameters(s)
+        first_parameter, *further_parameters = parse_parameters(s)
     except ValueError:
         raise IndexError("there is no parameter in the list") from None
     except Fault as fault:
         raise XacroException(fault.message) from None
-    rest = s[others[0].start :] if others else ""
-    behind = s[first.start + len(first.name) :].lstrip()
-    if not behind.startswith(("=", ":=")):
-        return first.name, None, rest
-    return first.name, (first.name if first.forward else None, first.default), rest
+    remaining_text = s[further_parameters[0].start :] if further_parameters else ""
+    text_after_name = s[first_parameter.start + len(first_parameter.name) :].lstrip()
+    if not text_after_name.startswith(("=", ":=")):
+        return first_parameter.name, None, remaining_text
+    return (
+        first_parameter.name,
+        (first_parameter.name if first_parameter.forward else None, first_parameter.default),
+        remaining_text,
+    )
 
 
 def resolve_macro(fullname: str, macros: Mapping[str, Any], symbols: Mapping[str, Any]) -> tuple[Any, Any, Any]:

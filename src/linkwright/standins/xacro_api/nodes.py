@@ -17,7 +17,7 @@ from linkwright.standins.xacro_api.tables import NameSpace, Table
 
 _ELEMENT, _TEXT, _COMMENT = minidom.Node.ELEMENT_NODE, minidom.Node.TEXT_NODE, minidom.Node.COMMENT_NODE
 _MARKER = minidom.Document().createTextNode("\n\n")
-"""Marks where the comments above a tag have been checked; there is only one, which moves."""
+"""Marks the position up to which comments have been checked; the single marker is moved along."""
 
 
 def first_child_element(elt: Any) -> Any:
@@ -34,16 +34,16 @@ def next_sibling_element(node: Any) -> Any:
 
 
 def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
-    """Replace a node by other nodes, or remove the node.
+    """Replace a node with other nodes, or remove it.
 
     Args:
         node: the node to replace.
-        by: a node, a list of nodes, or None to remove `node`.
-        content_only: whether to insert the children of these nodes instead of the nodes.
+        by: a node or a list of nodes to insert; None to remove `node`.
+        content_only: whether to insert the children of the new nodes instead of the nodes.
     """
     parent = node.parentNode
-    for new in by if isinstance(by, list) else [] if by is None else [by]:
-        for childNode in list(new.childNodes) if content_only else [new]:
+    for new_node in by if isinstance(by, list) else [] if by is None else [by]:
+        for childNode in list(new_node.childNodes) if content_only else [new_node]:
             parent.insertBefore(childNode, node)
     parent.removeChild(node)
 
@@ -66,35 +66,37 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
     """
     for name in attrs:
         if not tag.hasAttribute(name):
-            raise RuntimeError(phrase("'{nodename}' lacks its attribute '{name}'", nodename=tag.nodeName, name=name))
+            raise RuntimeError(
+                phrase(("'{nodename}' has no attribute '{name}', which is required"), nodename=tag.nodeName, name=name)
+            )
     return [tag.getAttribute(name) for name in attrs]
 
 
 def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> list[Any]:
-    """Return the values of required and optional attributes, and warn of any other attributes.
+    """Return the values of required and optional attributes, and print a warning about any other attributes.
 
     Raises:
         RuntimeError: a required attribute is missing.
     """
     values = [*reqd_attrs(tag, required), *opt_attrs(tag, optional)]
-    others = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - not a dict
-    others = [name for name in others if not name.startswith("xmlns:")]
-    if others:
-        colour.warning(f"'{tag.nodeName}' knows no attribute {', '.join(map(repr, others))}")
+    unexpected_names = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - not a dict
+    unexpected_names = [name for name in unexpected_names if not name.startswith("xmlns:")]
+    if unexpected_names:
+        colour.warning(f"'{tag.nodeName}' knows no attribute {', '.join(map(repr, unexpected_names))}")
         if STATE.verbosity > 0:
             print_location()
     return values
 
 
 def import_xml_namespaces(parent: Any, attributes: Any) -> None:
-    """Copy namespace declarations to an element, and print a warning for each contradiction."""
+    """Copy namespace declarations to an element, and print a warning if it declares a prefix differently."""
     for name, value in attributes.items():
         if not name.startswith("xmlns:"):
             continue
         if parent.hasAttribute(name) and parent.getAttribute(name) != value:
             colour.warning(
                 phrase(
-                    "'{name}' is declared as '{value}' here and as '{getattribute}' around it",
+                    "'{name}' is declared as '{value}' here, but as '{getattribute}' in an enclosing element",
                     name=name,
                     value=value,
                     getattribute=parent.getAttribute(name),
@@ -106,17 +108,17 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
 
 def remove_previous_comments(node: Any) -> None:
     """Remove the comments directly above a node, up to a blank line or text."""
-    following, previous = node.nextSibling, node.previousSibling
-    while previous is not None:
-        if previous.nodeType == _TEXT and previous.data.isspace() and previous.data.count("\n") <= 1:
-            previous = previous.previousSibling
-        if previous is None or previous.nodeType != _COMMENT:
-            if following is not None and following is not _MARKER:
+    next_node, previous_node = node.nextSibling, node.previousSibling
+    while previous_node is not None:
+        if previous_node.nodeType == _TEXT and previous_node.data.isspace() and previous_node.data.count("\n") <= 1:
+            previous_node = previous_node.previousSibling
+        if previous_node is None or previous_node.nodeType != _COMMENT:
+            if next_node is not None and next_node is not _MARKER:
                 if _MARKER.parentNode is not None:
                     _MARKER.parentNode.removeChild(_MARKER)
-                node.parentNode.insertBefore(_MARKER, following)
+                node.parentNode.insertBefore(_MARKER, next_node)
             return
-        comment, previous = previous, previous.previousSibling
+        comment, previous_node = previous_node, previous_node.previousSibling
         node.parentNode.removeChild(comment)
 
 
@@ -159,13 +161,13 @@ def grab_property(elt: Any, table: Table) -> None:
     name = eval_text(name, table)
     if not isinstance(name, str) or not is_valid_name(name) or name.startswith("__"):
         raise XacroException(phrase("'{name}' cannot be the name of a property", name=name))
-    removed = _flag(remove, table, default=False)
-    if (value is not None) + (default is not None) + removed > 1:
+    is_removal = _boolean_value(remove, table, default=False)
+    if (value is not None) + (default is not None) + is_removal > 1:
         raise XacroException(
             phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
         )
     replace_node(elt, by=None)
-    if removed:
+    if is_removal:
         if name in table:
             del table[name]
         return
@@ -176,8 +178,8 @@ def grab_property(elt: Any, table: Table) -> None:
     if value is None:
         Table._setitem(table, f"**{name}", elt, unevaluated=False)
         return
-    target = _target(table, scope)
-    if target is table and _flag(lazy, table, default=True):
+    target = _target_table(table, scope)
+    if target is table and _boolean_value(lazy, table, default=True):
         table._setitem(name, value, unevaluated=True)
     else:
         target._setitem(name, eval_text(value, table), unevaluated=False)
@@ -187,7 +189,7 @@ def eval_default_arg(forward_variable: str | None, default: str | None, symbols:
     """Return the default value of a macro parameter that the call omits.
 
     Raises:
-        XacroException: there is neither a property of the caller nor a default.
+        XacroException: the caller has no such property, and the parameter has no default.
     """
     if forward_variable is not None and forward_variable in symbols:
         return symbols[forward_variable]
@@ -196,11 +198,11 @@ def eval_default_arg(forward_variable: str | None, default: str | None, symbols:
     return eval_text(default, symbols)
 
 
-def _flag(text: str | None, table: Table, *, default: bool) -> bool:
+def _boolean_value(text: str | None, table: Table, *, default: bool) -> bool:
     return get_boolean_value(eval_text(text, table), text) if text else default
 
 
-def _target(table: Table, scope: str | None) -> Table:
+def _target_table(table: Table, scope: str | None) -> Table:
     if scope == "global":
         return table.top()
     if scope != "parent":

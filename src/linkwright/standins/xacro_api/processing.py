@@ -23,22 +23,26 @@ from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Document
 from linkwright.xmltree import parse as parse_text
 
-_TEXT = os.path.join(os.curdir, "string")  # noqa: PTH118 - relative paths in a text begin with './', as in xacro
-_FAILED = 2
+_TEXT_PATH = os.path.join(os.curdir, "string")  # noqa: PTH118 - relative paths in a text begin with './', as in xacro
+_FAILURE_STATUS = 2
 
 
 class XacroDocument(minidom.Document):
-    """A document that records its file and its expansion.
+    """A document that records how it was expanded.
 
-    This information lets a running launch map the URDF to locations in the sources, and reload a changed file.
+    With this information, a running launch can map the URDF to locations in the sources, and reload a changed file.
+
+    Attributes:
+        call: the file and the arguments; None for a description given as a string.
+        expansion: the result of the expansion; None before it.
     """
 
     call: XacroCall | None = None
     expansion: Expansion | None = None
 
-    def toprettyxml(self, *arguments: Any, **named: Any) -> Any:
+    def toprettyxml(self, *arguments: Any, **keywords: Any) -> Any:
         """Serialize the document; see ``xml.dom.minidom``."""
-        text = super().toprettyxml(*arguments, **named)
+        text = super().toprettyxml(*arguments, **keywords)
         descriptions, expansion = current_descriptions(), self.expansion
         if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
             return text
@@ -51,8 +55,8 @@ def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
     """Parse a description into a document, without expanding it.
 
     Args:
-        inp: the description as a string or an open file; a document, which is returned; or None to open `filename`.
-        filename: the file, or a name for the string in messages.
+        inp: the description as a string or an open file; None to open `filename`. A document is returned unchanged.
+        filename: the file to open, or a name for the string in messages.
 
     Raises:
         xml.parsers.expat.ExpatError: the description is not XML.
@@ -75,7 +79,7 @@ def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
         raise TypeError(f"expected a file or its path, got {inp!r} of type {type(inp).__name__}")
     call = None if path is None else XacroCall(Path.cwd() / path)
     try:
-        tree = _tree(inp, path, filename)
+        tree = _parse_tree(inp, path, filename)
     except LinkwrightError as error:
         raise translate_error(error, call) from None
     document = XacroDocument()
@@ -88,7 +92,7 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
     """Expand a document in place.
 
     Args:
-        doc: the document.
+        doc: the document to expand.
         mappings: the values of arguments by name, which are not modified.
         options: `verbosity`; other options are ignored.
 
@@ -101,7 +105,7 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
         init_stacks(None)
     call = doc.call if isinstance(doc, XacroDocument) else None
     if call is not None:
-        call = XacroCall(call.path, _words(mappings))
+        call = XacroCall(call.path, _argument_texts(mappings))
     file = STATE.filestack[-1] if STATE.filestack else None
     expansion = _expand(dom.read(doc), file, mappings, call)
     dom.fill(doc, expansion.document)
@@ -129,9 +133,9 @@ def process_file(
     STATE.verbosity = options.get("verbosity", STATE.verbosity)
     init_stacks(input_file_name)
     name = os.fspath(input_file_name)
-    call = XacroCall(Path.cwd() / STATE.root_dir / name, _words(mappings))
+    call = XacroCall(Path.cwd() / STATE.root_dir / name, _argument_texts(mappings))
     try:
-        tree = _tree(None, Path(STATE.root_dir, name), None)
+        tree = _parse_tree(None, Path(STATE.root_dir, name), None)
     except LinkwrightError as error:
         raise translate_error(error, call) from None
     expansion = _expand(tree, name, mappings, call)
@@ -154,17 +158,17 @@ def process(
 
     Args:
         input_file_name: the path of the file.
-        just_deps: whether to return the names of included files.
+        just_deps: whether to return the names of included files instead of the description.
         xacro_ns: ignored.
-        verbosity: the amount of output.
+        verbosity: the amount of output, from 0 to 4.
         mappings: the values of arguments by name.
     """
     document = process_file(input_file_name, mappings=mappings, verbosity=verbosity)
-    return _result(document, just_deps=just_deps)
+    return _output_text(document, just_deps=just_deps)
 
 
 def open_output(output_filename: str | Path | None) -> IO[str]:
-    """Open a file for writing and create its folder if necessary; for None, return standard output.
+    """Open a file for writing, and create its folder if necessary; return standard output for None.
 
     Raises:
         XacroException: the file cannot be opened.
@@ -187,23 +191,23 @@ def main(words: Sequence[str] | None = None) -> None:
         STATE.root_dir = options.root_dir
     try:
         document = process_file(file, mappings=options.mappings, verbosity=options.verbosity)
-        out = open_output(options.output)
+        output_file = open_output(options.output)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
-        sys.exit(_FAILED)
-    out.write(_result(document, just_deps=options.just_deps))
+        sys.exit(_FAILURE_STATUS)
+    output_file.write(_output_text(document, just_deps=options.just_deps))
     if options.output:
-        out.close()
+        output_file.close()
 
 
-def _result(document: minidom.Document, *, just_deps: bool) -> str:
+def _output_text(document: minidom.Document, *, just_deps: bool) -> str:
     if just_deps and isinstance(document, XacroDocument) and document.expansion is not None:
         return " ".join(map(str, document.expansion.dependencies[1:]))
     text: str = document.toprettyxml(indent="  ")
     return text
 
 
-def _tree(inp: Any, path: Path | None, filename: str | Path | None) -> Document:
+def _parse_tree(inp: Any, path: Path | None, filename: str | Path | None) -> Document:
     from linkwright.xmltree import parse_file
 
     if inp is None:
@@ -211,52 +215,56 @@ def _tree(inp: Any, path: Path | None, filename: str | Path | None) -> Document:
         return parse_file(path)
     if hasattr(inp, "read"):
         inp = inp.read()
-    text = inp if isinstance(inp, str) else _decoded(inp, str(path or filename or _TEXT))
+    text = inp if isinstance(inp, str) else _decode_text(inp, str(path or filename or _TEXT_PATH))
     return parse_text(text, str(path or filename or "<string>"))
 
 
-def _decoded(data: bytes, name: str) -> str:
+def _decode_text(data: bytes, name: str) -> str:
     from linkwright.xmltree.decoding import decode
 
     return decode(io.BytesIO(data).getvalue(), name)
 
 
-def _words(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
+def _argument_texts(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
     return tuple((name, str(value)) for name, value in (mappings or {}).items())
 
 
 def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None, call: XacroCall | None) -> Expansion:
-    """Expand a tree, and print its diagnostics unless a running launch reports them."""
+    """Return the expansion of a tree, and print its diagnostics unless a running launch reports them."""
     descriptions = current_descriptions()
     packages = descriptions.finder if descriptions is not None else None
     root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
-    inputs = Inputs(_TEXT if file is None else file, dict(_words(mappings)), packages, root_dir=root)
+    inputs = Inputs(_TEXT_PATH if file is None else file, dict(_argument_texts(mappings)), packages, root_dir=root)
     session = StackSession(inputs)
     STATE.arguments = session.arguments
     if descriptions is not None and call is not None:
         descriptions.begin(call)
     try:
         with recursion_limit_for(inputs.limits):
-            expanded = StackExpander(session, session.directives, session.call).document(tree)
+            document = StackExpander(session, session.directives, session.call).document(tree)
     except LinkwrightError as error:
-        session.return_to_mistake()
-        _print_remarks(session.diagnostics)
+        session.restore_stacks()
+        _print_diagnostics(session.diagnostics)
         raise translate_error(error, call) from None
     finally:
         STATE.arguments = {}
     session.warn_of_unused_arguments()
     if descriptions is None or call is None:
-        _print_remarks(session.diagnostics)
-    files = tuple(Path(name) for name in session.dependencies if name != _TEXT)
-    return Expansion(expanded, files, session.arguments, tuple(session.diagnostics))
+        _print_diagnostics(session.diagnostics)
+    files = tuple(Path(name) for name in session.dependencies if name != _TEXT_PATH)
+    return Expansion(document, files, session.arguments, tuple(session.diagnostics))
 
 
-def _print_remarks(diagnostics: Sequence[Diagnostic]) -> None:
-    quiet = STATE.verbosity <= 0
-    reported = [found for found in diagnostics if not quiet or found.severity is Severity.ERROR or _is_printed(found)]
-    print_diagnostics(reported, sys.stderr)
+def _print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
+    is_quiet = STATE.verbosity <= 0
+    printed_diagnostics = [
+        diagnostic
+        for diagnostic in diagnostics
+        if not is_quiet or diagnostic.severity is Severity.ERROR or _is_description_message(diagnostic)
+    ]
+    print_diagnostics(printed_diagnostics, sys.stderr)
 
 
-def _is_printed(diagnostic: Diagnostic) -> bool:
-    """Return whether the expansion has already printed a diagnostic, such as ``xacro.message``."""
+def _is_description_message(diagnostic: Diagnostic) -> bool:
+    """Return whether a diagnostic is a message of the description itself, such as from ``xacro.message``."""
     return diagnostic.code.startswith("XAC7")

@@ -46,7 +46,7 @@ class State:
 STATE = State()
 
 
-def _of_state(name: str) -> property:
+def _state_property(name: str) -> property:
     def change(_: ModuleType, value: Any) -> None:
         setattr(STATE, name, value)
 
@@ -56,11 +56,11 @@ def _of_state(name: str) -> property:
 class LiveModule(ModuleType):
     """A module whose variables are the attributes of `STATE`, so that programs can read and set them."""
 
-    filestack = _of_state("filestack")
-    macrostack = _of_state("macrostack")
-    root_dir = _of_state("root_dir")
-    verbosity = _of_state("verbosity")
-    all_includes = _of_state("all_includes")
+    filestack = _state_property("filestack")
+    macrostack = _state_property("macrostack")
+    root_dir = _state_property("root_dir")
+    verbosity = _state_property("verbosity")
+    all_includes = _state_property("all_includes")
 
 
 def share_state() -> None:
@@ -69,7 +69,7 @@ def share_state() -> None:
 
 
 def init_stacks(file: str | Path | None) -> None:
-    """Reset the stacks; the file stack then contains a file, or None for a description as a string."""
+    """Reset the stacks, so that the file stack contains only `file`, or None for a description as a string."""
     STATE.filestack = [None if file is None else str(file)]
     STATE.macrostack = []
 
@@ -78,22 +78,22 @@ def abs_filename_spec(filename_spec: str) -> str:
     """Return an absolute file name; a relative name is resolved in the folder of the current file."""
     if os.path.isabs(filename_spec):  # noqa: PTH117 - as written
         return filename_spec
-    current = STATE.filestack[-1] if STATE.filestack else None
-    folder = os.path.dirname(current) if current else os.curdir  # noqa: PTH120
+    current_file = STATE.filestack[-1] if STATE.filestack else None
+    folder = os.path.dirname(current_file) if current_file else os.curdir  # noqa: PTH120
     return os.path.join(folder, filename_spec)  # noqa: PTH118
 
 
 def print_location() -> None:
     """Print the macros and files that are being processed to standard error, innermost first."""
-    words = "when instantiating macro:"
+    prefix = "when instantiating macro:"
     for macro in reversed(STATE.macrostack or []):
         file = macro.history[-1][-1] if macro.history and macro.history[-1] else None
-        print(f"{words} {macro.name} ({file or '???'})", file=sys.stderr)
-        words = "instantiated from:"
-    words = "in file:" if STATE.macrostack else "when processing file:"
+        print(f"{prefix} {macro.name} ({file or '???'})", file=sys.stderr)
+        prefix = "instantiated from:"
+    prefix = "in file:" if STATE.macrostack else "when processing file:"
     for file in reversed(STATE.filestack or []):
-        print(words, "string" if file is None else file, file=sys.stderr)
-        words = "included from:"
+        print(prefix, "string" if file is None else file, file=sys.stderr)
+        prefix = "included from:"
 
 
 class StackExpander(Expander):
@@ -103,7 +103,7 @@ class StackExpander(Expander):
 
     def note(self, fault: Fault) -> None:
         """Record an error and its location."""
-        self.session.keep_place()
+        self.session.save_stacks()
         super().note(fault)
 
 
@@ -119,83 +119,83 @@ class StackSession(Session):
         self.directives: Mapping[str, Directive] = {
             **DIRECTIVES,
             "xacro:include": self._include,
-            "xacro:macro": self._define,
+            "xacro:macro": self._define_macro,
             "xacro:call": self._call_dynamically,
         }
-        self._defined: dict[int, tuple[Element, Macro]] = {}
-        self._files = 0
-        self._mistake: tuple[list[str | None], list[Macro]] | None = None
+        self._definitions: dict[int, tuple[Element, Macro]] = {}
+        self._outer_file_count = 0
+        self._stacks_at_error: tuple[list[str | None], list[Macro]] | None = None
         self.globals.values["xacro"].values["print_location"] = self._print_location
 
     def read(self, path: str) -> Document:
-        """Read a file and make it the current file; return its document."""
-        if STATE.filestack is not None and self._files:
-            del STATE.filestack[self._files :]
+        """Read a file, make it the current file, and return its document."""
+        if STATE.filestack is not None and self._outer_file_count:
+            del STATE.filestack[self._outer_file_count :]
             STATE.filestack.append(path)
         return super().read(path)
 
     def call(self, expander: Expander, site: Site) -> None:
         """Expand a macro call, with the macro on the stack."""
-        self._within(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
+        self._run_with_macro(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
 
     def depends_on(self, file: str) -> None:
         """Record that a file was read; see `Session.depends_on`."""
         super().depends_on(file)
         STATE.all_includes.append(file)
 
-    def keep_place(self) -> None:
-        """Save the stacks at the first error, because the expansion continues after an error."""
-        if self._mistake is None:
-            self._mistake = (list(STATE.filestack or []), list(STATE.macrostack or []))
+    def save_stacks(self) -> None:
+        """Save the stacks at the first error, because the expansion continues and changes them."""
+        if self._stacks_at_error is None:
+            self._stacks_at_error = (list(STATE.filestack or []), list(STATE.macrostack or []))
 
-    def return_to_mistake(self) -> None:
+    def restore_stacks(self) -> None:
         """Restore the stacks as they were at the first error, after the expansion has failed."""
-        if self._mistake is not None:
-            STATE.filestack, STATE.macrostack = self._mistake
+        if self._stacks_at_error is not None:
+            STATE.filestack, STATE.macrostack = self._stacks_at_error
 
     def _include(self, expander: Expander, site: Site) -> None:
-        around, stack = self._files, STATE.filestack
-        self._files = len(stack) if stack is not None else 0
+        outer_file_count, stack = self._outer_file_count, STATE.filestack
+        self._outer_file_count = len(stack) if stack is not None else 0
         DIRECTIVES["xacro:include"](expander, site)
         if stack is not None:
-            del stack[self._files :]
-        self._files = around
+            del stack[self._outer_file_count :]
+        self._outer_file_count = outer_file_count
 
-    def _define(self, expander: Expander, site: Site) -> None:
+    def _define_macro(self, expander: Expander, site: Site) -> None:
         DIRECTIVES["xacro:macro"](expander, site)
         name = site.node.attributes["name"].removeprefix(_PREFIX)
-        known = self._defined.get(id(site.node))
-        macro = known[1] if known else Macro()
+        known_definition = self._definitions.get(id(site.node))
+        macro = known_definition[1] if known_definition else Macro()
         macro.name = name
         macro.history.append(list(STATE.filestack or [None]))
-        self._defined[id(site.node)] = (site.node, macro)
+        self._definitions[id(site.node)] = (site.node, macro)
 
     def _call_dynamically(self, expander: Expander, site: Site) -> None:
         text = site.node.attributes.get("macro", "")
         name = text if "$" not in text or self.changes(text) else expander.text_value(site.node, "macro", site.scope)
-        self._within(DIRECTIVES["xacro:call"], expander, site, name)
+        self._run_with_macro(DIRECTIVES["xacro:call"], expander, site, name)
 
-    def _within(self, directive: Directive, expander: Expander, site: Site, name: str) -> None:
-        macro = _find(site.macros, name)
-        known = self._defined.get(id(macro.body)) if macro else None
+    def _run_with_macro(self, directive: Directive, expander: Expander, site: Site, name: str) -> None:
+        macro = _find_macro(site.macros, name)
+        known_definition = self._definitions.get(id(macro.body)) if macro else None
         stack = STATE.macrostack
-        if known is None or stack is None:
+        if known_definition is None or stack is None:
             directive(expander, site)
             return
-        stack.append(known[1])
+        stack.append(known_definition[1])
         directive(expander, site)
-        stack.pop()  # not after an error, when the stack shows the location of the error
+        stack.pop()  # After an error, the stack must keep the location of the error.
 
     def _print_location(self, *_: Any) -> str:
         print_location()
         return ""
 
 
-def _find(macros: MacroTable, name: str) -> EngineMacro | None:
-    found = macros.find(name)
-    if isinstance(found, EngineMacro):
-        return found
+def _find_macro(macros: MacroTable, name: str) -> EngineMacro | None:
+    macro = macros.find(name)
+    if isinstance(macro, EngineMacro):
+        return macro
     table: Any = macros
-    for part in name.split("."):
-        table = table.find(part) if isinstance(table, MacroTable) else None
+    for name_part in name.split("."):
+        table = table.find(name_part) if isinstance(table, MacroTable) else None
     return table if isinstance(table, EngineMacro) else None

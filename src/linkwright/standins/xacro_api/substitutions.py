@@ -22,11 +22,11 @@ class ArgException(SubstitutionException):
 def resolve_args(
     arg_str: str | None, context: Mapping[str, Any] | None = None, filename: str | None = None
 ) -> str | None:
-    """Replace every ``$(...)`` in a string.
+    """Return a string with every ``$(...)`` replaced by its value.
 
     Args:
-        arg_str: the string; None or an empty string is returned unchanged.
-        context: the dictionary whose key ``arg`` contains the arguments by name.
+        arg_str: the string to resolve; None or an empty string is returned unchanged.
+        context: a dictionary with the key ``arg`` for the values of arguments by name.
         filename: the file that contains the string, for ``$(dirname)``.
 
     Raises:

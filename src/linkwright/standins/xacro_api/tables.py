@@ -1,4 +1,4 @@
-"""The tables of properties and macros as the module ``xacro`` presents them to programs."""
+"""The symbol tables of properties and macros in the API of the module ``xacro``."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from linkwright.standins.xacro_api.evaluation import eval_text
 from linkwright.standins.xacro_api.stacks import STATE, print_location
 from linkwright.xacro.expressions.scope import literal
 
-_DOCUMENT, _EVERYWHERE = 2, 3
-"""Above these verbosities, the properties of the document, or all of them, are logged."""
+_DOCUMENT_VERBOSITY, _FULL_VERBOSITY = 2, 3
+"""The verbosities above which the properties of the document, or all properties, are logged."""
 
 
 class Table(dict[str, Any]):
     """A symbol table with a parent table, which evaluates strings on first access.
 
     Args:
-        parent: the parent table; a plain dict is the table of the names that xacro provides.
+        parent: the parent table; a plain dict contains the names that xacro provides.
 
     Attributes:
-        parent: the argument `parent`.
-        root: the outermost table.
-        depth: the number of parent tables, excluding the table of the names that xacro provides.
+        parent: the parent table, or the dict of the names that xacro provides.
+        root: the table of the names that xacro provides.
+        depth: the number of parent tables, without the names that xacro provides.
         unevaluated: the names whose values are not evaluated yet.
         recursive: the names that are being evaluated.
     """
@@ -66,7 +66,7 @@ class Table(dict[str, Any]):
         return f"{dict.__repr__(self)}\n  parent: {self.parent}"
 
     def top(self) -> Table:
-        """Return the outermost table, excluding the table of the names that xacro provides."""
+        """Return the outermost table that does not contain the names that xacro provides."""
         table = self
         while table.parent is not table.root and isinstance(table.parent, Table):
             table = table.parent
@@ -89,9 +89,9 @@ class Table(dict[str, Any]):
 
     def _evaluate(self, key: str) -> None:
         if key in self.recursive:
-            circle = " -> ".join([*self.recursive, key])
+            cycle = " -> ".join([*self.recursive, key])
             raise XacroException(
-                f"the property '{key}' is defined by itself: {circle}; "
+                f"the property '{key}' is defined by itself: {cycle}; "
                 'evaluate one of them where it is written: lazy_eval="false"'
             )
         self.recursive.append(key)
@@ -102,11 +102,11 @@ class Table(dict[str, Any]):
         dict.__setitem__(self, key, value)
         self.unevaluated.discard(key)
 
-    def _log(self, what: str, key: str, value: Any) -> None:
+    def _log(self, action: str, key: str, value: Any) -> None:
         level = STATE.verbosity
-        if level > _EVERYWHERE or (level > _DOCUMENT and self.parent is self.root):
+        if level > _FULL_VERBOSITY or (level > _DOCUMENT_VERBOSITY and self.parent is self.root):
             file = STATE.filestack[-1] if STATE.filestack else None
-            print(f"{' ' * self.depth}{what} {key}: {value} ({file})", file=sys.stderr)
+            print(f"{' ' * self.depth}{action} {key}: {value} ({file})", file=sys.stderr)
 
 
 class NameSpace(Table):

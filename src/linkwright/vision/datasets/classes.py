@@ -22,26 +22,26 @@ from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.sensors.mount import part_of
 from linkwright.simulation.simulation import Simulation
 
-_NUMBER = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
+_NUMBER_SUFFIX = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
 _COLOURS = frozenset(
     ("red", "green", "blue", "yellow", "orange", "purple", "pink", "white", "black", "grey", "gray", "brown", "cyan")
 )
-_BACKGROUND = frozenset(
+_BACKGROUND_WORDS = frozenset(
     ("ground", "plane", "floor", "floors", "wall", "walls", "room", "rooms", "house", "building", "road", "roads")
 )
 """Words in the names of models that are surroundings, not objects."""
-_LARGEST = 4.0
-"""The width in m from which a static model is taken for surroundings, unless a file of classes names it."""
-_TOUCHING = 0.02
-"""The distance in m up to which shapes are one object."""
+_MAX_OBJECT_WIDTH = 4.0
+"""The width in m above which a static model is part of the surroundings, unless a file of classes names it."""
+_MAX_GAP = 0.02
+"""The maximum gap in m between visuals that form one object."""
 
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """An object with its own label.
+    """An object of a world that gets one label.
 
     Attributes:
-        name: the model, or ``model::link::visual``.
+        name: the name of the model, or ``model::link::visual``.
         label: the index of its class.
         geoms: the names of its geoms in MuJoCo's model.
     """
@@ -56,14 +56,14 @@ class ClassRules:
     """Rules that assign classes to models or visuals.
 
     Attributes:
-        patterns: for each class, glob patterns that match names of models, or names of the models that they were
-            included from. Patterns with ``::`` match names of visuals, ``model::link::visual``. The position of a class
+        patterns: for each class, glob patterns that match the name of a model, or the name of an included model in
+            its own file. Patterns with ``::`` match visuals, ``model::link::visual``. The position of a class
             is its number.
     """
 
     patterns: Mapping[str, tuple[str, ...]]
 
-    def class_of(self, *names: str) -> int | None:
+    def class_number(self, *names: str) -> int | None:
         """Return the number of the first class that has a pattern for one of the names; None if there is none."""
         for number, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
@@ -74,7 +74,7 @@ class ClassRules:
 def read_classes(path: Path) -> ClassRules:
     """Read class rules from a YAML file.
 
-    An entry is ``class: pattern``, ``class: [pattern, ...]``, or ``class:``, whose pattern is the name of the class.
+    An entry is ``class: pattern``, ``class: [pattern, ...]``, or ``class:``, where the class name is the pattern.
 
     Raises:
         LinkwrightError: VISION201, the file cannot be read, or has other content.
@@ -82,65 +82,65 @@ def read_classes(path: Path) -> ClassRules:
     document = YamlDocument(read_source(path, phrase("file of classes"), "VISION201"), "VISION201")
     root = document.root
     if not isinstance(root, yaml.MappingNode) or not root.value:
-        raise _wrong(document, root)
+        raise _invalid_classes(document, root)
     patterns: dict[str, tuple[str, ...]] = {}
     for key, value in root.value:
         if not isinstance(key, yaml.ScalarNode) or not key.value.strip() or key.value in patterns:
-            raise _wrong(document, key)
+            raise _invalid_classes(document, key)
         entries = value.value if isinstance(value, yaml.SequenceNode) else [value]
         if not entries or not all(isinstance(entry, yaml.ScalarNode) for entry in entries):
-            raise _wrong(document, value)
+            raise _invalid_classes(document, value)
         patterns[key.value] = tuple(str(entry.value) or key.value for entry in entries)
     return ClassRules(patterns)
 
 
-def _wrong(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
+def _invalid_classes(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
     hint = phrase("write for example `ball: [football, '*_ball']`, with each name only once")
-    return document.error(phrase("classes must be names with patterns of model names"), node, hint)
+    return document.error(phrase("a file of classes must map names of classes to patterns of model names"), node, hint)
 
 
-def usual_class(name: str) -> str:
-    """Return the class of a model by its name without a colour and a final number: ``red_ball_2`` gives ``ball``."""
-    words = [word for word in re.split(r"[ _-]+", _NUMBER.sub("", name.lower())) if word]
-    plain = [word for word in words if word not in _COLOURS]
-    return "_".join(plain or words) or name
+def default_class(name: str) -> str:
+    """Return the class for a model name, without colour and final number: ``red_ball_2`` gives ``ball``."""
+    words = [word for word in re.split(r"[ _-]+", _NUMBER_SUFFIX.sub("", name.lower())) if word]
+    words_without_colours = [word for word in words if word not in _COLOURS]
+    return "_".join(words_without_colours or words) or name
 
 
-def usual_rules(simulations: list[Simulation]) -> ClassRules:
-    """Return default classes for worlds, sorted by name: all models except surroundings.
+def default_rules(simulations: list[Simulation]) -> ClassRules:
+    """Return default class rules for worlds: a class for each model except surroundings, sorted by name.
 
-    An included model has the name in its own file.
+    For an included model, the name in its own file determines the class.
     """
     patterns: dict[str, set[str]] = {}
     for simulation in simulations:
         for name, model in simulation.scene.models.items():
             if not _is_background(simulation, name, model.model):
-                patterns.setdefault(usual_class(own_name(model.model)), set()).update((name, own_name(model.model)))
-    return ClassRules({name: tuple(sorted(found)) for name, found in sorted(patterns.items())})
+                patterns.setdefault(default_class(own_name(model.model)), set()).update((name, own_name(model.model)))
+    return ClassRules({name: tuple(sorted(names)) for name, names in sorted(patterns.items())})
 
 
-def objects_of(simulation: Simulation, rules: ClassRules) -> list[SceneObject]:
+def find_objects(simulation: Simulation, rules: ClassRules) -> list[SceneObject]:
     """Return the objects of a world.
 
-    A model is one object. If the rules name visuals of a model, named visuals that touch each other are one object.
+    A model with a class is one object. If the rules name visuals of a model, visuals that touch are one object.
     """
     objects: list[SceneObject] = []
     visuals = _visuals(simulation)
     boxes = geom_boxes(simulation.model, simulation.data)
-    for name, held in simulation.scene.models.items():
+    for name, scene_model in simulation.scene.models.items():
         geoms = visuals.get(name, {})
-        whole = rules.class_of(name, own_name(held.model))
-        if whole is not None:
-            found = tuple(geom for part in geoms.values() for geom in part)
-            objects += [SceneObject(name, whole, found)] if found else []
+        model_label = rules.class_number(name, own_name(scene_model.model))
+        if model_label is not None:
+            geom_names = tuple(geom for part in geoms.values() for geom in part)
+            objects += [SceneObject(name, model_label, geom_names)] if geom_names else []
             continue
-        named: dict[int, list[str]] = {}
-        for part in geoms:
-            label = rules.class_of(part)
+        visuals_by_label: dict[int, list[str]] = {}
+        for visual in geoms:
+            label = rules.class_number(visual)
             if label is not None:
-                named.setdefault(label, []).append(part)
-        for label, parts in named.items():
-            for group in _touching(parts, geoms, simulation.model, boxes):
+                visuals_by_label.setdefault(label, []).append(visual)
+        for label, visuals_of_label in visuals_by_label.items():
+            for group in _touching(visuals_of_label, geoms, simulation.model, boxes):
                 objects.append(SceneObject(group[0], label, tuple(geom for part in group for geom in geoms[part])))
     return objects
 
@@ -151,54 +151,57 @@ def own_name(model: Model) -> str:
 
 
 def geom_boxes(model: Any, data: Any) -> Array:
-    """Return the axis-aligned bounding boxes of all geoms in the world: corners in m, shape (geoms, 2, 3)."""
-    turned = data.geom_xmat.reshape(-1, 3, 3)
-    middle = data.geom_xpos + np.einsum("gij,gj->gi", turned, model.geom_aabb[:, :3])
-    half = np.einsum("gij,gj->gi", np.abs(turned), model.geom_aabb[:, 3:])
-    boxes: Array = np.stack([middle - half, middle + half], axis=1)
+    """Return the axis-aligned boxes of all geoms in world coordinates: corners in m, shape (geoms, 2, 3)."""
+    rotations = data.geom_xmat.reshape(-1, 3, 3)
+    centres = data.geom_xpos + np.einsum("gij,gj->gi", rotations, model.geom_aabb[:, :3])
+    half_sizes = np.einsum("gij,gj->gi", np.abs(rotations), model.geom_aabb[:, 3:])
+    boxes: Array = np.stack([centres - half_sizes, centres + half_sizes], axis=1)
     return boxes
 
 
 def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
-    """Return the geoms of each visual by name, for each model."""
-    found: dict[str, dict[str, list[str]]] = {}
+    """Return the names of the geoms of each visual, by model and visual."""
+    visuals: dict[str, dict[str, list[str]]] = {}
     for geom in range(simulation.model.ngeom):
         if simulation.model.geom_group[geom] == VISUAL_GROUP:
             name = simulation.model.geom(geom).name
-            part = part_of(name).partition("#")[0]
-            found.setdefault(part.partition(SEPARATOR)[0], {}).setdefault(part, []).append(name)
-    return found
+            visual = part_of(name).partition("#")[0]
+            visuals.setdefault(visual.partition(SEPARATOR)[0], {}).setdefault(visual, []).append(name)
+    return visuals
 
 
 def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
     words = set(re.split(r"[ _-]+", own_name(model).lower()))
-    if words & _BACKGROUND:
+    if words & _BACKGROUND_WORDS:
         return True
-    numbers = [simulation.model.geom(geom).id for part in _visuals(simulation).get(name, {}).values() for geom in part]
-    if not numbers:
+    geom_ids = [simulation.model.geom(geom).id for part in _visuals(simulation).get(name, {}).values() for geom in part]
+    if not geom_ids:
         return True
-    if (simulation.model.geom_type[numbers] == load_mujoco().mjtGeom.mjGEOM_PLANE).any():
+    if (simulation.model.geom_type[geom_ids] == load_mujoco().mjtGeom.mjGEOM_PLANE).any():
         return True
-    boxes = geom_boxes(simulation.model, simulation.data)[numbers]
-    width = boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)
-    return model.static and bool((width[:2] > _LARGEST).any())
+    boxes = geom_boxes(simulation.model, simulation.data)[geom_ids]
+    extent = boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)
+    return model.static and bool((extent[:2] > _MAX_OBJECT_WIDTH).any())
 
 
-def _touching(parts: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
+def _touching(visuals: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
     """Yield groups of visuals whose bounding boxes touch each other."""
-    left = list(parts)
-    around = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in parts}
-    around = {part: np.stack([each[:, 0].min(axis=0), each[:, 1].max(axis=0)]) for part, each in around.items()}
-    while left:
-        group, waiting = [], [left.pop(0)]
-        while waiting:
-            part = waiting.pop(0)
-            group.append(part)
-            near = [other for other in left if _meet(around[part], around[other])]
-            waiting += near
-            left = [other for other in left if other not in near]
+    remaining = list(visuals)
+    bounds = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in visuals}
+    bounds = {
+        part: np.stack([visual_boxes[:, 0].min(axis=0), visual_boxes[:, 1].max(axis=0)])
+        for part, visual_boxes in bounds.items()
+    }
+    while remaining:
+        group, queue = [], [remaining.pop(0)]
+        while queue:
+            visual = queue.pop(0)
+            group.append(visual)
+            neighbours = [other for other in remaining if _boxes_touch(bounds[visual], bounds[other])]
+            queue += neighbours
+            remaining = [other for other in remaining if other not in neighbours]
         yield group
 
 
-def _meet(one: Array, other: Array) -> bool:
-    return bool((one[0] <= other[1] + _TOUCHING).all() and (other[0] <= one[1] + _TOUCHING).all())
+def _boxes_touch(first: Array, second: Array) -> bool:
+    return bool((first[0] <= second[1] + _MAX_GAP).all() and (second[0] <= first[1] + _MAX_GAP).all())

@@ -14,7 +14,7 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.process.processors import usable_processors
 from linkwright.vision.datasets.contact_sheet import MOST, contact_sheet
 from linkwright.vision.datasets.folder import SHEET, DatasetFolder, cannot_write
-from linkwright.vision.datasets.making import CHAPTER, LabelledImage, Source, Studio
+from linkwright.vision.datasets.making import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
 from linkwright.vision.datasets.options import FORMATS, Options
 from linkwright.vision.datasets.workers import make_in_processes
 
@@ -24,9 +24,9 @@ class DatasetResult:
     """The result of creating a dataset.
 
     Attributes:
-        folder: the folder of the dataset.
-        added: the number of images made.
-        interrupted: whether Ctrl-C ended it early.
+        folder: the finished dataset on disk.
+        added: the number of images added in this run.
+        interrupted: whether Ctrl-C stopped it early.
     """
 
     folder: DatasetFolder
@@ -52,70 +52,70 @@ def make_dataset(
     """Make a dataset of labelled images.
 
     Args:
-        worlds: the world, or the worlds, by file or name.
+        worlds: one world or several, by file or name.
         path: the folder of the dataset.
         images: the number of images to make.
         models: the files of robots or models to add to each world.
-        classes: the YAML file of classes; None for a class for each model.
-        options: the options of making images, such as their size and the random seed; None for the defaults.
+        classes: the YAML file of classes; None for one class per model.
+        options: how images are made, such as their size and the random seed; None for the defaults.
         formats: the formats of the labels, ``coco`` and ``yolo``.
-        workers: the number of processes; None for one on each usable processor.
-        force: remove the dataset that is in the folder.
-        append: add to the dataset that is in the folder.
-        progress: called with the number of finished images.
-        begin: called before the first image.
+        workers: the number of processes; None for one per usable processor.
+        force: replace the dataset in the folder.
+        append: add to the dataset in the folder.
+        progress: called with the number of finished images after each image.
+        begin: called with the studio before the first image.
 
     Raises:
         LinkwrightError: VISION201 to VISION208, or an error in a world. The dataset written so far is complete.
     """
     path = Path(path)
     options = options or Options()
-    names = (worlds,) if isinstance(worlds, (str, Path)) else worlds
-    source = Source(tuple(map(str, names)), tuple(map(str, models)), str(classes) if classes else None, options)
+    world_names = (worlds,) if isinstance(worlds, (str, Path)) else worlds
+    source = Source(tuple(map(str, world_names)), tuple(map(str, models)), str(classes) if classes else None, options)
     workers = workers or usable_processors()
     with closing(Studio(source)) as studio:
         begin(studio)
         folder = DatasetFolder(path, studio.classes, (options.width, options.height), tuple(formats), options.form)
         folder.open(force=force, append=append)
-        card = _card(source, studio)
+        card = _run_card(source, studio)
         numbers = range(folder.first, folder.first + images)
-        alone = workers == 1 or images <= CHAPTER
-        taking = map(studio.make, numbers) if alone else make_in_processes(source, numbers, workers)
-        shown: list[LabelledImage] = []
-        added, interrupted, wrong = 0, False, None
+        in_this_process = workers == 1 or images <= IMAGES_PER_PATTERN_SET
+        samples = map(studio.make, numbers) if in_this_process else make_in_processes(source, numbers, workers)
+        sheet_samples: list[LabelledImage] = []
+        added, interrupted, write_error = 0, False, None
         try:
-            for taken in _each(taking):
-                folder.add(taken)
+            for sample in _yield_and_close(samples):
+                folder.add(sample)
                 added += 1
-                if taken.index < folder.first + MOST:
-                    shown.append(taken)
+                if sample.index < folder.first + MOST:
+                    sheet_samples.append(sample)
                 progress(added)
         except KeyboardInterrupt:
             interrupted = True
         except OSError as error:
-            wrong = cannot_write(path, error)
+            write_error = cannot_write(path, error)
         finally:
             folder.finish(card)
-    if wrong is not None:
-        raise wrong
+    if write_error is not None:
+        raise write_error
     try:
-        write_whole_file(path / SHEET, contact_sheet(shown, studio.classes))
+        write_whole_file(path / SHEET, contact_sheet(sheet_samples, studio.classes))
     except OSError as error:
         raise cannot_write(path, error) from None
     return DatasetResult(folder, added, interrupted)
 
 
-def _each(taking: Iterator[LabelledImage]) -> Iterator[LabelledImage]:
-    """Yield images from an iterator, and close the iterator at the end."""
+def _yield_and_close(samples: Iterator[LabelledImage]) -> Iterator[LabelledImage]:
+    """Yield the images of an iterator, and close the iterator at the end or on an error."""
     try:
-        yield from taking
+        yield from samples
     finally:
-        close = getattr(taking, "close", None)
+        close = getattr(samples, "close", None)
         if close is not None:
             close()
 
 
-def _card(source: Source, studio: Studio) -> dict[str, Any]:
+def _run_card(source: Source, studio: Studio) -> dict[str, Any]:
     worlds = [
         {"name": name, "file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
         for name, path in zip(source.worlds, studio.worlds, strict=True)

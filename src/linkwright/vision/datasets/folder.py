@@ -1,6 +1,6 @@
 """The folder of a dataset: images, labels for COCO and YOLO, and the card.
 
-Sources of the formats: "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
+The formats follow "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, fo
 from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.datasets.making import LabelledImage
 from linkwright.vision.datasets.options import SPLITS
-from linkwright.vision.datasets.statistics import ClassStatistics, statistics_of
+from linkwright.vision.datasets.statistics import ClassStatistics, compute_statistics
 
 CARD = "dataset.json"
 SHEET = "contact_sheet.jpg"
-_FORM = 2
-"""The number of this form of card."""
-_PARTS = ("images", "labels", "annotations")
+_FORMAT_VERSION = 2
+"""The version of the card's format."""
+_FOLDERS = ("images", "labels", "annotations")
 _FILES = (CARD, "data.yaml", SHEET)
 
 
@@ -39,8 +39,8 @@ class DatasetFolder:
 
     Attributes:
         path: the folder.
-        first: the number of the first image to make.
-        count: the number of images.
+        first: the number of the first image of this run.
+        count: the number of images in all splits.
     """
 
     def __init__(
@@ -59,60 +59,62 @@ class DatasetFolder:
         return sum(map(len, self._images.values()))
 
     def statistics(self) -> dict[str, ClassStatistics]:
-        """Return the statistics of the images, by class."""
+        """Return the statistics of each class over all splits."""
         annotations = [annotation for split in SPLITS for annotation in self._annotations[split]]
-        return statistics_of(self._classes, self._size, annotations)
+        return compute_statistics(self._classes, self._size, annotations)
 
     def open(self, *, force: bool = False, append: bool = False) -> None:
         """Create the folder, or continue an existing one.
 
         Args:
-            force: remove the dataset that is in it.
-            append: add to the dataset that is in it.
+            force: replace the dataset in it.
+            append: add to the dataset in it.
 
         Raises:
-            LinkwrightError: VISION205 the folder is not empty; VISION206 the folder to append to has no dataset of
-                these classes; VISION207 it cannot be made.
+            LinkwrightError: VISION205, the folder is not empty; VISION206, the dataset to append to is missing, or has
+                other classes, sizes or formats; VISION207, the folder cannot be created.
         """
         try:
-            there = self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir()))
-            if there and append:
+            is_occupied = self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir()))
+            if is_occupied and append:
                 self._read_existing()
-            elif there and not (force and (self.path / CARD).is_file()):
-                raise _occupied(self.path, is_dataset=(self.path / CARD).is_file())
-            elif there:
+            elif is_occupied and not (force and (self.path / CARD).is_file()):
+                raise _occupied_folder_error(self.path, is_dataset=(self.path / CARD).is_file())
+            elif is_occupied:
                 self._remove()
-            for part in ("images", *(["labels"] if "yolo" in self._formats else [])):
+            for subfolder in ("images", *(["labels"] if "yolo" in self._formats else [])):
                 for split in SPLITS:
-                    (self.path / part / split).mkdir(parents=True, exist_ok=True)
+                    (self.path / subfolder / split).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise cannot_write(self.path, error) from None
 
-    def add(self, taken: LabelledImage) -> None:
+    def add(self, sample: LabelledImage) -> None:
         """Write an image and its labels, either both or neither.
 
         Raises:
             OSError: they cannot be written.
         """
-        name = f"{taken.index:06d}"
-        image = self.path / "images" / taken.split / f"{name}.{self._form}"
-        text = self.path / "labels" / taken.split / f"{name}.txt"
+        name = f"{sample.index:06d}"
+        image = self.path / "images" / sample.split / f"{name}.{self._form}"
+        text = self.path / "labels" / sample.split / f"{name}.txt"
         width, height = self._size
         try:
-            image.write_bytes(taken.data)
+            image.write_bytes(sample.data)
             if "yolo" in self._formats:
-                text.write_text(_yolo(taken, width, height), encoding="utf-8")
+                text.write_text(_yolo_lines(sample, width, height), encoding="utf-8")
         except BaseException:
             _remove([image, text])
             raise
-        self._images[taken.split].append({"id": taken.index, "file_name": image.name, "width": width, "height": height})
-        self._annotations[taken.split] += _coco(taken, width, height)
+        self._images[sample.split].append(
+            {"id": sample.index, "file_name": image.name, "width": width, "height": height}
+        )
+        self._annotations[sample.split] += _coco(sample, width, height)
 
     def finish(self, card: Mapping[str, Any]) -> None:
-        """Write the COCO annotations of all images and the card. If the disk is full, drop the last images.
+        """Write the COCO annotations of all images and the card; if the disk is full, drop the last images first.
 
         Args:
-            card: the entry that describes how the images of this run were made.
+            card: how the images of this run were made.
 
         Raises:
             LinkwrightError: VISION207, the card cannot be written.
@@ -133,18 +135,18 @@ class DatasetFolder:
         return None
 
     def _write(self, card: Mapping[str, Any]) -> None:
-        made = {**card, "first": self.first, "images": self.count - sum(run["images"] for run in self._runs)}
+        this_run = {**card, "first": self.first, "images": self.count - sum(run["images"] for run in self._runs)}
         splits = {split: len(images) for split, images in self._images.items()}
-        whole = {
-            "form": _FORM,
+        content = {
+            "form": _FORMAT_VERSION,
             "classes": list(self._classes),
             "width": self._size[0],
             "height": self._size[1],
             "images": self.count,
             "splits": splits,
             "formats": list(self._formats),
-            "made": [*self._runs, made],
-            "statistics": {name: asdict(facts) for name, facts in self.statistics().items()},
+            "made": [*self._runs, this_run],
+            "statistics": {name: asdict(class_statistics) for name, class_statistics in self.statistics().items()},
         }
         if "coco" in self._formats:
             (self.path / "annotations").mkdir(exist_ok=True)
@@ -152,7 +154,7 @@ class DatasetFolder:
                 self._write_json(Path("annotations") / f"instances_{split}.json", self._coco(split, card))
         if "yolo" in self._formats:
             write_whole_file(self.path / "data.yaml", self._data_yaml(splits))
-        self._write_json(Path(CARD), whole)
+        self._write_json(Path(CARD), content)
 
     def _write_json(self, name: Path, content: Any) -> None:
         indent = 1 if name.name == CARD else None
@@ -181,7 +183,7 @@ class DatasetFolder:
 
     def _read_existing(self) -> None:
         """Load the card and the labels of an existing dataset."""
-        shown = display_path(self.path)
+        folder = display_path(self.path)
         try:
             card = json.loads((self.path / CARD).read_text(encoding="utf-8"))
             lists = {
@@ -189,61 +191,71 @@ class DatasetFolder:
                 for split in SPLITS
             }
         except (OSError, ValueError):
-            message = phrase("'{folder}' has no dataset in COCO format to append to", folder=shown)
+            message = phrase("'{folder}' has no dataset in COCO format to append to", folder=folder)
             raise LinkwrightError(Diagnostic("VISION206", message)) from None
-        ours = (_FORM, list(self._classes), *self._size, list(self._formats))
-        if (card.get("form"), card.get("classes"), card.get("width"), card.get("height"), card.get("formats")) != ours:
-            message = phrase("the dataset in '{folder}' has different classes, sizes or formats", folder=shown)
+        expected = (_FORMAT_VERSION, list(self._classes), *self._size, list(self._formats))
+        if (
+            card.get("form"),
+            card.get("classes"),
+            card.get("width"),
+            card.get("height"),
+            card.get("formats"),
+        ) != expected:
+            message = phrase(
+                ("the dataset in '{folder}' has other classes, image sizes or label formats"), folder=folder
+            )
             hint = phrase("its classes are {names}", names=", ".join(map(str, card.get("classes") or ())))
             raise LinkwrightError(Diagnostic("VISION206", message, hint=hint))
-        for split, written in lists.items():
-            self._images[split] = written["images"]
+        for split, content in lists.items():
+            self._images[split] = content["images"]
             self._annotations[split] = [
                 {key: value for key, value in annotation.items() if key != "id"}
-                for annotation in written["annotations"]
+                for annotation in content["annotations"]
             ]
         self._runs = card["made"]
         numbers = [image["id"] for images in self._images.values() for image in images]
         self.first = max(numbers, default=-1) + 1
 
     def _drop(self, count: int) -> None:
-        """Remove the last images."""
-        newest = sorted(image["id"] for images in self._images.values() for image in images)[-count:]
-        gone = set(newest)
+        """Remove the last images and their labels."""
+        last_ids = sorted(image["id"] for images in self._images.values() for image in images)[-count:]
+        dropped_ids = set(last_ids)
         for split in SPLITS:
-            files = [entry["file_name"] for entry in self._images[split] if entry["id"] in gone]
+            files = [entry["file_name"] for entry in self._images[split] if entry["id"] in dropped_ids]
             for name in files:
                 text = self.path / "labels" / split / f"{Path(name).stem}.txt"
                 _remove([self.path / "images" / split / name, text])
-            self._images[split] = [entry for entry in self._images[split] if entry["id"] not in gone]
-            self._annotations[split] = [entry for entry in self._annotations[split] if entry["image_id"] not in gone]
+            self._images[split] = [entry for entry in self._images[split] if entry["id"] not in dropped_ids]
+            self._annotations[split] = [
+                entry for entry in self._annotations[split] if entry["image_id"] not in dropped_ids
+            ]
 
     def _remove(self) -> None:
-        """Remove the files of a dataset, and leave all other files."""
-        for part in _PARTS:
-            shutil.rmtree(self.path / part, ignore_errors=True)
+        """Remove the files of the dataset, and keep all other files."""
+        for subfolder in _FOLDERS:
+            shutil.rmtree(self.path / subfolder, ignore_errors=True)
         _remove([self.path / name for name in _FILES])
 
 
-def _yolo(taken: LabelledImage, width: int, height: int) -> str:
+def _yolo_lines(sample: LabelledImage, width: int, height: int) -> str:
     lines = []
-    for label in taken.labels:
+    for label in sample.labels:
         if not label.ignored:
             left, top, right, bottom = label.box
-            middle = (left + right) / 2 / width, (top + bottom) / 2 / height
+            centre = (left + right) / 2 / width, (top + bottom) / 2 / height
             size = (right - left) / width, (bottom - top) / height
-            lines.append(" ".join([str(label.label), *(f"{value:.6f}" for value in (*middle, *size))]) + "\n")
+            lines.append(" ".join([str(label.label), *(f"{value:.6f}" for value in (*centre, *size))]) + "\n")
     return "".join(lines)
 
 
-def _coco(taken: LabelledImage, width: int, height: int) -> list[dict[str, Any]]:
-    found = []
-    for label in taken.labels:
+def _coco(sample: LabelledImage, width: int, height: int) -> list[dict[str, Any]]:
+    annotations = []
+    for label in sample.labels:
         left, top, right, bottom = label.box
-        whole = label.whole
-        found.append(
+        full_box = label.whole
+        annotations.append(
             {
-                "image_id": taken.index,
+                "image_id": sample.index,
                 "category_id": label.label + 1,
                 "bbox": [left, top, right - left, bottom - top],
                 "area": label.area,
@@ -251,10 +263,10 @@ def _coco(taken: LabelledImage, width: int, height: int) -> list[dict[str, Any]]
                 "iscrowd": int(label.ignored),
                 "visibility": round(label.visibility, 4),
                 "truncated": label.truncated,
-                "amodal_bbox": [whole[0], whole[1], whole[2] - whole[0], whole[3] - whole[1]],
+                "amodal_bbox": [full_box[0], full_box[1], full_box[2] - full_box[0], full_box[3] - full_box[1]],
             }
         )
-    return found
+    return annotations
 
 
 def _remove(files: Sequence[Path]) -> None:
@@ -263,13 +275,13 @@ def _remove(files: Sequence[Path]) -> None:
             path.unlink(missing_ok=True)
 
 
-def _occupied(path: Path, *, is_dataset: bool) -> LinkwrightError:
-    shown = display_path(path)
+def _occupied_folder_error(path: Path, *, is_dataset: bool) -> LinkwrightError:
+    folder = display_path(path)
     if is_dataset:
-        message = phrase("'{folder}' already contains a dataset", folder=shown)
+        message = phrase("'{folder}' already contains a dataset", folder=folder)
         hint = phrase("use --append to add to it, or --force to replace it")
     else:
-        message = phrase("'{folder}' already exists and is not a dataset", folder=shown)
+        message = phrase("'{folder}' already exists and is not a dataset", folder=folder)
         hint = phrase("name an empty or new folder")
     return LinkwrightError(Diagnostic("VISION205", message, hint=hint))
 

@@ -16,10 +16,10 @@ from linkwright.vision.datasets.arranging import Shot
 from linkwright.vision.datasets.stage import Prop, Stage
 
 Box = tuple[int, int, int, int]
-"""Left, top, right, bottom in pixels; it contains the columns left <= column < right."""
+"""Left, top, right and bottom in pixels; right and bottom are the first column and row outside."""
 
-_BEYOND = 1.0
-"""The margin around an image in which an object is searched, in widths of the image."""
+_MARGIN = 1.0
+"""The margin around an image within which an object's full box is measured, in image widths."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +29,12 @@ class Label:
     Attributes:
         label: the index of its class.
         box: the box around its visible part, in pixels of the image.
-        whole: the box around the whole object, without occlusion; may reach beyond the image.
+        whole: the box around the whole object, without occlusion; it may reach beyond the image.
         area: the number of its visible pixels.
-        visibility: the visible share of the pixels that the object would have without occlusion and truncation.
+        visibility: the visible pixels divided by the pixels of the object without occlusion and truncation.
         truncated: whether the object reaches beyond the image.
-        ignored: whether too little of the object is visible to be found.
-        counts: the run lengths of its mask, column by column, alternately outside and inside, beginning with outside.
+        ignored: whether too little of the object is visible for a label.
+        counts: the run lengths of its mask by columns, alternately outside and inside, beginning with outside.
     """
 
     label: int
@@ -48,21 +48,21 @@ class Label:
 
 
 def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
-    """Return the labels of an image.
+    """Return the labels of all objects that are visible in an image.
 
     Args:
-        stage: the world, as it is in the image.
-        shot: the camera.
-        geoms: the geom of each pixel, shape (height, width).
-        least_size: the shorter side of a box in pixels, below which an object is ignored; half of it for its largest
-            shape.
-        least_visible: the visible share of an object, and of its largest shape, below which it is ignored.
+        stage: the world in the state of the image.
+        shot: the camera and the objects.
+        geoms: the geom at each pixel, -1 for none, shape (height, width).
+        least_size: the minimum length in pixels of a box's shorter side; a smaller object is ignored. For an object's
+                largest geom half of it is enough.
+        least_visible: the minimum visible share of an object and of its largest geom; a less visible object is ignored.
     """
-    numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last is for geom -1: none
+    numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last entry is for geom -1: none
     for number, prop in enumerate(shot.shown, start=1):
         numbers[prop.geoms] = number
     objects = numbers[geoms]
-    found = []
+    labels = []
     for number, prop in enumerate(shot.shown, start=1):
         box = box_of(objects == number)
         if box is None:
@@ -70,15 +70,19 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
         left, top, right, bottom = box
         mask = objects == number
         area = int(np.count_nonzero(mask[top:bottom, left:right]))
-        whole, count, main_count = _uncovered(stage, shot, prop, box)
-        count = max(count, area)
-        main = geoms[top:bottom, left:right] == prop.main
-        small = min(right - left, bottom - top) < least_size or _side_of(main) < least_size / 2
-        beyond = whole[0] < 0 or whole[1] < 0 or whole[2] > geoms.shape[1] or whole[3] > geoms.shape[0]
-        hidden = area < least_visible * count or int(np.count_nonzero(main)) < least_visible * main_count
-        ignored = small or hidden
-        found.append(Label(prop.label, box, whole, area, area / count, beyond, ignored, runs_of(mask)))
-    return found
+        full_box, full_count, main_count = _measure_whole(stage, shot, prop, box)
+        full_count = max(full_count, area)
+        main_mask = geoms[top:bottom, left:right] == prop.main
+        is_small = min(right - left, bottom - top) < least_size or _shorter_side(main_mask) < least_size / 2
+        is_truncated = (
+            full_box[0] < 0 or full_box[1] < 0 or full_box[2] > geoms.shape[1] or full_box[3] > geoms.shape[0]
+        )
+        is_hidden = area < least_visible * full_count or int(np.count_nonzero(main_mask)) < least_visible * main_count
+        is_ignored = is_small or is_hidden
+        labels.append(
+            Label(prop.label, box, full_box, area, area / full_count, is_truncated, is_ignored, runs_of(mask))
+        )
+    return labels
 
 
 def box_of(mask: Any) -> Box | None:
@@ -91,7 +95,7 @@ def box_of(mask: Any) -> Box | None:
     return int(columns[0]), top, int(columns[-1]) + 1, bottom
 
 
-def _side_of(mask: Any) -> int:
+def _shorter_side(mask: Any) -> int:
     """Return the shorter side of a mask's bounding box."""
     box = box_of(mask)
     return min(box[2] - box[0], box[3] - box[1]) if box else 0
@@ -106,10 +110,10 @@ def runs_of(mask: Any) -> tuple[int, ...]:
     return tuple([0, *counts] if flat[0] else counts)
 
 
-def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
+def _measure_whole(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
     """Return an object's full box, its pixel count, and the pixel count of its largest geom.
 
-    Occlusion and truncation are disregarded. An object that is larger than the image is rendered smaller, so its box is
+    The measurement ignores occlusion and truncation. An object larger than the image is rendered smaller, so its box is
     accurate only to a few pixels.
     """
     left, top, right, bottom = _window(stage, shot, prop, visible)
@@ -117,49 +121,49 @@ def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box,
     scale = min(1.0, optics.width / (right - left), optics.height / (bottom - top))
     width, height = max(int((right - left) * scale), 1), max(int((bottom - top) * scale), 1)
     middle = (optics.cx - left) * scale, (optics.cy - top) * scale
-    part = Optics(width, height, optics.fx * scale, optics.fy * scale, *middle, optics.near, optics.far)
-    geoms = _alone(stage, prop, lambda: stage.renderer.render(part, shot.pose, Channels.GEOMS).geoms)
+    optics_of_part = Optics(width, height, optics.fx * scale, optics.fy * scale, *middle, optics.near, optics.far)
+    geoms = _with_only(stage, prop, lambda: stage.renderer.render(optics_of_part, shot.pose, Channels.GEOMS).geoms)
     mask = np.isin(geoms, prop.geoms)
     box = box_of(mask)
     if box is None:
         return visible, 0, 0
-    whole = (
+    full_box = (
         min(floor(box[0] / scale) + left, visible[0]),
         min(floor(box[1] / scale) + top, visible[1]),
         max(ceil(box[2] / scale) + left, visible[2]),
         max(ceil(box[3] / scale) + top, visible[3]),
     )
-    main = np.count_nonzero(geoms == prop.main)
-    return whole, round(np.count_nonzero(mask) / scale**2), round(main / scale**2)
+    main_pixels = np.count_nonzero(geoms == prop.main)
+    return full_box, round(np.count_nonzero(mask) / scale**2), round(main_pixels / scale**2)
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """Return the part of the image plane that contains an object and a margin, up to a maximum size."""
+    """Return the part of the image plane that contains an object with a margin; its size is limited."""
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]
     turns = data.geom_xmat[prop.geoms].reshape(-1, 3, 3)
-    corners = np.einsum("gij,gcj->gci", turns, local) + data.geom_xpos[prop.geoms, None, :]
-    seen = (corners.reshape(-1, 3) - np.array(shot.pose[:3])) @ axes_of(shot.pose)
-    wide, high = int(_BEYOND * optics.width), int(_BEYOND * optics.height)
-    least, greatest = np.array([-wide, -high]), np.array([optics.width + wide, optics.height + high])
-    if (seen[:, 2] > optics.near).all():
-        places = optics.project(seen)
-        least = np.maximum(least, np.floor(places.min(axis=0)) - 1)
-        greatest = np.minimum(greatest, np.ceil(places.max(axis=0)) + 1)
-    left, top = np.minimum(least, visible[:2]).astype(int).tolist()
-    right, bottom = np.maximum(greatest, visible[2:]).astype(int).tolist()
+    world_corners = np.einsum("gij,gcj->gci", turns, local) + data.geom_xpos[prop.geoms, None, :]
+    camera_corners = (world_corners.reshape(-1, 3) - np.array(shot.pose[:3])) @ axes_of(shot.pose)
+    margin_x, margin_y = int(_MARGIN * optics.width), int(_MARGIN * optics.height)
+    minimum, maximum = np.array([-margin_x, -margin_y]), np.array([optics.width + margin_x, optics.height + margin_y])
+    if (camera_corners[:, 2] > optics.near).all():
+        pixels = optics.project(camera_corners)
+        minimum = np.maximum(minimum, np.floor(pixels.min(axis=0)) - 1)
+        maximum = np.minimum(maximum, np.ceil(pixels.max(axis=0)) + 1)
+    left, top = np.minimum(minimum, visible[:2]).astype(int).tolist()
+    right, bottom = np.maximum(maximum, visible[2:]).astype(int).tolist()
     return left, top, right, bottom
 
 
-def _alone(stage: Stage, prop: Prop, look: Callable[[], Any]) -> Any:
-    """Call `look` while an object is the only visible one."""
+def _with_only(stage: Stage, prop: Prop, render: Callable[[], Any]) -> Any:
+    """Return the result of `render`, called while all other objects are hidden."""
     data = stage.simulation.data
-    places = data.geom_xpos.copy()
-    own = places[prop.geoms].copy()
+    positions = data.geom_xpos.copy()
+    prop_positions = positions[prop.geoms].copy()
     try:
         stage.hide(range(stage.simulation.model.ngeom))
-        data.geom_xpos[prop.geoms] = own
-        return look()
+        data.geom_xpos[prop.geoms] = prop_positions
+        return render()
     finally:
-        data.geom_xpos[:] = places
+        data.geom_xpos[:] = positions

@@ -13,90 +13,90 @@ from linkwright.vision.datasets.arranging import Shot
 from linkwright.vision.datasets.stage import Stage
 from linkwright.vision.datasets.textures import Pixels, smooth
 
-_POOL = 1 << 21
-"""The number of random numbers drawn once; each image uses them from another offset."""
+_NOISE_VALUES = 1 << 21
+"""The number of noise values, which are drawn once; each image uses them from a different offset."""
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:
     """Replace the lights of a world by one to three random lights.
 
-    All are directional: when OpenGL lights an infinite plane with a near light, the result depends on the previous
+    All lights are directional: if OpenGL lights an infinite plane with a near light, the result depends on the previous
     frame.
     """
     lights = []
     for number in range(int(generator.integers(1, 4))):
-        share = 1.0 if number == 0 else 0.5
-        colour = _tinted(generator, 0.25) * generator.uniform(0.3, 1.0) * share
+        intensity = 1.0 if number == 0 else 0.5
+        colour = _tinted_white(generator, 0.25) * generator.uniform(0.3, 1.0) * intensity
         red, green, blue = (float(channel) for channel in colour)
         diffuse = red, green, blue, 1.0
-        across, along, down = (float(component) for component in generator.normal(size=3))
-        direction = across, along, -abs(down) - 0.2
+        x, y, z = (float(component) for component in generator.normal(size=3))
+        direction = x, y, -abs(z) - 0.2
         lights.append(Light(f"light {number}", "directional", diffuse=diffuse, direction=direction))
-    ambient = _tinted(generator, 0.15) * generator.uniform(0.1, 0.55)
+    ambient = _tinted_white(generator, 0.15) * generator.uniform(0.1, 0.55)
     stage.light(lights, ambient, generator.random(3))
 
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Recolour everything; most objects keep their colour or get a similar one."""
+    """Recolour all objects and surroundings; most objects keep their colour or get a similar one."""
     for prop in shot.shown:
-        way, groups = generator.random(), {}
-        textured = generator.random() < 0.3
+        choice, new_colours = generator.random(), {}
+        is_textured = generator.random() < 0.3
         number = int(generator.integers(1 << 16))
         for geom in prop.geoms:
-            own = tuple(float(channel) for channel in stage.colour_of(geom)[:3])
-            if own not in groups:
-                groups[own] = _recoloured(own, way, generator)
-            if not stage.has_image(geom):
-                stage.paint(geom, groups[own], "object" if textured else "", number)
+            original_colour = tuple(float(channel) for channel in stage.original_colour(geom)[:3])
+            if original_colour not in new_colours:
+                new_colours[original_colour] = _similar_colour(original_colour, choice, generator)
+            if not stage.has_material(geom):
+                stage.paint(geom, new_colours[original_colour], "object" if is_textured else "", number)
     for geom in stage.distractors:
-        patterned = generator.random() < 0.5
-        stage.paint(geom, generator.random(3), "wall" if patterned else "", int(generator.integers(1 << 16)))
+        is_patterned = generator.random() < 0.5
+        stage.paint(geom, generator.random(3), "wall" if is_patterned else "", int(generator.integers(1 << 16)))
     for kind, geoms in (("wall", shot.structures), ("ground", stage.ground)):
-        together = generator.random() < 0.7
-        colour, patterned, number = _surface(generator)
+        is_uniform = generator.random() < 0.7
+        colour, is_patterned, number = _random_surface(generator)
         for geom in geoms:
-            if not together:
-                colour, patterned, number = _surface(generator)
-            stage.paint(geom, colour, kind if patterned else "", number)
+            if not is_uniform:
+                colour, is_patterned, number = _random_surface(generator)
+            stage.paint(geom, colour, kind if is_patterned else "", number)
 
 
-def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
+def fill_backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
     """Fill the empty parts of an image with a random backdrop: a gradient with clouds."""
-    nothing = geoms < 0
-    if not nothing.any():
+    is_empty = geoms < 0
+    if not is_empty.any():
         return
     height, width = geoms.shape
-    above, below = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
-    share = np.linspace(0.0, 1.0, height)[:, None]
+    top_colour, bottom_colour = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
+    blend = np.linspace(0.0, 1.0, height)[:, None]
     if generator.random() < 0.5:
-        share = 0.5 * share + 0.5 * smooth(generator, int(generator.integers(2, 12)), height, width)
-    share = np.broadcast_to(share, (height, width))[nothing].astype(np.float32)
+        blend = 0.5 * blend + 0.5 * smooth(generator, int(generator.integers(2, 12)), height, width)
+    blend = np.broadcast_to(blend, (height, width))[is_empty].astype(np.float32)
     for channel in range(3):
-        colour[..., channel][nothing] = (255 * (above[channel] + (below[channel] - above[channel]) * share)).astype(
-            np.uint8
-        )
+        colour[..., channel][is_empty] = (
+            255 * (top_colour[channel] + (bottom_colour[channel] - top_colour[channel]) * blend)
+        ).astype(np.uint8)
 
 
 class Camera:
-    """The effects of a lens and a sensor: exposure, white balance, blur, noise."""
+    """Apply the effects of a lens and a sensor: exposure, white balance, blur and noise."""
 
     def __init__(self) -> None:
-        self._noise = np.random.default_rng(0).standard_normal(_POOL, dtype=np.float32)
+        self._noise = np.random.default_rng(0).standard_normal(_NOISE_VALUES, dtype=np.float32)
 
     def develop(self, colour: Pixels, generator: np.random.Generator) -> Pixels:
-        """Apply the effects to an image."""
+        """Return an image with random effects of lens and sensor."""
         gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
         balance = np.exp(generator.normal(0.0, 0.05, 3))
         levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
-        table = np.clip(np.round(levels * 255), 0, 255).astype(np.uint8)
+        lookup_table = np.clip(np.round(levels * 255), 0, 255).astype(np.uint8)
         developed = np.empty_like(colour)
         for channel in range(3):
-            developed[..., channel] = table[:, channel].take(colour[..., channel])
+            developed[..., channel] = lookup_table[:, channel].take(colour[..., channel])
         if generator.random() < 0.35:
             developed = _blurred(developed, float(generator.uniform(0.3, 1.6)))
         if generator.random() < 0.7:
             strength = np.float32(generator.uniform(0.5, 9.0))
-            start = int(generator.integers(_POOL - developed.size)) if developed.size < _POOL else 0
+            start = int(generator.integers(_NOISE_VALUES - developed.size)) if developed.size < _NOISE_VALUES else 0
             noise = np.resize(self._noise[start:], developed.size).reshape(developed.shape)
             developed = np.clip(developed + strength * noise, 0, 255).astype(np.uint8)
         return developed
@@ -109,17 +109,17 @@ def _blurred(colour: Pixels, radius: float) -> Pixels:
     return blurred
 
 
-def _tinted(generator: np.random.Generator, most: float) -> Array:
-    """Return white with a random tint: red, green and blue, whose maximum is 1."""
-    return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, most), 1.0))
+def _tinted_white(generator: np.random.Generator, max_saturation: float) -> Array:
+    """Return white with a random tint: red, green and blue; the maximum of the three is 1."""
+    return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, max_saturation), 1.0))
 
 
-def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
-    """Return a colour for an object: its own, one with a similar hue, or a random one."""
-    hue, saturation, value = colorsys.rgb_to_hsv(*own)
-    if way < 0.45:
-        return np.array(own)
-    if way < 0.85:
+def _similar_colour(colour: tuple[float, ...], choice: float, generator: np.random.Generator) -> Array:
+    """Return a colour for an object: the same, one with a similar hue, or a random one."""
+    hue, saturation, value = colorsys.rgb_to_hsv(*colour)
+    if choice < 0.45:
+        return np.array(colour)
+    if choice < 0.85:
         hue = (hue + generator.normal(0.0, 0.02)) % 1.0
         saturation = float(np.clip(saturation * generator.uniform(0.7, 1.2), 0.0, 1.0))
         value = float(np.clip(value * generator.uniform(0.6, 1.2) + generator.uniform(0.0, 0.05), 0.0, 1.0))
@@ -128,6 +128,6 @@ def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generat
     return np.array(colorsys.hsv_to_rgb(hue, saturation, value))
 
 
-def _surface(generator: np.random.Generator) -> tuple[Array, bool, int]:
+def _random_surface(generator: np.random.Generator) -> tuple[Array, bool, int]:
     colour = np.array(colorsys.hsv_to_rgb(generator.random(), generator.beta(1.0, 2.5), generator.uniform(0.25, 1.0)))
     return colour, bool(generator.random() < 0.6), int(generator.integers(1 << 16))

@@ -17,18 +17,18 @@ from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
 from linkwright.vision.datasets.arranging import arrange
-from linkwright.vision.datasets.classes import ClassRules, objects_of, own_name, read_classes, usual_rules
+from linkwright.vision.datasets.classes import ClassRules, default_rules, find_objects, own_name, read_classes
 from linkwright.vision.datasets.labels import Label, label_image
-from linkwright.vision.datasets.looks import Camera, backdrop, light, paint
+from linkwright.vision.datasets.looks import Camera, fill_backdrop, light, paint
 from linkwright.vision.datasets.options import SPLITS, Options
 from linkwright.vision.datasets.stage import Stage
 
-CHAPTER = 50
-"""The number of consecutive images that share their patterns."""
-_BLOCK = 20
-"""The number of consecutive images in which the splits have their shares."""
-_PATTERNS, _IMAGE, _SPLIT = range(3)
-"""Streams of random numbers; each image has its own for each."""
+IMAGES_PER_PATTERN_SET = 50
+"""The number of consecutive images that use the same patterns."""
+_SPLIT_BLOCK = 20
+"""The number of consecutive images over which the shares of the splits hold."""
+_PATTERN_STREAM, _IMAGE_STREAM, _SPLIT_STREAM = range(3)
+"""Streams of random numbers: those of patterns, images and splits are independent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +36,10 @@ class Source:
     """The worlds and options of a dataset.
 
     Attributes:
-        worlds: the files of worlds, or their names.
+        worlds: the files or the names of worlds.
         added: the files of robots or models to add to each world.
         classes: the file of class rules; None for one class per model.
-        options: the options of making images.
+        options: how images are made.
     """
 
     worlds: tuple[str, ...]
@@ -66,16 +66,16 @@ class LabelledImage:
 
 
 class Studio:
-    """Makes the images of a dataset; each image depends only on its number and the seed.
+    """Makes the images of a dataset; an image depends only on its number and the seed.
 
     Args:
         source: the worlds and options.
 
     Attributes:
         classes: the names of the classes.
-        unused: the names of classes without an object in the worlds.
+        unused: the names of classes that have no object in any world.
         worlds: the files of the worlds.
-        way: the rendering method.
+        way: the rendering method, for the card.
 
     Raises:
         LinkwrightError: VISION202 there is nothing to label; VISION204 Pillow is missing; an error in a world.
@@ -83,40 +83,40 @@ class Studio:
 
     def __init__(self, source: Source) -> None:
         self._options = source.options
-        self._image = _pillow()
-        loaded = [load_world(name) for name in source.worlds]
-        self.worlds = tuple(world.path for world in loaded)
-        added = [_model_of(Path(path)) for path in source.added]
-        simulations = [Simulation(world.world, world.finder) for world in loaded]
+        self._image = _load_pillow()
+        worlds = [load_world(name) for name in source.worlds]
+        self.worlds = tuple(world.path for world in worlds)
+        added_models = [_load_model(Path(path)) for path in source.added]
+        simulations = [Simulation(world.world, world.finder) for world in worlds]
         for simulation in simulations:
-            for model in added:
+            for model in added_models:
                 simulation.spawn(model, _free_name(model.name, simulation))
             simulation.refresh()
-        rules = usual_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
+        rules = default_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
         self.classes = tuple(rules.patterns)
-        _share(simulations, rules)
-        objects = [objects_of(simulation, rules) for simulation in simulations]
-        for path, found in zip(source.worlds, objects, strict=True):
-            if not found:
-                raise _nothing(path, source.classes)
-        used = {scene_object.label for found in objects for scene_object in found}
-        self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used)
+        _share_models(simulations, rules)
+        objects = [find_objects(simulation, rules) for simulation in simulations]
+        for path, world_objects in zip(source.worlds, objects, strict=True):
+            if not world_objects:
+                raise _no_objects_error(path, source.classes)
+        used_labels = {scene_object.label for found in objects for scene_object in found}
+        self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used_labels)
         self._stages = [
             Stage(simulation, found, self._options.copies, self._options.distractors)
             for simulation, found in zip(simulations, objects, strict=True)
         ]
         self.way = self._stages[0].renderer.way
-        self._chapters: dict[int, int] = {}
+        self._pattern_sets: dict[int, int] = {}
         self._camera = Camera()
 
     def make(self, index: int) -> LabelledImage:
         """Return an image with its labels, by its number."""
-        options, which = self._options, index % len(self._stages)
-        stage, chapter = self._stages[which], index // CHAPTER
-        if self._chapters.get(which) != chapter:
-            stage.set_patterns(np.random.default_rng((options.seed, _PATTERNS, chapter, which)))
-            self._chapters[which] = chapter
-        generator = np.random.default_rng((options.seed, _IMAGE, index))
+        options, stage_index = self._options, index % len(self._stages)
+        stage, pattern_set = self._stages[stage_index], index // IMAGES_PER_PATTERN_SET
+        if self._pattern_sets.get(stage_index) != pattern_set:
+            stage.set_patterns(np.random.default_rng((options.seed, _PATTERN_STREAM, pattern_set, stage_index)))
+            self._pattern_sets[stage_index] = pattern_set
+        generator = np.random.default_rng((options.seed, _IMAGE_STREAM, index))
         stage.begin()
         shot = arrange(stage, options, generator)
         if "lights" not in options.kept:
@@ -129,17 +129,17 @@ class Studio:
         labels = label_image(stage, shot, image.geoms, options.least_size, options.least_visible)
         colour = image.colour
         if "lights" not in options.kept:
-            backdrop(colour, image.geoms, generator)
+            fill_backdrop(colour, image.geoms, generator)
         if "lens" not in options.kept:
             colour = self._camera.develop(colour, generator)
-        return LabelledImage(index, split_of(index, options), self._encoded(colour, generator), tuple(labels))
+        return LabelledImage(index, split_of(index, options), self._encode(colour, generator), tuple(labels))
 
     def close(self) -> None:
         """Release the renderers."""
         for stage in self._stages:
             stage.close()
 
-    def _encoded(self, colour: Any, generator: np.random.Generator) -> bytes:
+    def _encode(self, colour: Any, generator: np.random.Generator) -> bytes:
         file = BytesIO()
         image = self._image.fromarray(colour)
         if self._options.form == "png":
@@ -151,17 +151,17 @@ class Studio:
 
 
 def split_of(index: int, options: Options) -> str:
-    """Return the split of an image. The shares of the splits hold for every twenty consecutive images."""
-    block, place = divmod(index, _BLOCK)
-    order = np.random.default_rng((options.seed, _SPLIT, block)).permutation(_BLOCK)
-    share = (int(order[place]) + 0.5) / _BLOCK
+    """Return the split of an image; the shares of the splits hold for each block of twenty consecutive images."""
+    block, position = divmod(index, _SPLIT_BLOCK)
+    order = np.random.default_rng((options.seed, _SPLIT_STREAM, block)).permutation(_SPLIT_BLOCK)
+    share = (int(order[position]) + 0.5) / _SPLIT_BLOCK
     for name, end in zip(SPLITS, np.cumsum(options.splits).tolist(), strict=True):
         if share < end:
             return name
     return SPLITS[0]
 
 
-def _model_of(path: Path) -> Model:
+def _load_model(path: Path) -> Model:
     from linkwright.descriptions.conversion import as_sdf
 
     converted = as_sdf(path, PackageFinder(start=[path.absolute().parent, Path.cwd()]), folder=Path.cwd())
@@ -175,51 +175,55 @@ def _model_of(path: Path) -> Model:
     return model
 
 
-def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
+def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
     """Add the labelled models of each world to all other worlds."""
-    everything = [dict(simulation.scene.models) for simulation in simulations]
+    models_by_world = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
-        kinds = {own_name(held.model) for held in simulation.scene.models.values()}
-        for models in everything:
+        model_names = {own_name(scene_model.model) for scene_model in simulation.scene.models.values()}
+        for models in models_by_world:
             for name, held in models.items():
-                own = own_name(held.model)
-                if own not in kinds and name not in simulation.scene.models and _is_labelled(name, held.model, rules):
+                model_name = own_name(held.model)
+                if (
+                    model_name not in model_names
+                    and name not in simulation.scene.models
+                    and _is_labelled(name, held.model, rules)
+                ):
                     simulation.spawn(held.model, name, held.pose)
-                    kinds.add(own)
+                    model_names.add(model_name)
         simulation.refresh()
 
 
 def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
-    """Return whether a model, or each of its visuals, has a class."""
-    if rules.class_of(name, own_name(model)) is not None:
+    """Return whether a model, or each of its visuals, has a class in the rules."""
+    if rules.class_number(name, own_name(model)) is not None:
         return True
     parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]
-    return bool(parts) and all(rules.class_of(part) is not None for part in parts)
+    return bool(parts) and all(rules.class_number(part) is not None for part in parts)
 
 
 def _free_name(name: str, simulation: Simulation) -> str:
-    number, free = 2, name
-    while free in simulation.scene.models:
-        free, number = f"{name}_{number}", number + 1
-    return free
+    number, candidate = 2, name
+    while candidate in simulation.scene.models:
+        candidate, number = f"{name}_{number}", number + 1
+    return candidate
 
 
-def _nothing(world: str, classes: str | None) -> LinkwrightError:
+def _no_objects_error(world: str, classes: str | None) -> LinkwrightError:
     message = phrase("there is no object to label in the world '{world}'", world=world)
     hint = (
         phrase(
-            "all its models are ground, walls or the like; name models or visuals with --classes, or add "
-            "some with --add"
+            "all its models are surroundings, such as ground and walls: choose models or visuals with "
+            "--classes, or add models with --add"
         )
         if classes is None
-        else phrase("none of its models or visuals has a name that fits a pattern in '{file}'", file=classes)
+        else phrase("no model or visual in it has a name that matches a pattern in '{file}'", file=classes)
     )
     return LinkwrightError(Diagnostic("VISION202", message, hint=hint))
 
 
-def _pillow() -> Any:
+def _load_pillow() -> Any:
     try:
-        from PIL import Image  # not above: an extra
+        from PIL import Image  # imported here because it is an extra
     except ModuleNotFoundError as error:
         raise missing_extra("VISION204", error) from None
     return Image

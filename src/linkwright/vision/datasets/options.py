@@ -6,24 +6,24 @@ from dataclasses import dataclass
 
 SPLITS = ("train", "val", "test")
 FORMATS = ("coco", "yolo")
-"""The formats in which labels are written."""
+"""The formats of the labels."""
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """The options of making images.
+    """How the images of a dataset are made.
 
     Attributes:
         width, height: the size of images, in pixels.
         seed: the random seed; the same seed gives the same bytes.
         splits: the shares of train, val and test.
         copies: the minimum number of objects of each class.
-        distractors: the number of objects without a label.
+        distractors: the number of objects without a label in each world.
         most: the maximum number of objects placed in an image.
-        kept: which of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor) are not randomised.
+        kept: what is not randomised: any of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor).
         least_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
             largest geom half of it is enough.
-        least_visible: the minimum visible share of an object and of its largest geom; less visible objects are ignored.
+        least_visible: the minimum visible share of an object and of its largest geom; a less visible object is ignored.
         form: the image format, ``jpg`` or ``png``.
     """
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from math import sqrt
 from typing import Any
 
-_SIZES = (("small", 32), ("medium", 96), ("large", 1 << 30))
-"""COCO's sizes of objects: the square roots of the areas in pixels that they are below."""
-_MOSTLY = 0.75
-"""The visible share below which an object counts as occluded."""
+_SIZE_LIMITS = (("small", 32), ("medium", 96), ("large", 1 << 30))
+"""COCO's sizes of objects, each with the square root of the area in pixels that its objects do not reach."""
+_MIN_VISIBLE = 0.75
+"""The visible share below which an object counts as hidden."""
 
 
 @dataclass
@@ -19,12 +19,12 @@ class ClassStatistics:
 
     Attributes:
         objects: the number of labelled objects.
-        images: the number of images with at least one.
+        images: the number of images with at least one labelled object.
         ignored: the number of objects of which too little is visible for a label.
         small, medium, large: the number of objects by COCO's size ranges.
         hidden: the number of objects that are less than three quarters visible.
         truncated: the number of objects that reach beyond their image.
-        thirds: the number of objects with their centre in each ninth of the image, row by row.
+        thirds: the number of objects whose centre is in each cell of a 3 x 3 grid over the image, row by row.
     """
 
     objects: int = 0
@@ -38,7 +38,7 @@ class ClassStatistics:
     thirds: list[int] = field(default_factory=lambda: [0] * 9)
 
 
-def statistics_of(
+def compute_statistics(
     classes: Sequence[str], size: tuple[int, int], annotations: Iterable[Mapping[str, Any]]
 ) -> dict[str, ClassStatistics]:
     """Return the statistics of each class.
@@ -48,35 +48,35 @@ def statistics_of(
         size: width and height of images in pixels.
         annotations: the annotations of all images, in COCO's format.
     """
-    found = {name: ClassStatistics() for name in classes}
+    statistics = {name: ClassStatistics() for name in classes}
     images: dict[str, set[int]] = {name: set() for name in classes}
     for annotation in annotations:
         name = classes[annotation["category_id"] - 1]
-        facts = found[name]
+        class_statistics = statistics[name]
         if annotation["iscrowd"]:
-            facts.ignored += 1
+            class_statistics.ignored += 1
             continue
         images[name].add(annotation["image_id"])
-        facts.objects += 1
-        side = next(side for side, most in _SIZES if sqrt(annotation["area"]) < most)
-        setattr(facts, side, getattr(facts, side) + 1)
-        facts.hidden += annotation["visibility"] < _MOSTLY
-        facts.truncated += bool(annotation["truncated"])
+        class_statistics.objects += 1
+        side = next(size_name for size_name, limit in _SIZE_LIMITS if sqrt(annotation["area"]) < limit)
+        setattr(class_statistics, side, getattr(class_statistics, side) + 1)
+        class_statistics.hidden += annotation["visibility"] < _MIN_VISIBLE
+        class_statistics.truncated += bool(annotation["truncated"])
         left, top, width, height = annotation["bbox"]
         column = min(int(3 * (left + width / 2) / size[0]), 2)
         row = min(int(3 * (top + height / 2) / size[1]), 2)
-        facts.thirds[3 * row + column] += 1
-    for name, numbers in images.items():
-        found[name].images = len(numbers)
-    return found
+        class_statistics.thirds[3 * row + column] += 1
+    for name, image_ids in images.items():
+        statistics[name].images = len(image_ids)
+    return statistics
 
 
 def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
     """Format statistics as lines of text."""
     titles = ("class", "objects", "images", "small", "medium", "large", "hidden", "truncated", "ignored")
     rows: list[tuple[str, ...]] = [titles]
-    for name, facts in statistics.items():
-        rows.append((name, *(str(getattr(facts, title)) for title in titles[1:])))
+    for name, class_statistics in statistics.items():
+        rows.append((name, *(str(getattr(class_statistics, title)) for title in titles[1:])))
     widths = [max(len(row[column]) for row in rows) for column in range(len(titles))]
     lines = [
         "  ".join(

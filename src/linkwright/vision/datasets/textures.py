@@ -16,10 +16,10 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     Args:
         generator: the random generator.
         size: the side of the square in pixels.
-        soft: whether it is light grey all over, so that the surface keeps its colour; otherwise it has two colours.
+        soft: whether the pattern is light grey, so that the surface keeps its colour; else it has two random colours.
 
     Returns:
-        RGB, shape (size, size, 3).
+        The pattern in RGB, shape (size, size, 3).
     """
     kind = generator.integers(5)
     if kind == 0:
@@ -33,42 +33,48 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     else:
         shade = _gradient(generator, size)
     shade = np.clip(shade + generator.normal(0.0, 0.03, shade.shape), 0.0, 1.0)[..., None]
-    first: NDArray[np.float64]
-    second: NDArray[np.float64]
+    first_colour: NDArray[np.float64]
+    second_colour: NDArray[np.float64]
     if soft:
-        first, second = np.full(3, generator.uniform(0.55, 0.85)), np.ones(3)
+        first_colour, second_colour = np.full(3, generator.uniform(0.55, 0.85)), np.ones(3)
     else:
-        first, second = generator.uniform(0.25, 1.0, 3), generator.uniform(0.25, 1.0, 3)
-    mixed: Pixels = np.round((first + (second - first) * shade) * 255).astype(np.uint8)
-    return mixed
+        first_colour, second_colour = generator.uniform(0.25, 1.0, 3), generator.uniform(0.25, 1.0, 3)
+    pixels: Pixels = np.round((first_colour + (second_colour - first_colour) * shade) * 255).astype(np.uint8)
+    return pixels
 
 
 def smooth(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
     """Return random values between 0 and 1, interpolated from a coarse grid, shape (height, width)."""
     grid = generator.random((cells + 1, cells + 1))
-    down, across = np.linspace(0, cells, height, endpoint=False), np.linspace(0, cells, width, endpoint=False)
-    rows = _between(grid, down)
-    return _between(rows.T, across).T
+    row_positions, column_positions = (
+        np.linspace(0, cells, height, endpoint=False),
+        np.linspace(0, cells, width, endpoint=False),
+    )
+    rows = _interpolate(grid, row_positions)
+    return _interpolate(rows.T, column_positions).T
 
 
-def _between(values: Any, places: Any) -> Any:
-    first = places.astype(int)
-    share = (places - first)[:, None]
+def _interpolate(values: Any, positions: Any) -> Any:
+    first = positions.astype(int)
+    share = (positions - first)[:, None]
     return values[first] * (1 - share) + values[first + 1] * share
 
 
 def _noise(generator: np.random.Generator, size: int) -> Any:
     shade, weight, cells = np.zeros((size, size)), 0.0, int(generator.integers(2, 6))
     for octave in range(4):
-        share = 0.5**octave
-        shade, weight = shade + share * smooth(generator, min(cells << octave, size), size, size), weight + share
+        amplitude = 0.5**octave
+        shade, weight = (
+            shade + amplitude * smooth(generator, min(cells << octave, size), size, size),
+            weight + amplitude,
+        )
     return shade / weight
 
 
 def _checks(generator: np.random.Generator, size: int) -> Any:
-    fields = int(generator.integers(1, 9)) * 2
-    places = np.arange(size) * fields // size
-    return ((places[:, None] + places) % 2).astype(np.float64)
+    squares = int(generator.integers(1, 9)) * 2
+    indices = np.arange(size) * squares // size
+    return ((indices[:, None] + indices) % 2).astype(np.float64)
 
 
 def _stripes(generator: np.random.Generator, size: int) -> Any:
@@ -80,8 +86,8 @@ def _stripes(generator: np.random.Generator, size: int) -> Any:
 
 def _dots(generator: np.random.Generator, size: int) -> Any:
     count, radius = int(generator.integers(2, 9)), generator.uniform(0.15, 0.45)
-    place = (np.arange(size) * count / size) % 1.0 - 0.5
-    return (place[:, None] ** 2 + place**2 < radius**2).astype(np.float64)
+    offset = (np.arange(size) * count / size) % 1.0 - 0.5
+    return (offset[:, None] ** 2 + offset**2 < radius**2).astype(np.float64)
 
 
 def _gradient(generator: np.random.Generator, size: int) -> Any:

@@ -13,14 +13,14 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.vision.datasets.making import CHAPTER, LabelledImage, Source, Studio
+from linkwright.vision.datasets.making import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
 
 _PATIENCE = 10.0
-"""Seconds that a process has to exit before it is killed."""
+"""The seconds that a process has to exit before it is killed."""
 
 
 def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[LabelledImage]:
-    """Yield images that several processes make.
+    """Yield images that several processes make at the same time.
 
     Args:
         source: the worlds and options.
@@ -28,40 +28,40 @@ def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
         workers: the number of processes.
 
     Yields:
-        The images, in the order of completion.
+        Each image when it is finished, in no fixed order.
 
     Raises:
         LinkwrightError: VISION208, a process has died.
     """
-    waiting = deque(_chapters(numbers))
-    started: list[_Worker] = []
+    pending_ranges = deque(_split_by_patterns(numbers))
+    workers_started: list[_Worker] = []
     try:
-        started += [_Worker(source) for _ in range(min(workers, len(waiting)))]
-        busy = {worker.connection: worker for worker in started}
-        for worker in started:
-            worker.assign(waiting.popleft())
-        while busy:
-            for ready in wait(list(busy)):
-                worker = busy[ready]  # type: ignore[index]  # connections only were waited for
-                taken = worker.result()
-                if isinstance(taken, LabelledImage):
-                    yield taken
+        workers_started += [_Worker(source) for _ in range(min(workers, len(pending_ranges)))]
+        busy_workers = {worker.connection: worker for worker in workers_started}
+        for worker in workers_started:
+            worker.assign(pending_ranges.popleft())
+        while busy_workers:
+            for connection in wait(list(busy_workers)):
+                worker = busy_workers[connection]  # type: ignore[index]  # connections only were waited for
+                sample = worker.result()
+                if isinstance(sample, LabelledImage):
+                    yield sample
                     worker.left -= 1
                 if not worker.left:
-                    if waiting:
-                        worker.assign(waiting.popleft())
+                    if pending_ranges:
+                        worker.assign(pending_ranges.popleft())
                     else:
-                        del busy[worker.connection]
+                        del busy_workers[worker.connection]
     finally:
-        for worker in started:
+        for worker in workers_started:
             worker.stop()
 
 
-def _chapters(numbers: range) -> Iterator[range]:
-    """Yield ranges of image numbers that share their patterns."""
+def _split_by_patterns(numbers: range) -> Iterator[range]:
+    """Yield the parts of a range of image numbers that each share one set of patterns."""
     start = numbers.start
     while start < numbers.stop:
-        end = min((start // CHAPTER + 1) * CHAPTER, numbers.stop)
+        end = min((start // IMAGES_PER_PATTERN_SET + 1) * IMAGES_PER_PATTERN_SET, numbers.stop)
         yield range(start, end)
         start = end
 
@@ -69,15 +69,15 @@ def _chapters(numbers: range) -> Iterator[range]:
 class _Worker:
     def __init__(self, source: Source) -> None:
         spawn = multiprocessing.get_context("spawn")
-        self.connection, theirs = spawn.Pipe()
+        self.connection, child_connection = spawn.Pipe()
         self.left = 0
-        self._process = spawn.Process(target=_serve, args=(source, theirs), daemon=True)
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: only the parent handles Ctrl-C
+        self._process = spawn.Process(target=_run_worker, args=(source, child_connection), daemon=True)
+        previous_handler = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: only the parent handles Ctrl-C
         try:
             self._process.start()
         finally:
-            signal.signal(signal.SIGINT, before)
-        theirs.close()
+            signal.signal(signal.SIGINT, previous_handler)
+        child_connection.close()
 
     def assign(self, numbers: range) -> None:
         """Send the process the numbers of the images to make next."""
@@ -86,7 +86,7 @@ class _Worker:
             self.connection.send(numbers)
 
     def result(self) -> LabelledImage:
-        """Return the next image.
+        """Return the next image that the process finishes.
 
         Raises:
             LinkwrightError: the error that the process reports, or VISION208 if it has died.
@@ -95,14 +95,14 @@ class _Worker:
             reply = self.connection.recv()
         except (EOFError, OSError):
             message = phrase("a process that renders images has died")
-            hint = phrase("if memory is short, use fewer processes: --workers 1")
+            hint = phrase("if memory is short, use fewer processes, for example --workers 1")
             raise LinkwrightError(Diagnostic("VISION208", message, hint=hint)) from None
         if isinstance(reply, LabelledImage):
             return reply
         raise LinkwrightError(*reply)
 
     def stop(self) -> None:
-        """Kill the process."""
+        """Terminate the process, and kill it if it does not exit in time."""
         self.connection.close()
         self._process.terminate()
         self._process.join(_PATIENCE)
@@ -112,10 +112,10 @@ class _Worker:
         self._process.close()
 
 
-def _serve(source: Source, connection: Connection) -> None:
-    """Run a worker process."""
+def _run_worker(source: Source, connection: Connection) -> None:
+    """Make the requested images in a worker process until the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
     with suppress(EOFError, OSError):
         try:
@@ -128,8 +128,8 @@ def _serve(source: Source, connection: Connection) -> None:
                 connection.send(studio.make(number))
 
 
-def _end_with_parent() -> None:
-    """End this process when its parent ends, for any reason."""
+def _exit_with_parent() -> None:
+    """Exit this process as soon as its parent has ended, for any reason."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -12,27 +12,27 @@ import yaml
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.files.input_files import read_text
 
-_LARGEST = 1_000_000
-"""Characters of metadata that are read as names."""
-_FORMS = phrase("write one name per line, or YAML with a list of names or a mapping from 0, 1, 2, ... to names")
+_MAX_METADATA = 1_000_000
+"""The maximum length of metadata in characters; longer text is not parsed."""
+_FORMAT_HINT = phrase("write one name per line, or YAML with a list of names or a mapping from 0, 1, 2, ... to names")
 
 
-def names_in_metadata(text: str) -> tuple[str, ...] | None:
+def parse_metadata_names(text: str) -> tuple[str, ...] | None:
     """Return the class names in a model's metadata, in order; None if there are no usable ones.
 
     Args:
-        text: a Python literal of a dictionary or a list, as Ultralytics' exporters write it. It is not executed.
+        text: a Python literal of a dictionary or a list, as Ultralytics' exporters write it. It is never executed.
     """
-    if len(text) > _LARGEST:
+    if len(text) > _MAX_METADATA:
         return None
     try:
-        return _in_order(ast.literal_eval(text))
+        return _ordered_names(ast.literal_eval(text))
     except (ValueError, SyntaxError, MemoryError, RecursionError):
         return None
 
 
 def read_labels(path: Path) -> tuple[str, ...]:
-    """Read the class names in a file, in order.
+    """Read the class names in a label file, in order.
 
     Args:
         path: a text file with one name per line; or a YAML or JSON file (by its suffix) with a list, a mapping from
@@ -48,16 +48,16 @@ def read_labels(path: Path) -> tuple[str, ...]:
         else:
             document = [line.strip() for line in text.splitlines() if line.strip()]
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        message = phrase("cannot read the labels in '{path}': {reason}", path=path, reason=_reason(error))
-        raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMS)) from None
-    names = _in_order(document.get("names", document) if isinstance(document, Mapping) else document)
+        message = phrase("cannot read the labels in '{path}': {reason}", path=path, reason=_read_error_reason(error))
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMAT_HINT)) from None
+    names = _ordered_names(document.get("names", document) if isinstance(document, Mapping) else document)
     if names is None:
         message = phrase("there are no labels in '{path}'", path=path)
-        raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMS))
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMAT_HINT))
     return names
 
 
-def _reason(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> Phrase:
+def _read_error_reason(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> Phrase:
     if isinstance(error, OSError):
         return foreign(error.strerror or error)
     if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
@@ -71,17 +71,17 @@ def _reason(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> Phrase:
     return phrase("it is not text in UTF-8") if isinstance(error, UnicodeDecodeError) else foreign(error)
 
 
-def _in_order(found: Any) -> tuple[str, ...] | None:
-    if isinstance(found, Mapping):
+def _ordered_names(names_or_mapping: Any) -> tuple[str, ...] | None:
+    if isinstance(names_or_mapping, Mapping):
         try:
-            numbered = {int(key): value for key, value in found.items()}
+            names_by_number = {int(key): value for key, value in names_or_mapping.items()}
         except (TypeError, ValueError):
             return None
-        if sorted(numbered) != list(range(len(found))):
+        if sorted(names_by_number) != list(range(len(names_or_mapping))):
             return None
-        found = [numbered[index] for index in range(len(found))]
-    if not isinstance(found, Sequence) or isinstance(found, str | bytes) or not found:
+        names_or_mapping = [names_by_number[index] for index in range(len(names_or_mapping))]
+    if not isinstance(names_or_mapping, Sequence) or isinstance(names_or_mapping, str | bytes) or not names_or_mapping:
         return None
-    if not all(isinstance(name, str | int | float) for name in found):
+    if not all(isinstance(name, str | int | float) for name in names_or_mapping):
         return None
-    return tuple(map(str, found))
+    return tuple(map(str, names_or_mapping))

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
-from linkwright.vision.detectors.devices import without_network
+from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
-from linkwright.vision.detectors.selection import most_certain
-from linkwright.vision.detectors.settings import bad_setting, hsv_range, number
+from linkwright.vision.detectors.selection import select_detections
+from linkwright.vision.detectors.settings import hsv_range, number, setting_error
 
 COLOURS: Mapping[str, tuple[int, ...]] = {
     "red": (172, 110, 60, 6, 255, 255),
@@ -24,7 +24,7 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
     "blue": (95, 110, 50, 130, 255, 255),
     "purple": (132, 80, 50, 165, 255, 255),
 }
-"""Colours that are looked for unless others are given."""
+"""The default colours: minimum hue, saturation and value, then the maximum of each, as in `hsv_range`."""
 
 
 class ColourDetector(Detector):
@@ -32,8 +32,8 @@ class ColourDetector(Detector):
 
     Settings:
         ``colours``
-            a mapping from names to six numbers, see `hsv_range`. If the minimum hue exceeds the maximum, the range
-            wraps around through 0, as red does. The default is `COLOURS`.
+            a mapping from names to six numbers; see `hsv_range`. If the minimum hue exceeds the maximum, as for red,
+            the range wraps around through 0. The default is `COLOURS`.
         ``least_area``
             the minimum area of a patch, in pixels; 150 by default.
 
@@ -43,11 +43,11 @@ class ColourDetector(Detector):
 
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
-        self._notes = without_network(options)
-        given = options.settings.get("colours", COLOURS)
-        if not isinstance(given, Mapping) or not given:
-            raise bad_setting("colours", given)
-        self._ranges = {str(name): hsv_range(f"colours.{name}", value) for name, value in given.items()}
+        self._notes = refuse_network_options(options)
+        colour_settings = options.settings.get("colours", COLOURS)
+        if not isinstance(colour_settings, Mapping) or not colour_settings:
+            raise setting_error("colours", colour_settings)
+        self._ranges = {str(name): hsv_range(f"colours.{name}", value) for name, value in colour_settings.items()}
         self._least_area = number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
     @property
@@ -72,31 +72,31 @@ class ColourDetector(Detector):
             x, y, columns, rows = cv2.boundingRect(mask)  # most colours are absent or in a small part of the image
             if columns * rows < self._least_area:
                 continue
-            part = mask[y : y + rows, x : x + columns]
-            count, _, statistics, _ = cv2.connectedComponentsWithStats(part, connectivity=8)
+            region = mask[y : y + rows, x : x + columns]
+            count, _, statistics, _ = cv2.connectedComponentsWithStats(region, connectivity=8)
             for left, top, width, height, area in statistics[1:count].tolist():
                 if area >= self._least_area:
                     boxes.append((x + left, y + top, x + left + width, y + top + height))
                     scores.append(area / (width * height))
                     classes.append(index)
-        return most_certain(boxes, scores, classes, self.names, limits)
+        return select_detections(boxes, scores, classes, self.names, limits)
 
 
 def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Return the mask of a colour: 255 where the image has it, else 0, without specks.
+    """Return the mask of a colour: 255 where the image has it, else 0.
 
-    Spots narrower than three pixels are removed.
+    Spots narrower than three pixels are removed from the mask.
 
     Args:
-        hsv: shape ``(height, width, 3)``.
-        bounds: see `hsv_range`.
+        hsv: the image in OpenCV's HSV, shape ``(height, width, 3)``.
+        bounds: the range of the colour; see `hsv_range`.
     """
     cv2 = load_opencv()
-    low, high = np.array(bounds[:3], np.uint8), np.array(bounds[3:], np.uint8)
+    minimum, maximum = np.array(bounds[:3], np.uint8), np.array(bounds[3:], np.uint8)
     if bounds[0] <= bounds[3]:
-        mask = cv2.inRange(hsv, low, high)
+        mask = cv2.inRange(hsv, minimum, maximum)
     else:
-        mask = cv2.inRange(hsv, low, np.array([179, *bounds[4:]], np.uint8))
-        mask |= cv2.inRange(hsv, np.array([0, *bounds[1:3]], np.uint8), high)
-    opened: NDArray[np.uint8] = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
-    return opened
+        mask = cv2.inRange(hsv, minimum, np.array([179, *bounds[4:]], np.uint8))
+        mask |= cv2.inRange(hsv, np.array([0, *bounds[1:3]], np.uint8), maximum)
+    cleaned: NDArray[np.uint8] = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    return cleaned

@@ -1,4 +1,4 @@
-"""Parse devices of networks, and refuse network options for detectors without a network."""
+"""Parse the device of a network, and refuse network options for detectors without a network."""
 
 from __future__ import annotations
 
@@ -6,41 +6,41 @@ import re
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.vision.detectors.options import DetectorOptions
-from linkwright.vision.detectors.settings import bad_setting
+from linkwright.vision.detectors.settings import setting_error
 
-_GPU = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
+_GPU_PATTERN = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
 
 
-def gpu_of(device: str) -> str | None:
-    """Return the GPU number of a device; None for the CPU.
+def parse_gpu(device: str) -> str | None:
+    """Return the number of the GPU that a device names; None for the CPU.
 
     Args:
-        device: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
+        device: ``cpu``, ``cuda``, ``cuda:0``, ``0``, or empty for the CPU.
 
     Raises:
-        LinkwrightError: VISION109, the device is unknown.
+        LinkwrightError: VISION109, the device has another form.
     """
     if device.lower() in ("", "cpu"):
         return None
-    gpu = _GPU.match(device.lower())
-    if gpu is None:
-        raise bad_setting("device", device, phrase("use 'cpu', or 'cuda:0' for the first GPU"))
-    return gpu[1] or gpu[2] or "0"
+    match = _GPU_PATTERN.match(device.lower())
+    if match is None:
+        raise setting_error("device", device, phrase("use 'cpu', or 'cuda:0' for the first GPU"))
+    return match[1] or match[2] or "0"
 
 
-def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
-    """Check that a detector without a network gets no network options.
+def refuse_network_options(options: DetectorOptions) -> tuple[Phrase, ...]:
+    """Raise if a detector without a network gets network options.
 
     Returns:
-        Notes to log once: that it does not need a GPU, if one was requested.
+        Notes to log once: that the detector does not use the requested GPU; empty if none was requested.
 
     Raises:
-        LinkwrightError: VISION109, labels or an input size were given, or the device is unknown.
+        LinkwrightError: VISION109, there are labels or an input size, or the device has a wrong form.
     """
-    given = {"labels": options.labels, "imgsz": options.size and "x".join(map(str, options.size[::-1]))}
-    for name, value in given.items():
+    network_options = {"labels": options.labels, "imgsz": options.size and "x".join(map(str, options.size[::-1]))}
+    for name, value in network_options.items():
         if value is not None:
-            raise bad_setting(name, value, phrase("only networks have this option: leave it out"))
-    if gpu_of(options.device) is None:
+            raise setting_error(name, value, phrase("this option is only for networks: leave it out"))
+    if parse_gpu(options.device) is None:
         return ()
     return (phrase("this detector has no network to run on '{device}'; it uses the CPU", device=options.device),)

@@ -16,30 +16,30 @@ from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
 from linkwright.vision.detectors.library import load_litert, load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
-from linkwright.vision.detectors.selection import most_certain
+from linkwright.vision.detectors.selection import select_detections
 
-_LAST_STEP = "TFLite_Detection_PostProcess"
-"""The operation that makes final boxes; it has four outputs: boxes, classes, scores, how many there are."""
-_LARGEST_LABELS = 1_000_000
-_MOST_THREADS = 4
+_FINAL_OPERATION = "TFLite_Detection_PostProcess"
+"""The operation that outputs final boxes; its four outputs are boxes, classes, scores and the number of boxes."""
+_MAX_LABELS_SIZE = 1_000_000
+_MAX_THREADS = 4
 
 
 class EfficientDetDetector(Detector):
-    """Runs a network with LiteRT. The class names are in a zip archive at the end of the file.
+    """Runs a network with LiteRT. The class names are read from a zip archive at the end of the file.
 
     Args:
         file: the TFLite file.
-        options: the options; only the labels are used.
+        options: the options; only the label file is used.
 
     Raises:
         LinkwrightError: VISION101 LiteRT or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its input
-            is not an 8-bit image, VISION106 it has no final boxes, VISION108 it has no names and none are given.
+                is not an 8-bit image, VISION106 it has no final boxes, VISION108 there are no class names.
     """
 
     def __init__(self, file: Path, options: DetectorOptions) -> None:
         litert = load_litert()
         load_opencv()
-        threads = min(_MOST_THREADS, os.cpu_count() or 1)
+        threads = min(_MAX_THREADS, os.cpu_count() or 1)
         try:
             self._interpreter = litert.Interpreter(model_path=str(file), num_threads=threads)
             self._interpreter.allocate_tensors()
@@ -47,16 +47,18 @@ class EfficientDetDetector(Detector):
             message = phrase("cannot load the network in '{file}': {reason}", file=file, reason=foreign(error))
             raise LinkwrightError(Diagnostic("VISION103", message)) from None
         inputs = self._interpreter.get_input_details()
-        shape = [int(side) for side in inputs[0]["shape"]] if len(inputs) == 1 else []
+        shape = [int(length) for length in inputs[0]["shape"]] if len(inputs) == 1 else []
         if len(shape) != 4 or shape[0] != 1 or shape[3] != 3 or inputs[0]["dtype"] is not np.uint8:
-            shown = ", ".join(f"{np.dtype(entry['dtype'])} {list(map(int, entry['shape']))}" for entry in inputs)
+            input_shapes = ", ".join(f"{np.dtype(entry['dtype'])} {list(map(int, entry['shape']))}" for entry in inputs)
             message = phrase(
-                "the network in '{file}' does not take an image: its inputs are {inputs}", file=file.name, inputs=shown
+                "the network in '{file}' does not take an image: its inputs are {inputs}",
+                file=file.name,
+                inputs=input_shapes,
             )
             raise LinkwrightError(Diagnostic("VISION105", message))
         self._input, self._size = inputs[0]["index"], (shape[2], shape[1])
-        self._outputs = _final_outputs(file, self._interpreter)
-        self._names = _names_in(file) if options.labels is None else read_labels(options.labels)
+        self._outputs = _find_outputs(file, self._interpreter)
+        self._names = _read_embedded_names(file) if options.labels is None else read_labels(options.labels)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -71,42 +73,42 @@ class EfficientDetDetector(Detector):
         self._interpreter.set_tensor(self._input, cv2.resize(image, self._size)[np.newaxis])
         self._interpreter.invoke()
         boxes, classes, scores, count = (self._interpreter.get_tensor(index) for index in self._outputs)
-        found = int(np.ravel(count)[0])
+        detected = int(np.ravel(count)[0])
         height, width = image.shape[:2]
-        sides = np.clip(boxes[0, :found][:, [1, 0, 3, 2]], 0.0, 1.0) * [width, height, width, height]
-        numbers = classes[0, :found].astype(int)
-        known = [index for index in range(found) if 0 <= numbers[index] < len(self._names)]
-        return most_certain(
-            [sides[index].tolist() for index in known],
-            [float(scores[0, index]) for index in known],
-            [int(numbers[index]) for index in known],
+        boxes_in_pixels = np.clip(boxes[0, :detected][:, [1, 0, 3, 2]], 0.0, 1.0) * [width, height, width, height]
+        class_numbers = classes[0, :detected].astype(int)
+        valid = [index for index in range(detected) if 0 <= class_numbers[index] < len(self._names)]
+        return select_detections(
+            [boxes_in_pixels[index].tolist() for index in valid],
+            [float(scores[0, index]) for index in valid],
+            [int(class_numbers[index]) for index in valid],
             self._names,
             limits,
         )
 
 
-def _final_outputs(file: Path, interpreter: Any) -> list[int]:
-    """Return the tensor indices of boxes, classes, scores and count.
+def _find_outputs(file: Path, interpreter: Any) -> list[int]:
+    """Return the tensor indices of the outputs: boxes, classes, scores and count.
 
-    Files differ in the order and the names of their outputs.
+    They are taken from the last operation, because the order and the names of a file's outputs differ.
     """
-    last = [
-        get_ops_detail for get_ops_detail in interpreter._get_ops_details() if get_ops_detail["op_name"] == _LAST_STEP
+    final_operations = [
+        operation for operation in interpreter._get_ops_details() if operation["op_name"] == _FINAL_OPERATION
     ]
-    if len(last) != 1:
+    if len(final_operations) != 1:
         message = phrase(
             "the network in '{file}' does not output final boxes as EfficientDet-Lite does", file=file.name
         )
         raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("export it as ONNX")))
-    return [int(output) for output in last[0]["outputs"]]
+    return [int(output) for output in final_operations[0]["outputs"]]
 
 
-def _names_in(file: Path) -> tuple[str, ...]:
+def _read_embedded_names(file: Path) -> tuple[str, ...]:
     try:
         with ZipFile(file) as archive:
-            entry = next(zip_info for zip_info in archive.infolist() if zip_info.filename.endswith(".txt"))
-            with archive.open(entry) as text:
-                lines = text.read(_LARGEST_LABELS).decode().splitlines()
+            label_file = next(member for member in archive.infolist() if member.filename.endswith(".txt"))
+            with archive.open(label_file) as stream:
+                lines = stream.read(_MAX_LABELS_SIZE).decode().splitlines()
         return tuple(line.strip() for line in lines)
     except (BadZipFile, StopIteration, UnicodeDecodeError, OSError):
         message = phrase("there are no labels in '{path}'", path=file)

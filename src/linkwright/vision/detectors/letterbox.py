@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linkwright.vision.detectors.library import load_opencv
 
 GREY = 114
-"""The level of the border around an image, in all three channels; networks are trained with it."""
+"""The level of the border in all three channels; networks are trained with this value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +38,13 @@ class Letterbox:
     def boxes_in_image(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
         """Convert boxes from input to image pixels, shape ``(n, 4)``, clipped to the image."""
         offset = np.array([self.left, self.top, self.left, self.top], np.float32)
-        placed = (boxes - offset) / np.array(self.scale * 2, np.float32)
+        in_image = (boxes - offset) / np.array(self.scale * 2, np.float32)
         limits = np.array([self.width, self.height, self.width, self.height], np.float32)
-        within: NDArray[np.float32] = np.clip(placed, np.float32(0), limits)
-        return within
+        clipped: NDArray[np.float32] = np.clip(in_image, np.float32(0), limits)
+        return clipped
 
 
-def letterboxed(
+def letterbox_image(
     image: NDArray[np.uint8], size: tuple[int, int], multiple: int | None
 ) -> tuple[NDArray[np.uint8], Letterbox]:
     """Scale an image into the input of a network.
@@ -52,32 +52,32 @@ def letterboxed(
     Args:
         image: shape ``(height, width, 3)``.
         size: height and width of the input.
-        multiple: None for an input of exactly `size`; otherwise the borders are as small as possible, and each side
-            differs from `size` by a multiple of this number.
+        multiple: None for an input of exactly `size`; with a number, the borders are as small as possible, and each
+            side differs from `size` by a multiple of it.
 
     Returns:
-        The input, shape ``(rows, columns, 3)``, and the position of the image in it.
+        The network's input, shape ``(rows, columns, 3)``, and the position of the image in it.
     """
     cv2 = load_opencv()
     height, width = image.shape[:2]
     scale = min(size[0] / height, size[1] / width)
     rows, columns = max(1, round(height * scale)), max(1, round(width * scale))
-    vertical, horizontal = size[0] - rows, size[1] - columns
+    vertical_border, horizontal_border = size[0] - rows, size[1] - columns
     if multiple is not None:
-        vertical, horizontal = vertical % multiple, horizontal % multiple
-    top, left = round(vertical / 2 - 0.1), round(horizontal / 2 - 0.1)
+        vertical_border, horizontal_border = vertical_border % multiple, horizontal_border % multiple
+    top, left = round(vertical_border / 2 - 0.1), round(horizontal_border / 2 - 0.1)
     scaled = image
     if (rows, columns) != (height, width):
         scaled = cv2.resize(image, (columns, rows), interpolation=cv2.INTER_LINEAR)
-    whole = np.full((rows + vertical, columns + horizontal, 3), GREY, np.uint8)
-    whole[top : top + rows, left : left + columns] = scaled
-    return whole, Letterbox(width, height, (columns / width, rows / height), left, top)
+    canvas = np.full((rows + vertical_border, columns + horizontal_border, 3), GREY, np.uint8)
+    canvas[top : top + rows, left : left + columns] = scaled
+    return canvas, Letterbox(width, height, (columns / width, rows / height), left, top)
 
 
-def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
-    """Convert pixels to floats from 0 to 1: shape ``(rows, columns, 3)`` to ``(1, 3, rows, columns)``."""
+def to_tensor(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
+    """Convert pixels to floats from 0 to 1, and shape ``(rows, columns, 3)`` to ``(1, 3, rows, columns)``."""
     cv2 = load_opencv()
     planes = np.empty((1, 3, *pixels.shape[:2]), np.float32)
-    for plane, levels in zip(planes[0], cv2.split(pixels), strict=True):
-        np.divide(levels, np.float32(255.0), out=plane, dtype=np.float32)
+    for plane, channel in zip(planes[0], cv2.split(pixels), strict=True):
+        np.divide(channel, np.float32(255.0), out=plane, dtype=np.float32)
     return planes.astype(kind, copy=False)

@@ -1,4 +1,4 @@
-"""Import OpenCV, which the extra ``vision`` installs, and LiteRT."""
+"""Import OpenCV, which the extra ``vision`` installs, and LiteRT, which no extra installs."""
 
 from __future__ import annotations
 
@@ -36,6 +36,6 @@ def load_litert() -> Any:
     try:
         from ai_edge_litert import interpreter  # type: ignore[import-not-found, unused-ignore]
     except ModuleNotFoundError:
-        message = phrase("TFLite files are run by the package '{package}', which is not installed", package=_LITERT)
+        message = phrase("TFLite files need the package '{package}', which is not installed", package=_LITERT)
         raise LinkwrightError(Diagnostic("VISION101", message, hint=package_hint(_LITERT))) from None
     return interpreter

@@ -9,25 +9,25 @@ from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.colours import mask_of
-from linkwright.vision.detectors.devices import without_network
+from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
-from linkwright.vision.detectors.selection import most_certain
+from linkwright.vision.detectors.selection import select_detections
 from linkwright.vision.detectors.settings import hsv_range, number
 
-_DARK = (0, 0, 0, 179, 255, 80)
+_DARK_RANGE = (0, 0, 0, 179, 255, 80)
 _NAMES = ("line",)
 
 
 class LineDetector(Detector):
-    """Detects the largest patch of a colour in the lower part of the image.
+    """Detects a line as the largest patch of a colour in the lower part of the image.
 
-    The line is at the centre of its box: ``(x - width / 2) / (width / 2)`` is the robot's offset from it, from -1 to
-    1, and positive if the line is to the right. The score is the share of rows of that part that contain the line.
+    The line is at the centre x of its box: ``(x - width / 2) / (width / 2)`` is its offset from the image's middle,
+    from -1 to 1, and positive if the line is to the right. The score is the share of searched rows with the line.
 
     Settings:
         ``colour``
-            the colour of the line, six numbers, see `hsv_range`; dark by default.
+            the colour of the line as six numbers, see `hsv_range`; dark by default.
         ``part``
             the share of the image that is searched, from the bottom; 0.25 by default.
         ``least_area``
@@ -39,8 +39,8 @@ class LineDetector(Detector):
 
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
-        self._notes = without_network(options)
-        self._colour = hsv_range("colour", options.settings.get("colour", _DARK))
+        self._notes = refuse_network_options(options)
+        self._colour = hsv_range("colour", options.settings.get("colour", _DARK_RANGE))
         self._part = number(options.settings, "part", 0.25, 0.01, 1.0)
         self._least_area = number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
@@ -55,21 +55,23 @@ class LineDetector(Detector):
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find the line."""
+        """Return the line as one detection, or no detection if it is too small."""
         cv2 = load_opencv()
         height = image.shape[0]
         rows = round(height * self._part)
         if not image.size or rows < 1:
             return Detections.none(_NAMES)
-        part = np.ascontiguousarray(image[height - rows :])
-        mask = mask_of(cv2.cvtColor(part, cv2.COLOR_RGB2HSV), self._colour)
+        searched_region = np.ascontiguousarray(image[height - rows :])
+        mask = mask_of(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._colour)
         count, labels, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         if count < 2:
             return Detections.none(_NAMES)
         largest = 1 + int(statistics[1:, cv2.CC_STAT_AREA].argmax())
-        left, top, width, tall, area = statistics[largest].tolist()
+        left, top, width, line_height, area = statistics[largest].tolist()
         if area < self._least_area:
             return Detections.none(_NAMES)
-        seen = float((labels == largest).any(axis=1).mean())
-        above = height - rows + top
-        return most_certain([[left, above, left + width, above + tall]], [seen], [0], _NAMES, limits)
+        row_share = float((labels == largest).any(axis=1).mean())
+        image_top = height - rows + top
+        return select_detections(
+            [[left, image_top, left + width, image_top + line_height]], [row_share], [0], _NAMES, limits
+        )

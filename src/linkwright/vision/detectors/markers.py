@@ -1,4 +1,4 @@
-"""The detectors ``aruco``, ``apriltag`` and ``qr``: fiducial markers and codes."""
+"""The detectors ``aruco``, ``apriltag`` and ``qr``, for fiducial markers and QR codes."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
-from linkwright.vision.detectors.devices import without_network
+from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
-from linkwright.vision.detectors.selection import most_certain
+from linkwright.vision.detectors.selection import select_detections
 from linkwright.vision.detectors.settings import choice
 
 _PREFIX = "DICT_"
-_USUAL_MARKERS, _USUAL_TAGS = "4X4_50", "APRILTAG_36h11"
+_DEFAULT_MARKERS, _DEFAULT_TAGS = "4X4_50", "APRILTAG_36h11"
 
 
 class MarkerDetector(Detector):
-    """Detects ArUco markers and AprilTags; the class of a marker is its ID, its score 1.
+    """Detects ArUco markers and AprilTags; the class of a marker is its ID, and the score is 1.
 
-    Corners are in OpenCV's order: clockwise, from the marker's upper left corner.
+    Corners are in OpenCV's order: clockwise from the marker's upper left corner.
 
     Settings:
         ``dictionary``
@@ -33,19 +33,19 @@ class MarkerDetector(Detector):
         LinkwrightError: VISION101 OpenCV is missing, VISION109 there is no such dictionary.
     """
 
-    def __init__(self, options: DetectorOptions, dictionary: str = _USUAL_MARKERS) -> None:
+    def __init__(self, options: DetectorOptions, dictionary: str = _DEFAULT_MARKERS) -> None:
         aruco = load_opencv().aruco
-        self._notes = without_network(options)
-        known = [name.removeprefix(_PREFIX) for name in sorted(dir(aruco)) if name.startswith(_PREFIX)]
-        given = {
+        self._notes = refuse_network_options(options)
+        dictionaries = [name.removeprefix(_PREFIX) for name in sorted(dir(aruco)) if name.startswith(_PREFIX)]
+        settings = {
             name: str(value).removeprefix(_PREFIX) for name, value in options.settings.items() if name == "dictionary"
         }
-        chosen = choice(given, "dictionary", dictionary, known)
-        markers = aruco.getPredefinedDictionary(getattr(aruco, _PREFIX + chosen))
-        self._names = tuple(map(str, range(len(markers.bytesList))))
+        dictionary_name = choice(settings, "dictionary", dictionary, dictionaries)
+        marker_dictionary = aruco.getPredefinedDictionary(getattr(aruco, _PREFIX + dictionary_name))
+        self._names = tuple(map(str, range(len(marker_dictionary.bytesList))))
         parameters = aruco.DetectorParameters()
         parameters.cornerRefinementMethod = aruco.CORNER_REFINE_SUBPIX
-        self._detector = aruco.ArucoDetector(markers, parameters)
+        self._detector = aruco.ArucoDetector(marker_dictionary, parameters)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -58,36 +58,35 @@ class MarkerDetector(Detector):
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find markers."""
-        if min(image.shape[:2]) < _SMALLEST_SIDE:
+        """Detect the markers of the dictionary."""
+        if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
             return Detections.none(self._names)
-        corners, numbers, _ = self._detector.detectMarkers(_grey(image))
-        classes = [] if numbers is None else [int(number) for number in np.ravel(numbers)]
-        places = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
-        boxes = [_box(place) for place in places]
-        return most_certain(boxes, [1.0] * len(classes), classes, self._names, limits, places)
+        corners, ids, _ = self._detector.detectMarkers(_grey(image))
+        classes = [] if ids is None else [int(number) for number in np.ravel(ids)]
+        marker_corners = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
+        boxes = [_bounding_box(points) for points in marker_corners]
+        return select_detections(boxes, [1.0] * len(classes), classes, self._names, limits, marker_corners)
 
 
 class AprilTagDetector(MarkerDetector):
-    """A `MarkerDetector` whose default is the tag family that robots usually use, 36h11."""
+    """A `MarkerDetector` with another default: 36h11, the tag family that robots usually use."""
 
     def __init__(self, options: DetectorOptions) -> None:
-        super().__init__(options, _USUAL_TAGS)
+        super().__init__(options, _DEFAULT_TAGS)
 
 
 class QrDetector(Detector):
-    """Detects QR codes; the class of a code is its text, its score 1. Unreadable codes are omitted.
+    """Detects QR codes; the class of a code is its text, and the score is 1. Unreadable codes are omitted.
 
-    OpenCV finds codes at a size at which it cannot read them yet. Such codes are cut out, rectified, enlarged, and read
-    again.
+    OpenCV finds some codes that are too small for it to read. They are cut out, rectified, enlarged and read again.
 
     Raises:
-        LinkwrightError: VISION101 OpenCV is missing, VISION109 it is given options that only networks have.
+        LinkwrightError: VISION101 OpenCV is missing, VISION109 there are options that only networks have.
     """
 
     def __init__(self, options: DetectorOptions) -> None:
         self._detector = load_opencv().QRCodeDetectorAruco()
-        self._notes = without_network(options)
+        self._notes = refuse_network_options(options)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -100,36 +99,40 @@ class QrDetector(Detector):
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find and read codes."""
-        if min(image.shape[:2]) < _SMALLEST_SIDE:
+        """Detect and read QR codes."""
+        if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
             return Detections.none(())
         grey = _grey(image)
-        found, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
-        codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if found else []
+        has_codes, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
+        codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if has_codes else []
         decoded = [text or self._read(grey, code) for text, code in zip(texts, codes, strict=False)]
-        read = [index for index, text in enumerate(decoded) if text]
-        names = tuple(dict.fromkeys(decoded[index] for index in read))
-        places = [codes[index] + 0.5 for index in read]
-        classes = [names.index(decoded[index]) for index in read]
-        return most_certain([_box(place) for place in places], [1.0] * len(read), classes, names, limits, places)
+        readable = [index for index, text in enumerate(decoded) if text]
+        names = tuple(dict.fromkeys(decoded[index] for index in readable))
+        code_corners = [codes[index] + 0.5 for index in readable]
+        classes = [names.index(decoded[index]) for index in readable]
+        return select_detections(
+            [_bounding_box(points) for points in code_corners],
+            [1.0] * len(readable),
+            classes,
+            names,
+            limits,
+            code_corners,
+        )
 
     def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
-        """Return the text of the code with these corners, or an empty text if it cannot be read.
-
-        The code is rectified and enlarged before.
-        """
+        """Rectify and enlarge a code, and return its text; empty if it cannot be read."""
         cv2 = load_opencv()
-        near, far = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED
-        square = np.array([(near, near), (far, near), (far, far), (near, far)], np.float32)
-        size = (near + far, near + far)
-        seen = cv2.warpPerspective(grey, cv2.getPerspectiveTransform(corners, square), size, flags=cv2.INTER_CUBIC)
-        return str(self._detector.detectAndDecode(seen)[0])
+        start, end = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED_SIDE
+        square = np.array([(start, start), (end, start), (end, end), (start, end)], np.float32)
+        size = (start + end, start + end)
+        rectified = cv2.warpPerspective(grey, cv2.getPerspectiveTransform(corners, square), size, flags=cv2.INTER_CUBIC)
+        return str(self._detector.detectAndDecode(rectified)[0])
 
 
-_ENLARGED, _QUIET_ZONE = 340, 40
-"""Pixels along a side of a code that is read once more, and around it."""
-_SMALLEST_SIDE = 8
-"""The least side of an image: in smaller ones OpenCV fails instead of finding nothing."""
+_ENLARGED_SIDE, _QUIET_ZONE = 340, 40
+"""The side of an enlarged code, and the width of the empty border around it, in pixels."""
+_MIN_IMAGE_SIDE = 8
+"""The minimum side of an image in pixels: OpenCV fails on smaller images."""
 
 
 def _grey(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -138,6 +141,6 @@ def _grey(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return grey
 
 
-def _box(corners: NDArray[np.floating[Any]]) -> list[float]:
+def _bounding_box(corners: NDArray[np.floating[Any]]) -> list[float]:
     """Return the bounding box of four points: left, top, right, bottom."""
     return [*map(float, corners.min(axis=0)), *map(float, corners.max(axis=0))]

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
-from linkwright.vision.detectors.class_names import names_in_metadata
-from linkwright.vision.detectors.options import LARGEST_SIZE
+from linkwright.vision.detectors.class_names import parse_metadata_names
+from linkwright.vision.detectors.options import MAX_SIZE
 
-_USUAL_STRIDE = 32
-_LARGEST_STRIDE = 256
-"""The greatest stride in pixels; greater ones are ignored."""
+_DEFAULT_STRIDE = 32
+_MAX_STRIDE = 256
+"""The maximum stride in pixels; a larger stride in a file is ignored."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,48 +22,48 @@ class Metadata:
 
     Attributes:
         names: the names of its classes; None if the file has none.
-        task: ``detect``, ``segment``, ``pose``, ``obb``, ``classify``; empty if the file has none.
-        stride: the sides of the input are multiples of this.
-        size: height and width of its input in training.
-        suppressed: whether its boxes are final: no two of them are of the same object.
+        task: ``detect``, ``segment``, ``pose``, ``obb`` or ``classify``; empty if the file has none.
+        stride: the number in pixels that the sides of the input are multiples of.
+        size: the height and width of its input in training, in pixels; None if the file has none.
+        suppressed: whether its boxes are final, with one box for each object.
         key_numbers: the number of keypoint values for each box.
     """
 
     names: tuple[str, ...] | None = None
     task: str = ""
-    stride: int = _USUAL_STRIDE
+    stride: int = _DEFAULT_STRIDE
     size: tuple[int, int] | None = None
     suppressed: bool = False
     key_numbers: int = 0
 
     @classmethod
     def of(cls, entries: Mapping[str, str]) -> Metadata:
-        """Read the ``metadata_props`` of a file; malformed ones are ignored."""
-        stride = _literal(entries.get("stride", ""))
-        size = _literal(entries.get("imgsz", ""))
-        points = _literal(entries.get("kpt_shape", ""))
-        arguments = _literal(entries.get("args", ""))
+        """Read the ``metadata_props`` of a file. Malformed entries get their defaults."""
+        stride = _parse_literal(entries.get("stride", ""))
+        size = _parse_literal(entries.get("imgsz", ""))
+        keypoint_shape = _parse_literal(entries.get("kpt_shape", ""))
+        export_arguments = _parse_literal(entries.get("args", ""))
         return cls(
-            names_in_metadata(entries.get("names", "")),
+            parse_metadata_names(entries.get("names", "")),
             entries.get("task", ""),
-            stride if isinstance(stride, int) and 0 < stride <= _LARGEST_STRIDE else _USUAL_STRIDE,
-            (size[0], size[1]) if _are_numbers(size) and len(size) == 2 and max(size) <= LARGEST_SIZE else None,
-            _literal(entries.get("end2end", "")) is True
-            or (isinstance(arguments, Mapping) and arguments.get("nms") is True),
-            prod(points) if _are_numbers(points) else 0,
+            stride if isinstance(stride, int) and 0 < stride <= _MAX_STRIDE else _DEFAULT_STRIDE,
+            (size[0], size[1]) if _are_positive_integers(size) and len(size) == 2 and max(size) <= MAX_SIZE else None,
+            _parse_literal(entries.get("end2end", "")) is True
+            or (isinstance(export_arguments, Mapping) and export_arguments.get("nms") is True),
+            prod(keypoint_shape) if _are_positive_integers(keypoint_shape) else 0,
         )
 
 
-def _literal(text: str) -> Any:
+def _parse_literal(text: str) -> Any:
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, MemoryError, RecursionError):
         return None
 
 
-def _are_numbers(found: Any) -> bool:
+def _are_positive_integers(value: Any) -> bool:
     return (
-        isinstance(found, list | tuple)
-        and bool(found)
-        and all(isinstance(number, int) and number > 0 for number in found)
+        isinstance(value, list | tuple)
+        and bool(value)
+        and all(isinstance(number, int) and number > 0 for number in value)
     )

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-LARGEST_SIZE = 8192
-"""Pixels of the longer side of a network's input, at most."""
+MAX_SIZE = 8192
+"""The maximum length in pixels of the longer side of a network's input."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,9 +15,9 @@ class DetectorOptions:
     """The options of a detector; each detector uses only those that apply to it.
 
     Attributes:
-        labels: a file with the names of the classes, instead of those in the network.
+        labels: a file with the names of the classes; None for the names in the network's file.
         device: where a network runs: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
-        size: height and width of a network's input, if it takes any size; None for the size used in training.
+        size: the height and width of a network's input, if it takes any size; None for the size used in training.
         settings: the settings of detectors without a network, by name.
     """
 

@@ -1,4 +1,4 @@
-"""Select detections by limits."""
+"""Select the detections that satisfy limits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Limits
 
 
-def most_certain(
+def select_detections(
     boxes: Sequence[Sequence[float]],
     scores: Sequence[float],
     classes: Sequence[int],
@@ -25,19 +25,19 @@ def most_certain(
         scores: the score of each detection.
         classes: the class of each detection, an index in `names`.
         names: the names of the classes.
-        limits: the limits of detections.
-        corners: the four corners of each detection, for objects that have them.
+        limits: the limits that detections must satisfy.
+        corners: the four corners of each detection; None if the objects have none.
     """
-    wanted = [
+    allowed = [
         index
         for index, score in enumerate(scores)
         if score >= limits.threshold and (limits.classes is None or names[classes[index]] in limits.classes)
     ]
-    kept = sorted(wanted, key=lambda index: -scores[index])[: limits.most]
+    selected = sorted(allowed, key=lambda index: -scores[index])[: limits.most]
     return Detections(
-        np.array([boxes[index] for index in kept], np.float32).reshape(-1, 4),
-        np.array([scores[index] for index in kept], np.float32),
-        np.array([classes[index] for index in kept], np.int32),
+        np.array([boxes[index] for index in selected], np.float32).reshape(-1, 4),
+        np.array([scores[index] for index in selected], np.float32),
+        np.array([classes[index] for index in selected], np.int32),
         names,
-        None if corners is None else np.array([corners[index] for index in kept], np.float32).reshape(-1, 4, 2),
+        None if corners is None else np.array([corners[index] for index in selected], np.float32).reshape(-1, 4, 2),
     )

@@ -1,4 +1,4 @@
-"""Create sessions of onnxruntime on a device."""
+"""Create onnxruntime sessions on a device."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, missing_extra, phrase
 from linkwright.model_files.onnx_sessions import CUDA, UnloadableNetworkError, has_cuda, load_session
-from linkwright.vision.detectors.devices import gpu_of
+from linkwright.vision.detectors.devices import parse_gpu
 
 
-def session_on(file: Path, device: str) -> tuple[Any, list[Phrase]]:
-    """Return an ``onnxruntime.InferenceSession``, and remarks for its user.
+def create_session(file: Path, device: str) -> tuple[Any, list[Phrase]]:
+    """Return an ``onnxruntime.InferenceSession``, and remarks for the user.
 
     Args:
         file: the ONNX file.
-        device: ``cpu``, ``cuda``, ``cuda:0``, ``0``; the CPU where there is no such GPU.
+        device: ``cpu``, ``cuda``, ``cuda:0``, ``0``; without such a GPU the CPU is used.
 
     Raises:
-        LinkwrightError: VISION101 onnxruntime is missing, VISION103 the file cannot be loaded, VISION109 there is no
-            such device.
+        LinkwrightError: VISION101 onnxruntime is missing, VISION103 the file cannot be loaded, VISION109 the device has
+            a wrong form.
     """
-    gpu = gpu_of(device)
+    gpu = parse_gpu(device)
     try:
         with_cuda = gpu is not None and has_cuda()
         session = load_session(file, gpu if with_cuda else None)
@@ -33,7 +33,11 @@ def session_on(file: Path, device: str) -> tuple[Any, list[Phrase]]:
     if gpu is None or (with_cuda and CUDA in session.get_providers()):
         return session, []
     if with_cuda:
-        note = phrase("CUDA does not work here with '{device}'; the network runs on the CPU", device=device)
+        note = phrase(
+            ("CUDA does not work with '{device}' on this machine; the network runs on the CPU"), device=device
+        )
     else:
-        note = phrase("onnxruntime has no '{device}' here; the network runs on the CPU", device=device)
+        note = phrase(
+            ("this installation of onnxruntime does not support '{device}'; the network runs on the CPU"), device=device
+        )
     return session, [note]

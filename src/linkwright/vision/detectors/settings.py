@@ -7,51 +7,51 @@ from collections.abc import Mapping, Sequence
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 
 
-def bad_setting(name: str, value: object, hint: Phrase | None = None) -> LinkwrightError:
-    """Return the error for an invalid setting: VISION109."""
+def setting_error(name: str, value: object, hint: Phrase | None = None) -> LinkwrightError:
+    """Return the error VISION109: a setting of a detector has an invalid value."""
     message = phrase("the setting '{name}' of the detector cannot be '{value}'", name=name, value=value)
     return LinkwrightError(Diagnostic("VISION109", message, hint=hint))
 
 
-def number(settings: Mapping[str, object], name: str, default: float, low: float, high: float) -> float:
+def number(settings: Mapping[str, object], name: str, default: float, minimum: float, maximum: float) -> float:
     """Return a setting as a number within limits.
 
     Raises:
         LinkwrightError: VISION109, the setting is not such a number.
     """
     value = settings.get(name, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise bad_setting(name, value, phrase("give a number from {low} to {high}", low=low, high=high))
+    if isinstance(value, bool) or not isinstance(value, int | float) or not minimum <= value <= maximum:
+        raise setting_error(name, value, phrase("give a number from {low} to {high}", low=minimum, high=maximum))
     return float(value)
 
 
-def choice(settings: Mapping[str, object], name: str, default: str, known: Sequence[str]) -> str:
-    """Return a setting that is one of the known words.
+def choice(settings: Mapping[str, object], name: str, default: str, choices: Sequence[str]) -> str:
+    """Return a setting that is one of several words.
 
     Raises:
-        LinkwrightError: VISION109, the setting is not one of them.
+        LinkwrightError: VISION109, the setting is not one of these words.
     """
     value = str(settings.get(name, default))
-    if value not in known:
-        hint = did_you_mean(value, known) or phrase("choose from {known}", known=", ".join(known))
-        raise bad_setting(name, value, hint)
+    if value not in choices:
+        hint = did_you_mean(value, choices) or phrase("choose from {known}", known=", ".join(choices))
+        raise setting_error(name, value, hint)
     return value
 
 
 def hsv_range(name: str, value: object) -> tuple[int, ...]:
-    """Parse a range of colours: minimum hue, saturation and value, then the maximum, in OpenCV's units.
+    """Parse a range of colours: minimum hue, saturation and value, then the maximum of each, in OpenCV's units.
 
     Raises:
-        LinkwrightError: VISION109, it is not a list of six such numbers.
+        LinkwrightError: VISION109, the value is not a list of six such numbers.
     """
     numbers = list(value) if isinstance(value, Sequence) and not isinstance(value, str) else []
-    limits = (179, 255, 255) * 2
+    maxima = (179, 255, 255) * 2
     if len(numbers) != 6 or not all(
-        isinstance(component, int | float) and 0 <= component <= limit
-        for component, limit in zip(numbers, limits, strict=True)
+        isinstance(component, int | float) and 0 <= component <= maximum
+        for component, maximum in zip(numbers, maxima, strict=True)
     ):
         hint = phrase(
             "give six numbers: the minimum hue (0 to 179), saturation and value (0 to 255), then the maximum of each"
         )
-        raise bad_setting(name, value, hint)
+        raise setting_error(name, value, hint)
     return tuple(int(number) for number in numbers)

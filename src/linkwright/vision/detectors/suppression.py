@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-MOST_CANDIDATES = 30_000
-"""The greatest number of boxes to compare, the most certain ones, as Ultralytics' ``max_nms``."""
+MAX_CANDIDATES = 30_000
+"""The maximum number of boxes to compare, as Ultralytics' ``max_nms``; the least certain ones are dropped."""
 
 
-def suppressed(
-    boxes: NDArray[np.float32], scores: NDArray[np.float32], classes: NDArray[np.int32], iou: float, most: int
+def non_maximum_suppression(
+    boxes: NDArray[np.float32], scores: NDArray[np.float32], classes: NDArray[np.int32], iou: float, max_boxes: int
 ) -> NDArray[np.intp]:
     """Return the indices of the boxes to keep, the most certain first.
 
@@ -18,23 +18,25 @@ def suppressed(
         boxes: shape ``(n, 4)``: left, top, right, bottom.
         scores: shape ``(n,)``.
         classes: shape ``(n,)``; boxes of different classes do not suppress each other.
-        iou: two boxes of a class with a larger intersection over union are the same object.
-        most: the maximum number of boxes to keep.
+        iou: the intersection over union above which two boxes of a class count as the same object.
+        max_boxes: the maximum number of boxes to keep.
 
     Returns:
-        Indices in `boxes`, at most `most`.
+        Indices into `boxes`.
     """
-    left = np.argsort(-scores, kind="stable")[:MOST_CANDIDATES]
+    remaining = np.argsort(-scores, kind="stable")[:MAX_CANDIDATES]
     areas = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     kept: list[int] = []
-    while left.size and len(kept) < most:
-        first, left = left[0], left[1:]
-        kept.append(int(first))
-        others = boxes[left]
-        width = np.minimum(boxes[first, 2], others[:, 2]) - np.maximum(boxes[first, 0], others[:, 0])
-        height = np.minimum(boxes[first, 3], others[:, 3]) - np.maximum(boxes[first, 1], others[:, 1])
-        common = np.maximum(width, 0) * np.maximum(height, 0)
-        union = areas[first] + areas[left] - common
-        same = (union > 0) & (common > iou * union)  # an untrained network also outputs boxes without area
-        left = left[~(same & (classes[left] == classes[first]))]
+    while remaining.size and len(kept) < max_boxes:
+        best, remaining = remaining[0], remaining[1:]
+        kept.append(int(best))
+        others = boxes[remaining]
+        width = np.minimum(boxes[best, 2], others[:, 2]) - np.maximum(boxes[best, 0], others[:, 0])
+        height = np.minimum(boxes[best, 3], others[:, 3]) - np.maximum(boxes[best, 1], others[:, 1])
+        intersection = np.maximum(width, 0) * np.maximum(height, 0)
+        union = areas[best] + areas[remaining] - intersection
+        is_same_object = (union > 0) & (
+            intersection > iou * union
+        )  # an untrained network also outputs boxes without area
+        remaining = remaining[~(is_same_object & (classes[remaining] == classes[best]))]
     return np.asarray(kept, np.intp)

@@ -15,37 +15,37 @@ from linkwright.vision.nodes.dialects import VISION, YOLO
 
 def vision_message(header: Any, found: Detections) -> Any:
     """Convert detections to vision_msgs/msg/Detection2DArray, with the class name as ``class_id``."""
-    one, hypothesis = (
+    detection_class, hypothesis_class = (
         get_message("vision_msgs/msg/Detection2D"),
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),
     )
-    detections = []
-    for index, (x, y, width, height) in enumerate(_centres(found)):
-        result = hypothesis()
+    detection_messages = []
+    for index, (x, y, width, height) in enumerate(_centres_and_sizes(found)):
+        result = hypothesis_class()
         result.hypothesis.class_id = found.name(index)
         result.hypothesis.score = float(found.scores[index])
-        detection = one(header=header, results=[result])
+        detection = detection_class(header=header, results=[result])
         detection.bbox.center.position.x, detection.bbox.center.position.y = x, y
         detection.bbox.size_x, detection.bbox.size_y = width, height
-        detections.append(detection)
-    return get_message(VISION)(header=header, detections=detections)
+        detection_messages.append(detection)
+    return get_message(VISION)(header=header, detections=detection_messages)
 
 
 def yolo_message(header: Any, found: Detections) -> Any:
     """Convert detections to yolo_msgs/msg/DetectionArray."""
-    one = get_message("yolo_msgs/msg/Detection")
-    detections = []
-    for index, (x, y, width, height) in enumerate(_centres(found)):
-        detection = one(class_id=int(found.classes[index]), class_name=found.name(index))
+    detection_class = get_message("yolo_msgs/msg/Detection")
+    detection_messages = []
+    for index, (x, y, width, height) in enumerate(_centres_and_sizes(found)):
+        detection = detection_class(class_id=int(found.classes[index]), class_name=found.name(index))
         detection.score = float(found.scores[index])
         detection.bbox.center.position.x, detection.bbox.center.position.y = x, y
         detection.bbox.size.x, detection.bbox.size.y = width, height
-        detections.append(detection)
-    return get_message(YOLO)(header=header, detections=detections)
+        detection_messages.append(detection)
+    return get_message(YOLO)(header=header, detections=detection_messages)
 
 
-MESSAGES: Mapping[str, Callable[[Any, Detections], Any]] = {VISION: vision_message, YOLO: yolo_message}
-"""The functions that make messages, by type."""
+MESSAGE_MAKERS: Mapping[str, Callable[[Any, Detections], Any]] = {VISION: vision_message, YOLO: yolo_message}
+"""The functions that convert detections to messages, by message type."""
 
 
 def image_message(header: Any, image: NDArray[np.uint8]) -> Any:
@@ -57,9 +57,9 @@ def image_message(header: Any, image: NDArray[np.uint8]) -> Any:
     return message
 
 
-def _centres(found: Detections) -> list[list[float]]:
-    """Return the centre and size of each box, in pixels."""
-    corners = found.boxes.astype(np.float64)
-    middle, size = (corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]
-    rows: list[list[float]] = np.hstack([middle, size]).tolist()
+def _centres_and_sizes(detections: Detections) -> list[list[float]]:
+    """Return the centre x and y, the width and the height of each box, in pixels."""
+    corners = detections.boxes.astype(np.float64)
+    centres, sizes = (corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]
+    rows: list[list[float]] = np.hstack([centres, sizes]).tolist()
     return rows

@@ -1,4 +1,4 @@
-"""Read detections of vision_msgs and yolo_msgs, and add tracker IDs and positions to them."""
+"""Read detections from messages of vision_msgs and yolo_msgs, and add tracker IDs and positions to them."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from linkwright.messages import get_message
 from linkwright.vision.detections import Detections
 
 
-class DetectionForm(ABC):
+class DetectionFormat(ABC):
     """The format of a package's detection messages.
 
     Args:
-        images: the type of messages with detections in an image.
-        places: the type of messages with detections in metres.
+        image_type: the type of messages with boxes in images.
+        position_type: the type of messages with boxes in metres.
     """
 
-    def __init__(self, images: str, places: str) -> None:
-        self.images, self.places = images, places
+    def __init__(self, image_type: str, position_type: str) -> None:
+        self.images, self.places = image_type, position_type
 
     def read(self, message: Any) -> Detections:
-        """Return the detections of a message in its order, with the best hypothesis of each."""
+        """Return the detections of a message in the same order, each with its best hypothesis."""
         best = [self.best(detection) for detection in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
@@ -36,10 +36,10 @@ class DetectionForm(ABC):
             names,
         )
 
-    def with_id(self, detection: Any, number: int) -> Any:
-        """Return a copy of a detection with the ID of a tracker."""
+    def with_track_id(self, detection: Any, track_id: int) -> Any:
+        """Return a copy of a detection that has the ID of a track."""
         tracked = copy(detection)
-        tracked.id = str(number)
+        tracked.id = str(track_id)
         return tracked
 
     @abstractmethod
@@ -52,68 +52,72 @@ class DetectionForm(ABC):
 
     @abstractmethod
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        """Return a detection with a box in metres, whose pose is in the frame of the header."""
+        """Return a detection with a box in metres; its pose is in the frame of the header."""
 
     @abstractmethod
     def place(self, detection: Any) -> Any:
         """Return the box in metres of a detection: a message with ``center`` and ``size``."""
 
 
-class _Vision(DetectionForm):
-    """The format of vision_msgs: a detection has hypotheses, whose class is a string."""
+class _Vision(DetectionFormat):
+    """The format of vision_msgs: a detection has hypotheses with classes as strings."""
 
     def best(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
             return "", 0.0
-        best = max((result.hypothesis for result in detection.results), key=lambda hypothesis: float(hypothesis.score))
-        return best.class_id, float(best.score)
+        best_hypothesis = max(
+            (result.hypothesis for result in detection.results), key=lambda hypothesis: float(hypothesis.score)
+        )
+        return best_hypothesis.class_id, float(best_hypothesis.score)
 
     def box(self, detection: Any) -> NDArray[np.float64]:
-        return _corners(detection.bbox.center.position, detection.bbox.size_x, detection.bbox.size_y)
+        return _box_corners(detection.bbox.center.position, detection.bbox.size_x, detection.bbox.size_y)
 
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        made = get_message("vision_msgs/msg/Detection3D")(header=header, id=detection.id)
-        _fill(made.bbox, pose, size)
+        positioned = get_message("vision_msgs/msg/Detection3D")(header=header, id=detection.id)
+        _set_box(positioned.bbox, pose, size)
         for hypothesis in detection.results:
             result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")(hypothesis=hypothesis.hypothesis)
-            result.pose.pose = made.bbox.center
-            made.results.append(result)
-        return made
+            result.pose.pose = positioned.bbox.center
+            positioned.results.append(result)
+        return positioned
 
     def place(self, detection: Any) -> Any:
         return detection.bbox
 
 
-class _Yolo(DetectionForm):
+class _Yolo(DetectionFormat):
     """The format of yolo_msgs: a detection has one class, and both a 2D box and a 3D box."""
 
     def best(self, detection: Any) -> tuple[str, float]:
         return detection.class_name, float(detection.score)
 
     def box(self, detection: Any) -> NDArray[np.float64]:
-        return _corners(detection.bbox.center.position, detection.bbox.size.x, detection.bbox.size.y)
+        return _box_corners(detection.bbox.center.position, detection.bbox.size.x, detection.bbox.size.y)
 
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        made = copy(detection)
-        made.bbox3d = get_message("yolo_msgs/msg/BoundingBox3D")(frame_id=header.frame_id)
-        _fill(made.bbox3d, pose, size)
-        return made
+        positioned = copy(detection)
+        positioned.bbox3d = get_message("yolo_msgs/msg/BoundingBox3D")(frame_id=header.frame_id)
+        _set_box(positioned.bbox3d, pose, size)
+        return positioned
 
     def place(self, detection: Any) -> Any:
         return detection.bbox3d
 
 
-VISION_FORM: DetectionForm = _Vision("vision_msgs/msg/Detection2DArray", "vision_msgs/msg/Detection3DArray")
-YOLO_FORM: DetectionForm = _Yolo("yolo_msgs/msg/DetectionArray", "yolo_msgs/msg/DetectionArray")
+VISION_FORMAT: DetectionFormat = _Vision("vision_msgs/msg/Detection2DArray", "vision_msgs/msg/Detection3DArray")
+YOLO_FORMAT: DetectionFormat = _Yolo("yolo_msgs/msg/DetectionArray", "yolo_msgs/msg/DetectionArray")
 
 
-def _corners(middle: Any, width: float, height: float) -> NDArray[np.float64]:
-    half = width / 2, height / 2
-    return np.array([middle.x - half[0], middle.y - half[1], middle.x + half[0], middle.y + half[1]], np.float64)
+def _box_corners(centre: Any, width: float, height: float) -> NDArray[np.float64]:
+    half_size = width / 2, height / 2
+    return np.array(
+        [centre.x - half_size[0], centre.y - half_size[1], centre.x + half_size[0], centre.y + half_size[1]], np.float64
+    )
 
 
-def _fill(box: Any, pose: Transform, size: tuple[float, float, float]) -> None:
-    at = box.center
-    at.position.x, at.position.y, at.position.z = pose[:3]
-    at.orientation.x, at.orientation.y, at.orientation.z, at.orientation.w = pose[3:]
+def _set_box(box: Any, pose: Transform, size: tuple[float, float, float]) -> None:
+    centre = box.center
+    centre.position.x, centre.position.y, centre.position.z = pose[:3]
+    centre.orientation.x, centre.orientation.y, centre.orientation.z, centre.orientation.w = pose[3:]
     box.size.x, box.size.y, box.size.z = size

@@ -1,7 +1,7 @@
 """The detector node, and its variants with the names of other packages.
 
 The node subscribes to images only while its detections have a subscriber. A thread processes the latest image, so that
-a slow network never builds up a queue. The same thread loads the detector, which may take seconds. Until then the node
+a slow network never builds up a queue. The same thread loads the detector, which may take seconds. Meanwhile the node
 does not process images, `set_classes` delays its response, and all other requests are answered immediately. The
 differences between the packages are in `dialects`.
 
@@ -11,14 +11,14 @@ Parameters, by the names of yolo_ros:
     an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
     that a package provides.
 ``labels``
-    a file with the names of the classes, instead of those in the network.
+    a file with the names of the classes, which replace those in the network's file.
 ``device``
     where the network runs: ``cpu``, ``cuda:0``.
 ``imgsz_height``, ``imgsz_width``
     the input size of a network that takes any size; 0 for the size used in training.
 ``threshold``, ``iou``, ``max_det``, ``classes``, ``enable``, ``max_rate``
-    which detections count, whether images are processed, and the maximum number of images per second (0: all). These
-    may be set at run time. ``classes`` are names; an empty list means all.
+    the limits for detections, whether images are processed, and the maximum number of images per second (0: all). They
+    can be set at run time. ``classes`` are names; an empty list means all classes.
 ``input_image_topic``, ``image_transport``, ``image_reliability``
     the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
 ``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
@@ -59,42 +59,42 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.drawing import drawn
-from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
+from linkwright.vision.detectors.options import MAX_SIZE, DetectorOptions
 from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
-from linkwright.vision.detectors.settings import bad_setting
-from linkwright.vision.nodes.detection_messages import MESSAGES, image_message
+from linkwright.vision.detectors.settings import setting_error
+from linkwright.vision.nodes.detection_messages import MESSAGE_MAKERS, image_message
 from linkwright.vision.nodes.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.vision.nodes.image_watch import ImageWatch
 from linkwright.vision.nodes.latest import LatestWorker
 
-_DEPTH = 10
-_SECONDS_BETWEEN_COMPLAINTS = 5.0
-_SHARE = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
-_RATE = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)])
-_SIDE = ParameterDescriptor(integer_range=[Range(0, LARGEST_SIZE)], read_only=True)
-_FOR_GOOD = ParameterDescriptor(read_only=True)
-_ANY = ParameterDescriptor(dynamic_typing=True)
-_SETTINGS = ("dictionary", "least_area", "part", "colour")
-_COLOURS = "colours"
-_CLASSES = "classes"
-_RATE_SLACK = 0.9
-"""The share of a period after which an image is accepted, so that a slightly early one is not skipped."""
+_QUEUE_DEPTH = 10
+_SECONDS_BETWEEN_ERRORS = 5.0
+_SHARE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
+_RATE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)])
+_SIDE_DESCRIPTOR = ParameterDescriptor(integer_range=[Range(0, MAX_SIZE)], read_only=True)
+_READ_ONLY = ParameterDescriptor(read_only=True)
+_ANY_TYPE = ParameterDescriptor(dynamic_typing=True)
+_DETECTOR_SETTINGS = ("dictionary", "least_area", "part", "colour")
+_COLOURS_PARAMETER = "colours"
+_CLASSES_PARAMETER = "classes"
+_MIN_PERIOD_SHARE = 0.9
+"""The share of a period after which the next image is accepted, so that a slightly early image is not skipped."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """An image for the detector, its limits, and whether to draw boxes into the image."""
+    """An image to process, the limits for its detections, and whether to draw boxes into it."""
 
     message: Any
     limits: Limits
-    draws: bool
+    draws_boxes: bool
 
 
 class DetectorNode(SingleNode):
     """The detector node. It exits if the detector does not exist or lacks a requested class.
 
     Attributes:
-        loaded: a future that is done when the detector is loaded.
+        loaded: a future that is done as soon as the detector is loaded.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, VISION109).
@@ -110,7 +110,7 @@ class DetectorNode(SingleNode):
         with starting(node):
             self._declare(dialect)
             settings = self._detector_options(dialect)
-            self._limits = self._limits_of({}, None)
+            self._limits = self._make_limits({}, None)
             self._source = self._image_source(dialect)
             self._qos = self._image_qos()
             log_unknown(node)
@@ -118,50 +118,52 @@ class DetectorNode(SingleNode):
         self.loaded: Future[None] = Future()
         self._names: tuple[str, ...] | None = None
         self._unpacker, self._ranges = Unpacker(), RangeFinder()
-        self._last_ns: int | None = None
-        self._done: deque[Callable[[], None]] = deque()
+        self._last_image_ns: int | None = None
+        self._results: deque[Callable[[], None]] = deque()
         output = node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.detections
-        self._detections = node.create_publisher(get_message(dialect.message), output, _DEPTH)
+        self._detections = node.create_publisher(get_message(dialect.message), output, _QUEUE_DEPTH)
         message_class = get_message("sensor_msgs/msg/Image")
-        self._images = [node.create_publisher(message_class, topic, _DEPTH) for topic in dialect.debug_images]
+        self._image_publishers = [
+            node.create_publisher(message_class, topic, _QUEUE_DEPTH) for topic in dialect.debug_images
+        ]
         node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
-        choose, waiting = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
-        node.create_service(choose, "set_classes", self._on_set_classes, callback_group=waiting)
+        set_classes, callback_group = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
+        node.create_service(set_classes, "set_classes", self._on_set_classes, callback_group=callback_group)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(lambda _: self._follow())
-        self._finished = node.create_guard_condition(self._deliver)
-        self._lazy: LazySubscriptions | None = None
+        self._result_condition = node.create_guard_condition(self._run_results)
+        self._subscriptions: LazySubscriptions | None = None
         load = partial(self._load, self._value(dialect.model), settings)
         self._worker = LatestWorker(load, f"{node.get_name()} detector")
 
     def close(self) -> None:
         """Close the node and its detector."""
-        if self._lazy is not None:
-            self._lazy.close()
+        if self._subscriptions is not None:
+            self._subscriptions.close()
         self._worker.close()
         super().close()
 
     def _declare(self, dialect: Dialect) -> None:
         node = self._node
-        node.declare_parameter(dialect.model, DEFAULT_DETECTOR, _FOR_GOOD)
-        node.declare_parameter(dialect.labels, "", _FOR_GOOD)
-        node.declare_parameter("device", "cpu", _FOR_GOOD)
-        node.declare_parameter("imgsz_height", 0, _SIDE)
-        node.declare_parameter("imgsz_width", 0, _SIDE)
-        node.declare_parameter(dialect.threshold, dialect.least_score, _SHARE)
-        node.declare_parameter(dialect.iou, dialect.overlap, _SHARE)
-        node.declare_parameter(dialect.most, dialect.largest_number)
-        node.declare_parameter(_CLASSES, [""], _ANY)
+        node.declare_parameter(dialect.model, DEFAULT_DETECTOR, _READ_ONLY)
+        node.declare_parameter(dialect.labels, "", _READ_ONLY)
+        node.declare_parameter("device", "cpu", _READ_ONLY)
+        node.declare_parameter("imgsz_height", 0, _SIDE_DESCRIPTOR)
+        node.declare_parameter("imgsz_width", 0, _SIDE_DESCRIPTOR)
+        node.declare_parameter(dialect.threshold, dialect.default_threshold, _SHARE_DESCRIPTOR)
+        node.declare_parameter(dialect.iou, dialect.default_iou, _SHARE_DESCRIPTOR)
+        node.declare_parameter(dialect.most, dialect.default_max_detections)
+        node.declare_parameter(_CLASSES_PARAMETER, [""], _ANY_TYPE)
         node.declare_parameter("enable", True)
-        node.declare_parameter("max_rate", 0.0, _RATE)
-        node.declare_parameter("image_transport", "raw", _FOR_GOOD)
-        node.declare_parameter("image_reliability", ReliabilityPolicy.BEST_EFFORT.value, _FOR_GOOD)
+        node.declare_parameter("max_rate", 0.0, _RATE_DESCRIPTOR)
+        node.declare_parameter("image_transport", "raw", _READ_ONLY)
+        node.declare_parameter("image_reliability", ReliabilityPolicy.BEST_EFFORT.value, _READ_ONLY)
         if dialect.image_topic:
-            node.declare_parameter(dialect.image_topic, dialect.images, _FOR_GOOD)
+            node.declare_parameter(dialect.image_topic, dialect.images, _READ_ONLY)
         if dialect.output_topic:
-            node.declare_parameter(dialect.output_topic, dialect.detections, _FOR_GOOD)
+            node.declare_parameter(dialect.output_topic, dialect.detections, _READ_ONLY)
         for name in node.undeclared_overrides():
-            if name in _SETTINGS or name.startswith(f"{_COLOURS}."):
+            if name in _DETECTOR_SETTINGS or name.startswith(f"{_COLOURS_PARAMETER}."):
                 node.declare_parameter(name, None, ParameterDescriptor(read_only=True, dynamic_typing=True))
 
     def _value(self, name: str) -> Any:
@@ -169,14 +171,16 @@ class DetectorNode(SingleNode):
 
     def _detector_options(self, dialect: Dialect) -> DetectorOptions:
         names = self._node.parameter_names()
-        settings: dict[str, object] = {name: self._value(name) for name in _SETTINGS if name in names}
-        colours = {name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLOURS}.")}
+        settings: dict[str, object] = {name: self._value(name) for name in _DETECTOR_SETTINGS if name in names}
+        colours = {
+            name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLOURS_PARAMETER}.")
+        }
         if colours:
-            settings[_COLOURS] = colours
+            settings[_COLOURS_PARAMETER] = colours
         size = self._value("imgsz_height"), self._value("imgsz_width")
         if 0 in size and any(size):
             missing = "imgsz_width" if size[0] else "imgsz_height"
-            raise bad_setting(missing, 0, phrase("give both the height and the width of the input, or neither"))
+            raise setting_error(missing, 0, phrase("give both the height and the width of the input, or neither"))
         labels = self._value(dialect.labels)
         return DetectorOptions(
             labels=Path(labels).expanduser() if labels else None,
@@ -189,65 +193,73 @@ class DetectorNode(SingleNode):
         topic = self._value(dialect.image_topic) if dialect.image_topic else dialect.images
         transport = self._value("image_transport")
         source = ImageSource.of(self._node.resolve_topic_name(topic), transport)
-        if not source.is_read:
+        if not source.is_supported:
             raise bad_value("image_transport", transport, self._node.get_name(), ("raw", "compressed"))
         return source
 
     def _image_qos(self) -> QoSProfile:
         reliability = self._value("image_reliability")
-        known = {policy.value: policy for policy in ReliabilityPolicy}
-        if reliability not in known:
+        policies = {policy.value: policy for policy in ReliabilityPolicy}
+        if reliability not in policies:
             raise bad_value("image_reliability", reliability, self._node.get_name(), ("1", "2"))
-        return QoSProfile(depth=1, reliability=known[reliability])
+        return QoSProfile(depth=1, reliability=policies[reliability])
 
-    def _limits_of(self, changed: dict[str, Any], known: Sequence[str] | None) -> Limits:
-        """Return the limits that the parameters set, with some values replaced.
+    def _make_limits(self, new_values: dict[str, Any], detector_classes: Sequence[str] | None) -> Limits:
+        """Return the limits that the parameters set, with new values for some parameters.
 
         Args:
-            changed: the replacing values, by parameter name.
-            known: the classes of the detector; None while it is being loaded, when all classes count.
+            new_values: the new values, by parameter name.
+            detector_classes: the classes of the detector; None while it is being loaded, which allows all classes.
 
         Raises:
-            LinkwrightError: NODE433, `max_det` is less than 1, or the detector has no such class.
+            LinkwrightError: NODE433, ``max_det`` is less than 1, or the detector lacks one of the classes.
         """
         dialect = self.DIALECT
-        threshold, iou, most, classes = (
-            changed.get(name, self._value(name)) for name in (dialect.threshold, dialect.iou, dialect.most, _CLASSES)
+        threshold, iou, max_detections, classes = (
+            new_values.get(name, self._value(name))
+            for name in (dialect.threshold, dialect.iou, dialect.most, _CLASSES_PARAMETER)
         )
-        if most < 1:
-            raise bad_value(dialect.most, most, self._node.get_name())
-        return Limits(threshold, iou, most, None if known is None else self._wanted(classes, known))
+        if max_detections < 1:
+            raise bad_value(dialect.most, max_detections, self._node.get_name())
+        return Limits(
+            threshold,
+            iou,
+            max_detections,
+            None if detector_classes is None else self._wanted(classes, detector_classes),
+        )
 
-    def _wanted(self, classes: Any, known: Sequence[str]) -> frozenset[str] | None:
-        given = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
-        wanted = []
-        for class_name in given:
-            numbered = isinstance(class_name, int) and not isinstance(class_name, bool) and 0 <= class_name < len(known)
-            name = known[class_name] if numbered else str(class_name)
+    def _wanted(self, classes: Any, detector_classes: Sequence[str]) -> frozenset[str] | None:
+        entries = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
+        requested = []
+        for class_name in entries:
+            is_number = (
+                isinstance(class_name, int)
+                and not isinstance(class_name, bool)
+                and 0 <= class_name < len(detector_classes)
+            )
+            name = detector_classes[class_name] if is_number else str(class_name)
             if class_name is None or name == "":
                 continue
-            if known and name not in known:
-                raise bad_value(_CLASSES, name, self._node.get_name(), known)
-            wanted.append(name)
-        return frozenset(wanted) if wanted else None
+            if detector_classes and name not in detector_classes:
+                raise bad_value(_CLASSES_PARAMETER, name, self._node.get_name(), detector_classes)
+            requested.append(name)
+        return frozenset(requested) if requested else None
 
     def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
-        changed = {parameter.name: parameter.value for parameter in parameters}
-        if self._names is None and _CLASSES in changed:
-            return SetParametersResult(
-                False, str(phrase("the detector is being loaded: its classes are not known yet"))
-            )
+        new_values = {parameter.name: parameter.value for parameter in parameters}
+        if self._names is None and _CLASSES_PARAMETER in new_values:
+            return SetParametersResult(False, str(phrase("the classes cannot be set until the detector is loaded")))
         try:
-            self._limits_of(changed, self._names)
+            self._make_limits(new_values, self._names)
         except LinkwrightError as error:
-            finding = error.diagnostics[0]
+            diagnostic = error.diagnostics[0]
             return SetParametersResult(
-                False, f"{finding.message}; {finding.hint}" if finding.hint else str(finding.message)
+                False, f"{diagnostic.message}; {diagnostic.hint}" if diagnostic.hint else str(diagnostic.message)
             )
         return SetParametersResult(True)
 
     def _follow(self) -> None:
-        self._limits = self._limits_of({}, self._names)
+        self._limits = self._make_limits({}, self._names)
 
     def _on_enable(self, request: Any, response: Any) -> Any:
         self._node.set_parameters([Parameter("enable", value=request.data)])
@@ -256,106 +268,112 @@ class DetectorNode(SingleNode):
 
     async def _on_set_classes(self, request: Any, response: Any) -> Any:
         await self.loaded
-        (result,) = self._node.set_parameters([Parameter(_CLASSES, value=list(request.classes) or [""])])
+        (result,) = self._node.set_parameters([Parameter(_CLASSES_PARAMETER, value=list(request.classes) or [""])])
         response.success, response.message = result.successful, result.reason
         return response
 
     def _subscribe(self) -> list[Subscription[Any]]:
-        kind = get_message(self._source.message_type)
-        return [self._node.create_subscription(kind, self._source.topic, self._receive, self._qos)]
+        message_class = get_message(self._source.message_type)
+        return [self._node.create_subscription(message_class, self._source.topic, self._receive, self._qos)]
 
     def _receive(self, message: Any) -> None:
         self._watch.came()
         if not self._value("enable") or self._is_too_early():
             return
-        draws = any(publisher.get_subscription_count() for publisher in self._images)
-        self._worker.offer(_Task(message, self._limits, draws))
+        draws_boxes = any(publisher.get_subscription_count() for publisher in self._image_publishers)
+        self._worker.offer(_Task(message, self._limits, draws_boxes))
 
     def _is_too_early(self) -> bool:
-        rate, now = self._value("max_rate"), self._node.get_clock().now().nanoseconds
-        if rate > 0 and self._last_ns is not None and 0 <= now - self._last_ns < _RATE_SLACK * 1e9 / rate:
+        rate, now_ns = self._value("max_rate"), self._node.get_clock().now().nanoseconds
+        if (
+            rate > 0
+            and self._last_image_ns is not None
+            and 0 <= now_ns - self._last_image_ns < _MIN_PERIOD_SHARE * 1e9 / rate
+        ):
             return True
-        self._last_ns = now
+        self._last_image_ns = now_ns
         return False
 
     # --- in the worker's thread ----------------------------------------------------------------------------------
 
     def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
-        """Load the detector, and return a function that runs it on an image."""
+        """Load the detector, and return a function that processes an image; None if loading failed."""
         try:
             detector = make_detector(model, options)
         except LinkwrightError as error:
-            self._hand_over(partial(self._fail, error))
+            self._queue_result(partial(self._fail, error))
             return None
         except Exception as error:  # noqa: BLE001 - of a detector that others may bring
-            self._hand_over(partial(self._fail, _failure(error)))
+            self._queue_result(partial(self._fail, _detector_failure(error)))
             return None
-        self._hand_over(partial(self._begin, detector))
+        self._queue_result(partial(self._begin, detector))
         return partial(self._look, detector)
 
     def _look(self, detector: Detector, task: _Task) -> None:
-        """Detect objects in an image, and hand the result over to the node."""
+        """Detect objects in an image, and queue the result for the node's callback."""
         try:
             message = self._unpacker.image(task.message, self._source.transport)
             image = decode_image(message, self._ranges).rgb()
-            found = detector.detect(image, task.limits)
-            image_with_boxes = drawn(image, found) if task.draws else None
+            detections = detector.detect(image, task.limits)
+            image_with_boxes = drawn(image, detections) if task.draws_boxes else None
         except (BadImageError, LinkwrightError) as error:
-            self._hand_over(partial(self._complain, str(error)))
+            self._queue_result(partial(self._log_error, str(error)))
         except Exception as error:  # noqa: BLE001 - of a detector that others may bring
-            self._hand_over(partial(self._complain, str(_failure(error))))
+            self._queue_result(partial(self._log_error, str(_detector_failure(error))))
         else:
-            self._hand_over(partial(self._publish, task.message.header, found, image_with_boxes))
+            self._queue_result(partial(self._publish, task.message.header, detections, image_with_boxes))
 
-    def _hand_over(self, result: Callable[[], None]) -> None:
-        self._done.append(result)
-        self._finished.trigger()
+    def _queue_result(self, result: Callable[[], None]) -> None:
+        self._results.append(result)
+        self._result_condition.trigger()
 
     # --- results, in the node's callbacks ------------------------------------------------------------------------
 
-    def _deliver(self) -> None:
-        while self._done:
-            self._done.popleft()()
+    def _run_results(self) -> None:
+        while self._results:
+            self._results.popleft()()
 
     def _begin(self, detector: Detector) -> None:
-        """Begin to subscribe to images."""
+        """Log the detector's notes, and begin to subscribe to images."""
         for note in detector.notes:
             self._node.get_logger().info(str(note))
         try:
-            self._limits = self._limits_of({}, detector.names)
+            self._limits = self._make_limits({}, detector.names)
         except LinkwrightError as error:
             self._fail(error)
             return
         self._names = detector.names
-        lazy = self._lazy = LazySubscriptions(
-            self._graph, self._node, [self._detections, *self._images], self._subscribe
+        subscriptions = self._subscriptions = LazySubscriptions(
+            self._graph, self._node, [self._detections, *self._image_publishers], self._subscribe
         )
-        self._watch = ImageWatch(self._node, self._source, self._qos, lambda: lazy.are_open, self.DIALECT.image_topic)
+        self._watch = ImageWatch(
+            self._node, self._source, self._qos, lambda: subscriptions.are_open, self.DIALECT.image_topic
+        )
         self.loaded.set_result(None)
 
     def _fail(self, error: LinkwrightError) -> None:
-        finding = error.diagnostics[0]
+        diagnostic = error.diagnostics[0]
         logger = self._node.get_logger()
-        logger.fatal(finding.message)
-        if finding.hint:
-            logger.fatal(finding.hint)
+        logger.fatal(diagnostic.message)
+        if diagnostic.hint:
+            logger.fatal(diagnostic.hint)
         if not self.finished.done():
             self.finished.set_result(1)
 
-    def _complain(self, problem: str) -> None:
-        self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+    def _log_error(self, problem: str) -> None:
+        self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_ERRORS)
 
-    def _publish(self, header: Any, found: Detections, image: NDArray[np.uint8] | None) -> None:
-        self._detections.publish(MESSAGES[self.DIALECT.message](header, found))
+    def _publish(self, header: Any, detections: Detections, image: NDArray[np.uint8] | None) -> None:
+        self._detections.publish(MESSAGE_MAKERS[self.DIALECT.message](header, detections))
         if image is None:
             return
         message = image_message(header, image)
-        for publisher in self._images:
+        for publisher in self._image_publishers:
             if publisher.get_subscription_count():
                 publisher.publish(message)
 
 
-def _failure(error: Exception) -> LinkwrightError:
+def _detector_failure(error: Exception) -> LinkwrightError:
     message = phrase("the detector failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
     return LinkwrightError(Diagnostic("VISION112", message))
 
@@ -369,7 +387,7 @@ class YoloRosNode(DetectorNode):
 class Yolov5RosNode(DetectorNode):
     """The detector of yolov5_ros.
 
-    It has ``weights``, ``confidence_threshold``, ``iou_threshold`` and ``output_topic``.
+    Its parameters are ``weights``, ``confidence_threshold``, ``iou_threshold`` and ``output_topic``, among others.
     """
 
     DEFAULT_NAME = "detect"

@@ -8,14 +8,14 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
-_SECONDS_FOR_THE_LAST = 10.0
+_CLOSE_TIMEOUT = 10.0
 
 
 class LatestWorker(Generic[T]):
-    """Calls a function in a thread with the item that was offered last.
+    """Calls a function in a thread, always with the latest item that was offered.
 
     Args:
-        prepare: called in the thread, may take seconds; returns the function, or None if there is nothing to do.
+        prepare: called in the thread, may take seconds; returns the function, or None to stop the thread.
             Neither `prepare` nor the function may raise.
         name: the name of the thread.
     """
@@ -24,14 +24,14 @@ class LatestWorker(Generic[T]):
         self._prepare = prepare
         self._changed = threading.Condition()
         self._waiting: list[T] = []
-        self._ended = False
+        self._is_closed = False
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
     def offer(self, item: T) -> None:
-        """Offer an item, which replaces an item that is still waiting."""
+        """Offer an item; it replaces an item that is still waiting."""
         with self._changed:
-            if not self._ended:
+            if not self._is_closed:
                 self._waiting[:] = [item]
                 self._changed.notify()
 
@@ -43,17 +43,17 @@ class LatestWorker(Generic[T]):
     def close(self) -> None:
         """Stop the thread, and wait up to 10 s for a running call."""
         with self._changed:
-            self._ended = True
+            self._is_closed = True
             self._waiting.clear()
             self._changed.notify()
-        self._thread.join(_SECONDS_FOR_THE_LAST)
+        self._thread.join(_CLOSE_TIMEOUT)
 
     def _run(self) -> None:
-        work = self._prepare()
-        while work is not None:
+        process = self._prepare()
+        while process is not None:
             with self._changed:
-                self._changed.wait_for(lambda: self._waiting or self._ended)
-                if self._ended:
+                self._changed.wait_for(lambda: self._waiting or self._is_closed)
+                if self._is_closed:
                     return
                 item = self._waiting.pop()
-            work(item)
+            process(item)

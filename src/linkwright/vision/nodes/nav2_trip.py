@@ -13,18 +13,18 @@ _ACTION = "nav2_msgs/action/NavigateToPose"
 
 
 class Nav2Trip:
-    """A client of nav2 that has one goal at a time.
+    """A client of nav2's action with at most one goal at a time.
 
     Args:
         node: the node that owns the action client.
-        ended: called when a goal that was not canceled has ended, with whether it was reached.
+        on_end: called with whether the goal was reached, when a goal that was not canceled has ended.
     """
 
-    def __init__(self, node: Node, ended: Callable[[bool], None]) -> None:
-        self._node, self._ended = node, ended
+    def __init__(self, node: Node, on_end: Callable[[bool], None]) -> None:
+        self._node, self._ended = node, on_end
         self._client = ActionClient(node, _ACTION, "navigate_to_pose")
-        self._trip: object | None = None
-        self._goal: Any = None
+        self._active_trip: object | None = None
+        self._goal_handle: Any = None
 
     @property
     def is_served(self) -> bool:
@@ -34,46 +34,48 @@ class Nav2Trip:
     @property
     def is_under_way(self) -> bool:
         """Whether a goal is active."""
-        return self._trip is not None
+        return self._active_trip is not None
 
     def begin(self, frame: str, robot: tuple[float, float], target: tuple[float, float], distance: float) -> None:
-        """Send a goal in front of an object: on the robot's side of it and facing it.
+        """Send a goal in front of an object, on the robot's side and facing the object.
 
         Args:
             frame: the frame of both positions.
             robot: the robot's position, x and y in metres.
-            target: the position of the object.
-            distance: the final distance between the centres of robot and object, metres.
+            target: the object's position, x and y in metres.
+            distance: the distance to keep between the centres of robot and object, metres.
         """
         yaw = atan2(target[1] - robot[1], target[0] - robot[0])
-        way = max(0.0, hypot(target[0] - robot[0], target[1] - robot[1]) - distance)
+        travel = max(0.0, hypot(target[0] - robot[0], target[1] - robot[1]) - distance)
         goal = get_action(_ACTION).Goal()
         goal.pose.header.frame_id = frame
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()
-        at, turn = goal.pose.pose.position, goal.pose.pose.orientation
-        at.x, at.y = robot[0] + way * cos(yaw), robot[1] + way * sin(yaw)
-        turn.z, turn.w = sin(yaw / 2), cos(yaw / 2)
-        trip = self._trip = object()
-        self._client.send_goal_async(goal).add_done_callback(lambda future: self._answered(trip, future.result()))
+        position, orientation = goal.pose.pose.position, goal.pose.pose.orientation
+        position.x, position.y = robot[0] + travel * cos(yaw), robot[1] + travel * sin(yaw)
+        orientation.z, orientation.w = sin(yaw / 2), cos(yaw / 2)
+        trip = self._active_trip = object()
+        self._client.send_goal_async(goal).add_done_callback(
+            lambda future: self._receive_response(trip, future.result())
+        )
 
     def cancel(self) -> None:
         """Cancel the active goal, if there is one."""
-        self._trip = None
-        if self._goal is not None:
-            self._goal.cancel_goal_async()
-            self._goal = None
+        self._active_trip = None
+        if self._goal_handle is not None:
+            self._goal_handle.cancel_goal_async()
+            self._goal_handle = None
 
-    def _answered(self, trip: object, goal: Any) -> None:
-        if trip is not self._trip:
+    def _receive_response(self, trip: object, goal: Any) -> None:
+        if trip is not self._active_trip:
             if goal.accepted:
                 goal.cancel_goal_async()
         elif goal.accepted:
-            self._goal = goal
-            goal.get_result_async().add_done_callback(lambda future: self._end(trip, future.result().status))
+            self._goal_handle = goal
+            goal.get_result_async().add_done_callback(lambda future: self._finish(trip, future.result().status))
         else:
-            self._end(trip, GoalStatus.ABORTED)
+            self._finish(trip, GoalStatus.ABORTED)
 
-    def _end(self, trip: object, status: int) -> None:
-        if trip is self._trip:
-            self._trip = self._goal = None
+    def _finish(self, trip: object, status: int) -> None:
+        if trip is self._active_trip:
+            self._active_trip = self._goal_handle = None
             self._ended(status == GoalStatus.SUCCEEDED)

@@ -1,7 +1,7 @@
 """object_seeker: finds an object by its name, drives to it or follows it, and describes visible objects.
 
 ``vision/go_to`` and ``vision/follow`` take a name, optionally with a colour (``red ball``, 红色的球).
-``vision/stop`` ends the search, and the outcome is published on ``/voice/response``.
+``vision/stop`` ends the search. The outcome is published on ``/voice/response``.
 ``vision/describe`` lists the visible objects.
 ``vision/go_to``, ``vision/follow`` and ``vision/describe`` have variants ``en`` and ``zh`` (``vision/go_to/zh``) for
 the language of the answer.
@@ -29,12 +29,12 @@ from linkwright.vision.nodes.seen_objects import SeenObject, SeenObjects
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
 from linkwright.vision.places.words import Answer, ObjectRequest, Sighting, answer, described, requested
 
-_DEPTH = 10
-_PERIOD = 0.05
-_SAME_PLACE = 0.6
-"""Metres between two images of one object whose id has changed."""
-_SEEN_NOW_SECONDS = 1.0
-_SILENT_LASER_SECONDS = 1.0
+_QUEUE_DEPTH = 10
+_STEP_SECONDS = 0.05
+_MAX_SAME_OBJECT_DISTANCE = 0.6
+"""The maximum distance in m at which a detection with a new ID is still the same object."""
+_MAX_DETECTION_AGE_SECONDS = 1.0
+_MAX_SCAN_AGE_SECONDS = 1.0
 
 
 class ObjectSeeker(SingleNode):
@@ -58,26 +58,26 @@ class ObjectSeeker(SingleNode):
             self._declare()
             log_unknown(node)
         self._poses = FramePoses(node, "it is not known where the robot is:")
-        self._seen = SeenObjects(node, self._poses, self._fixed)
+        self._seen_objects = SeenObjects(node, self._poses, self._fixed)
         self._request: ObjectRequest | None = None
-        self._answers_in = self._language
+        self._answer_language = self._language
         self._target: SeenObject | None = None
-        self._began_ns = 0
+        self._start_ns = 0
         self._scan: Any = None
         text = get_message("std_msgs/msg/String")
-        self._trip = Nav2Trip(node, self._trip_ended) if self._by_nav2 else None
+        self._trip = Nav2Trip(node, self._on_trip_end) if self._uses_nav2 else None
         self._velocity = VelocityTopic(node, "cmd_vel", frame_id=self._base)
-        self._response = node.create_publisher(text, "/voice/response", _DEPTH)
-        self._commander = Commander(self._commander_lost)
-        node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _DEPTH)
-        node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
+        self._response = node.create_publisher(text, "/voice/response", _QUEUE_DEPTH)
+        self._commander = Commander(self._on_commander_lost)
+        node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _QUEUE_DEPTH)
+        node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._receive_scan, SENSOR_DATA_QOS)
         for name, language in (("", None), *((f"/{language}", language) for language in LANGUAGES)):
             for topic, follow in (("vision/go_to", False), ("vision/follow", True)):
                 callback = self._commander.tracking_callback(partial(self._begin, language, follow))
-                self._commander.watch(node.create_subscription(text, topic + name, callback, _DEPTH))
-            answer_in = partial(self._describe, language or self._language)
-            node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", answer_in)
-        node.create_timer(_PERIOD, self._step)
+                self._commander.watch(node.create_subscription(text, topic + name, callback, _QUEUE_DEPTH))
+            describe_in_language = partial(self._describe, language or self._language)
+            node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", describe_in_language)
+        node.create_timer(_STEP_SECONDS, self._step)
 
     def close(self) -> None:
         """Stop the robot, and close the node."""
@@ -87,42 +87,42 @@ class ObjectSeeker(SingleNode):
         super().close()
 
     def _declare(self) -> None:
-        usual = SeekSettings()
+        defaults = SeekSettings()
         self._seeker = Seeker(
             SeekSettings(
-                distance=self._positive("distance", usual.distance),
-                speed=self._positive("max_linear_velocity", usual.speed),
-                turn_speed=self._positive("max_angular_velocity", usual.turn_speed),
-                lost_time=self._positive("lost_time", usual.lost_time),
-                obstacle_distance=self._positive("obstacle_distance", usual.obstacle_distance),
-                blocked_time=self._positive("blocked_time", usual.blocked_time),
+                distance=self._positive("distance", defaults.distance),
+                speed=self._positive("max_linear_velocity", defaults.speed),
+                turn_speed=self._positive("max_angular_velocity", defaults.turn_speed),
+                lost_time=self._positive("lost_time", defaults.lost_time),
+                obstacle_distance=self._positive("obstacle_distance", defaults.obstacle_distance),
+                blocked_time=self._positive("blocked_time", defaults.blocked_time),
             )
         )
-        self._radius = self._positive("robot_radius", 0.22)
+        self._robot_radius = self._positive("robot_radius", 0.22)
         self._base: str = self._node.declare_parameter("base_frame", "base_link").value
         self._fixed: str = self._node.declare_parameter("fixed_frame", "odom").value
-        self._by_nav2: bool = self._node.declare_parameter("use_nav2", False).value
+        self._uses_nav2: bool = self._node.declare_parameter("use_nav2", False).value
         self._language: str = self._node.declare_parameter("language", "en").value
         if self._language not in LANGUAGES:
             raise bad_value("language", self._language, self._node.get_name(), LANGUAGES)
 
-    def _positive(self, name: str, usual: float) -> float:
-        return positive(self._node, name, self._node.declare_parameter(name, usual).value)
+    def _positive(self, name: str, default: float) -> float:
+        return positive(self._node, name, self._node.declare_parameter(name, default).value)
 
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
     def _begin(self, language: str | None, follow: bool, message: Any) -> None:
-        """Seek the object that a message names, and answer in a language; None means the language of the message."""
+        """Seek the object that a message names. If `language` is None, answer in the language of the message."""
         request = requested(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
             return
-        self._answers_in = language or (self._language if request.language == ENGLISH else request.language)
+        self._answer_language = language or (self._language if request.language == ENGLISH else request.language)
         if self._seeker.phase is Phase.IDLE:
             self._velocity.review()
         self._cancel_trip()
-        self._request, self._target, self._began_ns = request, None, self._now_ns()
+        self._request, self._target, self._start_ns = request, None, self._now_ns()
         self._seeker.begin(follow=follow)
         self._answer(Answer.LOOKING)
 
@@ -133,23 +133,27 @@ class ObjectSeeker(SingleNode):
             self._velocity.stop()
             self._answer(Answer.STOPPED)
 
-    def _commander_lost(self, publisher: EndpointInfo) -> None:
+    def _on_commander_lost(self, publisher: EndpointInfo) -> None:
         if self._seeker.phase is not Phase.IDLE:
             self._node.get_logger().warning(describe_lost_publisher(publisher))
             self._stop()
 
-    def _feel(self, scan: Any) -> None:
+    def _receive_scan(self, scan: Any) -> None:
         self._scan = scan
 
     def _describe(self, language: str, _request: Any, response: Any) -> Any:
         pose = self._poses.pose(self._fixed, self._base, 0)
-        since = self._now_ns() - round(_SEEN_NOW_SECONDS * 1e9)
-        if pose is None or self._seen.heard_ns is None or self._seen.heard_ns < since:
+        oldest_ns = self._now_ns() - round(_MAX_DETECTION_AGE_SECONDS * 1e9)
+        if (
+            pose is None
+            or self._seen_objects.last_detections_ns is None
+            or self._seen_objects.last_detections_ns < oldest_ns
+        ):
             objects = []
         else:
             objects = [
-                Sighting(seen_object.name, seen_object.colour, *_within(pose, seen_object))
-                for seen_object in self._seen.objects
+                Sighting(seen_object.name, seen_object.colour, *_in_robot_frame(pose, seen_object))
+                for seen_object in self._seen_objects.objects
             ]
         response.success, response.message = True, described(objects, language)
         self._node.get_logger().info(response.message)
@@ -158,16 +162,16 @@ class ObjectSeeker(SingleNode):
     def _step(self) -> None:
         if self._seeker.phase is Phase.IDLE or (self._trip is not None and self._trip.is_under_way):
             return
-        move = self._seeker.step(self._view())
-        if move.event is not None:
-            self._answer(move.event)
-        if move.event is Answer.FOUND and self._begin_trip():
+        command = self._seeker.step(self._make_view())
+        if command.event is not None:
+            self._answer(command.event)
+        if command.event is Answer.FOUND and self._begin_trip():
             self._velocity.stop()
             return
-        self._velocity.publish((move.linear, 0.0, 0.0), (0.0, 0.0, move.angular))
+        self._velocity.publish((command.linear, 0.0, 0.0), (0.0, 0.0, command.angular))
 
     def _begin_trip(self) -> bool:
-        """Drive to the found object by nav2, and return whether nav2 is configured and available."""
+        """Send nav2 to the found object; return False if nav2 is not configured or not available."""
         trip, target = self._trip, self._target
         pose = self._poses.pose(self._fixed, self._base, 0)
         if trip is None or target is None or pose is None or self._seeker.follow or not trip.is_served:
@@ -176,85 +180,85 @@ class ObjectSeeker(SingleNode):
         trip.begin(self._fixed, (pose[0], pose[1]), (target.x, target.y), distance)
         return True
 
-    def _trip_ended(self, reached: bool) -> None:
+    def _on_trip_end(self, is_reached: bool) -> None:
         self._seeker.stop()
-        self._answer(Answer.ARRIVED if reached else Answer.BLOCKED)
+        self._answer(Answer.ARRIVED if is_reached else Answer.BLOCKED)
 
     def _cancel_trip(self) -> None:
         if self._trip is not None:
             self._trip.cancel()
 
-    def _view(self) -> View:
+    def _make_view(self) -> View:
         now_ns = self._now_ns()
-        heard_ns = max(self._seen.heard_ns or 0, self._began_ns)
-        silence = (now_ns - heard_ns) / 1e9
+        last_ns = max(self._seen_objects.last_detections_ns or 0, self._start_ns)
+        silence = (now_ns - last_ns) / 1e9
         pose = self._poses.pose(self._fixed, self._base, 0)
         if pose is None:
             return View(now_ns / 1e9, 0.0, silence=inf)
         heading = rpy_from_quaternion(pose[3:])[2]
-        self._target = self._chosen(pose) or self._target
-        free = self._free(now_ns)
+        self._target = self._choose_object(pose) or self._target
+        free_distance = self._free_distance(now_ns)
         if self._target is None:
-            return View(now_ns / 1e9, heading, silence=silence, free=free)
-        ahead, left = _within(pose, self._target)
+            return View(now_ns / 1e9, heading, silence=silence, free=free_distance)
+        ahead, left = _in_robot_frame(pose, self._target)
         return View(
             now_ns / 1e9,
             heading,
             bearing=atan2(left, ahead),
             surface=hypot(ahead, left) - self._target.radius,
-            seen_ago=(now_ns - self._target.seen_ns) / 1e9,
+            age=(now_ns - self._target.seen_ns) / 1e9,
             silence=silence,
-            free=free,
+            free=free_distance,
         )
 
-    def _chosen(self, pose: Transform) -> SeenObject | None:
-        """Return the seen object to drive to: the same as before, or else the nearest."""
+    def _choose_object(self, pose: Transform) -> SeenObject | None:
+        """Return the object to drive to: the previous target if it is visible, or else the nearest matching object."""
         assert self._request is not None, "it is asked for while it seeks"
-        fitting = [
+        candidates = [
             seen_object
-            for seen_object in self._seen.objects
+            for seen_object in self._seen_objects.objects
             if self._request.is_it(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
         ]
-        before = self._target
-        if before is not None:
-            same = [candidate for candidate in fitting if candidate.id and candidate.id == before.id]
-            near = [
+        previous = self._target
+        if previous is not None:
+            same_id = [candidate for candidate in candidates if candidate.id and candidate.id == previous.id]
+            nearby = [
                 candidate
-                for candidate in fitting
-                if hypot(candidate.x - before.x, candidate.y - before.y) < _SAME_PLACE
+                for candidate in candidates
+                if hypot(candidate.x - previous.x, candidate.y - previous.y) < _MAX_SAME_OBJECT_DISTANCE
             ]
-            if same or near or self._seeker.phase is Phase.GOING:
-                fitting = same or near
-        return min(fitting, key=lambda candidate: hypot(*_within(pose, candidate)), default=None)
+            if same_id or nearby or self._seeker.phase is Phase.GOING:
+                candidates = same_id or nearby
+        return min(candidates, key=lambda candidate: hypot(*_in_robot_frame(pose, candidate)), default=None)
 
-    def _free(self, now_ns: int) -> float:
-        """Return the distance in m from the robot's centre to the nearest point ahead; 0 if the laser is silent."""
+    def _free_distance(self, now_ns: int) -> float:
+        """Return the distance in m from the robot's centre to the nearest point ahead; 0 if scans have stopped."""
         scan = self._scan
         if scan is None:
             return inf
-        if now_ns - scan.header.stamp.nanoseconds > _SILENT_LASER_SECONDS * 1e9:
+        if now_ns - scan.header.stamp.nanoseconds > _MAX_SCAN_AGE_SECONDS * 1e9:
             return 0.0
         pose = self._poses.pose(self._base, scan.header.frame_id, 0)
         if pose is None:
             return inf
         ranges = np.asarray(scan.ranges, np.float64)
         angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
-        known = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
-        yaw = angles[known] + rpy_from_quaternion(pose[3:])[2]
-        x, y = pose[0] + ranges[known] * np.cos(yaw), pose[1] + ranges[known] * np.sin(yaw)
-        return float(x[(x > 0) & (np.abs(y) < self._radius)].min(initial=inf))
+        is_valid = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
+        yaw = angles[is_valid] + rpy_from_quaternion(pose[3:])[2]
+        x, y = pose[0] + ranges[is_valid] * np.cos(yaw), pose[1] + ranges[is_valid] * np.sin(yaw)
+        return float(x[(x > 0) & (np.abs(y) < self._robot_radius)].min(initial=inf))
 
     def _answer(self, event: Answer) -> None:
         if self._request is not None:
-            self._speak(answer(event, self._request, self._answers_in))
+            self._speak(answer(event, self._request, self._answer_language))
 
     def _speak(self, text: str) -> None:
         self._node.get_logger().info(text)
         self._response.publish(get_message("std_msgs/msg/String")(data=text))
 
 
-def _within(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
-    """Return an object's distances ahead of the robot and to its left, metres."""
-    x, y, _, *turn = invert(pose)
-    ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (seen_object.x, seen_object.y, 0.0))
+def _in_robot_frame(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
+    """Return how far an object is ahead of the robot and to its left, in metres."""
+    x, y, _, *rotation = invert(pose)
+    ahead, left, _ = rotate((rotation[0], rotation[1], rotation[2], rotation[3]), (seen_object.x, seen_object.y, 0.0))
     return ahead + x, left + y

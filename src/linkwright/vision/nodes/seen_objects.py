@@ -11,23 +11,23 @@ from linkwright.graph import SENSOR_DATA_QOS, Node
 from linkwright.images import BadImageError, RangeFinder, decode_image
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.vision.nodes.detection_reading import VISION_FORM
+from linkwright.vision.nodes.detection_reading import VISION_FORMAT
 from linkwright.vision.places.colours import colour_of
 
-_DEPTH = 10
-_KEPT_IMAGES = 10
-_KEPT_COLOURS = 200
-_VOTES = 30
+_QUEUE_DEPTH = 10
+_MAX_IMAGES = 10
+_MAX_TRACKS = 200
+_MAX_VOTES = 30
 
 
 @dataclass(frozen=True, slots=True)
 class SeenObject:
-    """An object that a detector has seen.
+    """An object in the latest detections.
 
     Attributes:
         name: the name of its class.
         id: the ID from the tracker; empty if there is none.
-        colour: the colour as a word; None if unknown.
+        colour: the word for its colour; None if it is unknown.
         x, y: the position of its centre in the fixed frame, metres.
         radius: half its width, metres.
         shape: its width divided by its height.
@@ -47,39 +47,39 @@ class SeenObject:
 
 
 class SeenObjects:
-    """Collects detections with positions, and determines the objects' colours from the images.
+    """Collects detections with positions, and determines the colours of objects from images.
 
-    The colour is measured in the box with the same ID. The topics are ``tracking`` and ``image_raw``.
+    The colour is measured in the box with the same ID in ``image_raw``; boxes with IDs arrive on ``tracking``.
 
     Args:
         node: the node that subscribes.
-        poses: the transforms.
+        poses: looks up transforms between frames.
         fixed_frame: the frame of the positions.
 
     Attributes:
         objects: the objects in the latest image.
-        heard_ns: when the latest detections arrived, by the node's clock; None before the first.
+        last_detections_ns: the time of the node's clock at which detections arrived last; None before the first.
     """
 
     def __init__(self, node: Node, poses: FramePoses, fixed_frame: str) -> None:
         self._node, self._poses, self._frame = node, poses, fixed_frame
         self.objects: list[SeenObject] = []
-        self.heard_ns: int | None = None
-        self._images: deque[Any] = deque(maxlen=_KEPT_IMAGES)
+        self.last_detections_ns: int | None = None
+        self._images: deque[Any] = deque(maxlen=_MAX_IMAGES)
         self._votes: OrderedDict[str, Counter[str]] = OrderedDict()
         self._ranges = RangeFinder()
         node.create_subscription(
             get_message("sensor_msgs/msg/Image"), "image_raw", self._images.append, SENSOR_DATA_QOS
         )
         node.create_subscription(
-            get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._receive_tracking, _DEPTH
+            get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._receive_tracking, _QUEUE_DEPTH
         )
         node.create_subscription(
-            get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._receive, _DEPTH
+            get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._receive, _QUEUE_DEPTH
         )
 
     def _receive_tracking(self, message: Any) -> None:
-        """Record the colours of objects that have IDs."""
+        """Count votes for the colours of objects that have IDs."""
         time_ns = message.header.stamp.nanoseconds
         image = next((candidate for candidate in self._images if candidate.header.stamp.nanoseconds == time_ns), None)
         if image is None or not any(detection.id for detection in message.detections):
@@ -91,29 +91,29 @@ class SeenObjects:
         if pixels.ndim != 3:
             return
         for detection in message.detections:
-            colour = colour_of(pixels[:, :, :3], VISION_FORM.box(detection)) if detection.id else None
+            colour = colour_of(pixels[:, :, :3], VISION_FORMAT.box(detection)) if detection.id else None
             if colour is not None:
                 votes = self._votes.setdefault(detection.id, Counter())
                 votes[colour] += 1
-                if votes.total() > _VOTES:
+                if votes.total() > _MAX_VOTES:
                     self._votes[detection.id] = Counter({name: count // 2 for name, count in votes.items()})
                 self._votes.move_to_end(detection.id)
-        while len(self._votes) > _KEPT_COLOURS:
+        while len(self._votes) > _MAX_TRACKS:
             self._votes.popitem(last=False)
 
     def _receive(self, message: Any) -> None:
-        self.heard_ns = self._node.get_clock().now().nanoseconds
+        self.last_detections_ns = self._node.get_clock().now().nanoseconds
         time_ns = message.header.stamp.nanoseconds
         self.objects = []
         pose = self._poses.pose(self._frame, message.header.frame_id, time_ns) if message.detections else None
         if pose is None:
             return
         for detection in message.detections:
-            at = detection.bbox.center.position
-            x, y, *_ = compose(pose, (at.x, at.y, at.z, 0.0, 0.0, 0.0, 1.0))
-            colours = self._votes.get(detection.id)
-            colour = colours.most_common(1)[0][0] if colours else None
-            name, score = VISION_FORM.best(detection)
+            centre = detection.bbox.center.position
+            x, y, *_ = compose(pose, (centre.x, centre.y, centre.z, 0.0, 0.0, 0.0, 1.0))
+            colour_votes = self._votes.get(detection.id)
+            colour = colour_votes.most_common(1)[0][0] if colour_votes else None
+            name, score = VISION_FORMAT.best(detection)
             size = detection.bbox.size
             shape = size.y / size.z if size.z > 0 else 1.0
             self.objects.append(SeenObject(name, detection.id, colour, x, y, size.y / 2, shape, score, time_ns))

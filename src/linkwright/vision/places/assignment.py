@@ -7,17 +7,17 @@ import numpy as np
 from linkwright.vision.places.camera import Floats
 
 
-def assign(costs: Floats, most: float) -> list[tuple[int, int]]:
-    """Return pairs of rows and columns of minimum total cost; no pair costs more than `most`.
+def assign(costs: Floats, max_cost: float) -> list[tuple[int, int]]:
+    """Return the pairs of rows and columns with minimum total cost; no pair costs more than `max_cost`.
 
-    To stay alone costs as much as `most` does, so that a pair is never made at the price of two bad ones.
+    An unpaired row costs `max_cost`, so that a good pair is never replaced by two bad ones.
 
     Args:
-        costs: shape ``(rows, columns)``; infinite for pairs that must not be.
-        most: the cost of a pair that is only just made.
+        costs: shape ``(rows, columns)``; infinite for forbidden pairs.
+        max_cost: the maximum cost of a pair.
 
     Returns:
-        The pairs, by rows.
+        The pairs, sorted by row.
 
     Source: the Hungarian method with shortest augmenting paths (Jonker and Volgenant, 1987).
     """
@@ -25,42 +25,42 @@ def assign(costs: Floats, most: float) -> list[tuple[int, int]]:
     if not rows or not columns:
         return []
     # Add a dummy column for each row; a row assigned to it is left unpaired.
-    padded = np.full((rows, columns + rows), most, np.float64)
-    padded[:, :columns] = np.where(costs <= most, costs, 2.0 * abs(most) * rows + 1e6)
-    owner = _owners(padded)
-    pairs = [(row, column) for column, row in enumerate(owner[:columns]) if row >= 0]
-    return sorted((row, column) for row, column in pairs if costs[row, column] <= most)
+    padded = np.full((rows, columns + rows), max_cost, np.float64)
+    padded[:, :columns] = np.where(costs <= max_cost, costs, 2.0 * abs(max_cost) * rows + 1e6)
+    row_of_column = _assign_columns(padded)
+    pairs = [(row, column) for column, row in enumerate(row_of_column[:columns]) if row >= 0]
+    return sorted((row, column) for row, column in pairs if costs[row, column] <= max_cost)
 
 
-def _owners(costs: Floats) -> list[int]:
-    """Return the row of each column in the minimum-cost assignment, -1 for none; rows must not exceed columns."""
+def _assign_columns(costs: Floats) -> list[int]:
+    """Return the row assigned to each column, or -1, at minimum total cost; rows must not exceed columns."""
     rows, columns = costs.shape
     row_prices, column_prices = np.zeros(rows), np.zeros(columns)
-    owner = [-1] * columns
+    row_of_column = [-1] * columns
     for row in range(rows):
         shortest = np.full(columns, np.inf)
-        before = np.full(columns, -1)
-        done = np.zeros(columns, dtype=bool)
-        current, column, reached = row, -1, 0.0
+        previous_column = np.full(columns, -1)
+        is_visited = np.zeros(columns, dtype=bool)
+        current_row, column, path_cost = row, -1, 0.0
         while True:
-            through = reached + costs[current] - row_prices[current] - column_prices
-            better = ~done & (through < shortest)
-            shortest[better] = through[better]
-            before[better] = column
-            column = int(np.argmin(np.where(done, np.inf, shortest)))
-            reached = float(shortest[column])
-            done[column] = True
-            if owner[column] < 0:
+            costs_through = path_cost + costs[current_row] - row_prices[current_row] - column_prices
+            is_shorter = ~is_visited & (costs_through < shortest)
+            shortest[is_shorter] = costs_through[is_shorter]
+            previous_column[is_shorter] = column
+            column = int(np.argmin(np.where(is_visited, np.inf, shortest)))
+            path_cost = float(shortest[column])
+            is_visited[column] = True
+            if row_of_column[column] < 0:
                 break
-            current = owner[column]
-        visited = np.flatnonzero(done)
-        row_prices[row] += reached
-        for each in visited:
-            if owner[each] >= 0:
-                row_prices[owner[each]] += reached - shortest[each]
-            column_prices[each] -= reached - shortest[each]
+            current_row = row_of_column[column]
+        visited = np.flatnonzero(is_visited)
+        row_prices[row] += path_cost
+        for visited_column in visited:
+            if row_of_column[visited_column] >= 0:
+                row_prices[row_of_column[visited_column]] += path_cost - shortest[visited_column]
+            column_prices[visited_column] -= path_cost - shortest[visited_column]
         while column >= 0:
-            previous = int(before[column])
-            owner[column] = row if previous < 0 else owner[previous]
+            previous = int(previous_column[column])
+            row_of_column[column] = row if previous < 0 else row_of_column[previous]
             column = previous
-    return owner
+    return row_of_column

@@ -1,6 +1,6 @@
 """Camera models: a pinhole camera, and a lens with distortion.
 
-Source: sensor_msgs/msg/CameraInfo, and OpenCV's camera model with its coefficients. The axes are those of REP 103: x to
+Sources: sensor_msgs/msg/CameraInfo, and OpenCV's camera model with its coefficients. The axes follow REP 103: x to
 the right, y down, z into the image. Pixel coordinates are those of boxes: pixel 0 extends from 0 to 1.
 """
 
@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-_TURNS = 20
+_UNDISTORT_ITERATIONS = 20
 """The number of iterations that undistort a point."""
-_MIDDLE = 0.5
-"""The offset in pixels between CameraInfo's origin, the middle of pixel 0, and that of boxes, its edge."""
-_MOST_COEFFICIENTS = 8
-_LENSES = ("", "plumb_bob", "rational_polynomial")
+_PIXEL_CENTRE = 0.5
+"""The offset in pixels: CameraInfo counts from the centre of pixel 0, boxes count from its edge."""
+_MAX_COEFFICIENTS = 8
+_DISTORTION_MODELS = ("", "plumb_bob", "rational_polynomial")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class CameraModel:
         width, height: the size of its images, pixels.
         fx, fy: focal lengths, pixels.
         cx, cy: the principal point, pixels.
-        distortion: the coefficients k1, k2, p1, p2, k3, k4, k5, k6 of the lens; fewer or none for a simpler lens.
+        distortion: the coefficients k1, k2, p1, p2, k3, k4, k5, k6 of the lens; missing ones are 0.
     """
 
     width: int
@@ -42,10 +42,10 @@ class CameraModel:
     distortion: tuple[float, ...] = ()
 
     def rays(self, pixels: Floats) -> Floats:
-        """Return the viewing rays of pixels.
+        """Return the viewing rays through points of the image.
 
         Args:
-            pixels: shape ``(n, 2)``, columns and rows.
+            pixels: shape ``(n, 2)``, x and y in pixels.
 
         Returns:
             Shape ``(n, 3)``: x, y, z with z = 1, in the optical frame.
@@ -53,57 +53,66 @@ class CameraModel:
         x = (pixels[:, 0] - self.cx) / self.fx
         y = (pixels[:, 1] - self.cy) / self.fy
         if any(self.distortion):
-            x, y = self._undistorted(x, y)
+            x, y = self._undistort(x, y)
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
     def pixels(self, points: Floats) -> Floats:
-        """Project points in the optical frame to pixels: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
+        """Project points in the optical frame, shape ``(n, 3)``, to pixels, shape ``(n, 2)``; z must not be 0."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
-            radial, across, down = self._bent(x, y)
-            x, y = x * radial + across, y * radial + down
+            radial, shift_x, shift_y = self._distortion_at(x, y)
+            x, y = x * radial + shift_x, y * radial + shift_y
         return np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
 
-    def _undistorted(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        straight_x, straight_y = x, y
-        for _ in range(_TURNS):
-            radial, across, down = self._bent(straight_x, straight_y)
-            straight_x, straight_y = (x - across) / radial, (y - down) / radial
-        return straight_x, straight_y
+    def _undistort(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        undistorted_x, undistorted_y = x, y
+        for _ in range(_UNDISTORT_ITERATIONS):
+            radial, shift_x, shift_y = self._distortion_at(undistorted_x, undistorted_y)
+            undistorted_x, undistorted_y = (x - shift_x) / radial, (y - shift_y) / radial
+        return undistorted_x, undistorted_y
 
-    def _bent(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
-        k1, k2, p1, p2, k3, k4, k5, k6 = (*self.distortion, *[0.0] * (_MOST_COEFFICIENTS - len(self.distortion)))
-        square = x * x + y * y
-        above = 1 + square * (k1 + square * (k2 + square * k3))
-        below = 1 + square * (k4 + square * (k5 + square * k6))
-        across = 2 * p1 * x * y + p2 * (square + 2 * x * x)
-        down = p1 * (square + 2 * y * y) + 2 * p2 * x * y
-        return above / below, across, down
+    def _distortion_at(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
+        k1, k2, p1, p2, k3, k4, k5, k6 = (*self.distortion, *[0.0] * (_MAX_COEFFICIENTS - len(self.distortion)))
+        radius_squared = x * x + y * y
+        numerator = 1 + radius_squared * (k1 + radius_squared * (k2 + radius_squared * k3))
+        denominator = 1 + radius_squared * (k4 + radius_squared * (k5 + radius_squared * k6))
+        shift_x = 2 * p1 * x * y + p2 * (radius_squared + 2 * x * x)
+        shift_y = p1 * (radius_squared + 2 * y * y) + 2 * p2 * x * y
+        return numerator / denominator, shift_x, shift_y
 
 
-def camera_model(
-    width: int, height: int, k: Sequence[float], d: Sequence[float] = (), p: Sequence[float] = (), lens: str = ""
+def make_camera_model(
+    width: int,
+    height: int,
+    k: Sequence[float],
+    d: Sequence[float] = (),
+    p: Sequence[float] = (),
+    distortion_model: str = "",
 ) -> CameraModel:
-    """Return the camera model of a CameraInfo, for raw images (``image_raw``).
+    """Return the camera model of a CameraInfo for raw images (``image_raw``).
 
     Args:
-        width: the width of its images.
-        height: the height of its images.
+        width: the width of the images, pixels.
+        height: the height of the images, pixels.
         k: the matrix for the distorted image, nine numbers row by row; zeros if the camera is not calibrated.
         d: the distortion coefficients.
         p: the matrix for the rectified image, twelve numbers; used if k is empty or zero.
-        lens: the distortion model, ``plumb_bob`` or ``rational_polynomial``.
+        distortion_model: the distortion model, ``plumb_bob`` or ``rational_polynomial``.
 
     Raises:
-        ValueError: the focal length or the size is missing, or the distortion model is unknown.
+        ValueError: the focal length or the size is missing, or the distortion model is not supported.
     """
     if width <= 0 or height <= 0:
         raise ValueError(f"the camera's images are {width} x {height} pixels")
     if len(k) and k[0] > 0 and k[4] > 0:
-        if any(d) and lens not in _LENSES:
-            raise ValueError(f"the distortion model '{lens}' is not known; it is one of plumb_bob, rational_polynomial")
-        lens_is = tuple(float(coefficient) for coefficient in d[:_MOST_COEFFICIENTS])
-        return CameraModel(width, height, float(k[0]), float(k[4]), float(k[2]) + _MIDDLE, k[5] + _MIDDLE, lens_is)
+        if any(d) and distortion_model not in _DISTORTION_MODELS:
+            raise ValueError(
+                f"the distortion model '{distortion_model}' is not known; it is one of plumb_bob, rational_polynomial"
+            )
+        coefficients = tuple(float(coefficient) for coefficient in d[:_MAX_COEFFICIENTS])
+        return CameraModel(
+            width, height, float(k[0]), float(k[4]), float(k[2]) + _PIXEL_CENTRE, k[5] + _PIXEL_CENTRE, coefficients
+        )
     if len(p) and p[0] > 0 and p[5] > 0:
-        return CameraModel(width, height, float(p[0]), float(p[5]), float(p[2]) + _MIDDLE, p[6] + _MIDDLE)
+        return CameraModel(width, height, float(p[0]), float(p[5]), float(p[2]) + _PIXEL_CENTRE, p[6] + _PIXEL_CENTRE)
     raise ValueError("the camera has no focal length: both K and P are zero")

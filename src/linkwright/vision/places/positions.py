@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 
 from linkwright.vision.places.camera import CameraModel, Floats
 
-_INNER = 0.6
-"""The central share of a box's width and height that most likely shows the object and not the background."""
-_LEAST_SHARE = 0.25
-"""The least part of the depths in the middle of a box that the object's surface has."""
-_LEAST_DEPTHS = 4
+_INNER_SHARE = 0.6
+"""The central share of a box's width and height that shows mostly the object, not the background."""
+_MIN_SURFACE_SHARE = 0.25
+"""The minimum share of the depths in the middle of a box that belong to the object's surface."""
+_MIN_DEPTHS = 4
 _GAP_METRES, _GAP_SHARE = 0.1, 0.05
-"""Two surfaces are apart where neighbouring depths differ by more than this, and by more than this share of them."""
-_FLAT = 0.1
-"""A surface whose depths differ by less than this share of its width is flat."""
-_SQUARE = (0.8, 1.25)
-"""Width by height of boxes of objects that are as round as balls, which touch the ground below their middle."""
+"""Neighbouring depths belong to different surfaces if they differ by more than this distance and this share."""
+_MAX_FLAT_SHARE = 0.1
+"""The maximum depth of a flat surface, as a share of its width."""
+_ROUND_ASPECT_RATIOS = (0.8, 1.25)
+"""The range of width / height of boxes of round objects, such as balls, which touch the ground below their centre."""
 _EDGE_PIXELS = 1.5
-_LEAST_FALL = 0.01
-"""A ray that falls by less than this, metres a metre, does not determine where it meets the ground."""
+_MIN_DESCENT = 0.01
+"""The minimum descent of a ray, in metres per metre, at which its point on the ground is used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,110 +41,116 @@ class Place:
     depth: float
 
 
-def place_by_depth(
-    box: NDArray[np.floating], depths: Floats, camera: CameraModel, *, spread: float = np.inf, farthest: float = np.inf
+def position_from_depth(
+    box: NDArray[np.floating],
+    depths: Floats,
+    camera: CameraModel,
+    *,
+    max_depth_difference: float = np.inf,
+    max_depth: float = np.inf,
 ) -> Place | None:
     """Return the position of an object from a depth image.
 
-    The nearest surface in the middle of the box counts, if it is more than an edge, because behind an object there is
-    always another surface, often a larger one. An object is assumed to be as deep as it is wide, unless its surface is
-    flat.
+    The nearest surface in the middle of the box is used if it is large enough: behind an object there is always
+    another surface, often a larger one. An object is assumed to be as deep as it is wide, unless its surface is flat.
 
     Args:
         box: left, top, right, bottom, in pixels of an image that is registered to the depth image and has the size of
             `camera`.
         depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or negative where unknown.
         camera: the camera of the image with the box.
-        spread: the largest difference in depth from the middle of the surface to a point of the object, metres.
-        farthest: greater depths are ignored, metres.
+        max_depth_difference: the maximum difference in depth between the middle of the surface and a point of the
+            object, metres.
+        max_depth: the maximum depth that is used, metres.
 
     Returns:
-        None if there are too few depths.
+        The position and size; None if there are too few depths.
     """
     rows, columns = depths.shape
     scale = np.array([columns / camera.width, rows / camera.height] * 2)
     scaled = np.asarray(box, np.float64) * scale
-    inner = _cut(depths, _shrunk(scaled, _INNER))
-    known = inner[np.isfinite(inner) & (inner > 0) & (inner <= farthest)]
-    if len(known) < max(_LEAST_DEPTHS, _LEAST_SHARE * _LEAST_SHARE * inner.size):
+    inner_depths = _depths_in(depths, _shrink_box(scaled, _INNER_SHARE))
+    valid_depths = inner_depths[np.isfinite(inner_depths) & (inner_depths > 0) & (inner_depths <= max_depth)]
+    if len(valid_depths) < max(_MIN_DEPTHS, _MIN_SURFACE_SHARE * _MIN_SURFACE_SHARE * inner_depths.size):
         return None
-    nearest, last = _nearest_surface(np.sort(known))
-    whole = _cut(depths, scaled)
-    middle = float(np.median(known[(known >= nearest) & (known <= last)]))
-    surface = whole[
-        (whole >= max(nearest - _gap(nearest), middle - spread)) & (whole <= min(last + _gap(last), middle + spread))
+    surface_start, surface_end = _nearest_surface(np.sort(valid_depths))
+    depths_in_box = _depths_in(depths, scaled)
+    surface_depth = float(np.median(valid_depths[(valid_depths >= surface_start) & (valid_depths <= surface_end)]))
+    surface = depths_in_box[
+        (depths_in_box >= max(surface_start - _min_gap(surface_start), surface_depth - max_depth_difference))
+        & (depths_in_box <= min(surface_end + _min_gap(surface_end), surface_depth + max_depth_difference))
     ]
     front = float(np.percentile(surface, 5))
-    width, height = _size(box, camera, front)
-    thick = float(np.percentile(surface, 95)) - front
-    depth = width if thick > _FLAT * width else thick
-    middle = front + depth / 2
-    width, height = _size(box, camera, middle)
+    width, height = _size_in_metres(box, camera, front)
+    thickness = float(np.percentile(surface, 95)) - front
+    depth = width if thickness > _MAX_FLAT_SHARE * width else thickness
+    surface_depth = front + depth / 2
+    width, height = _size_in_metres(box, camera, surface_depth)
     ray = camera.rays(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]
-    return Place((float(ray[0]) * middle, float(ray[1]) * middle, middle), width, height, depth)
+    return Place((float(ray[0]) * surface_depth, float(ray[1]) * surface_depth, surface_depth), width, height, depth)
 
 
-def place_on_ground(
-    box: NDArray[np.floating], camera: CameraModel, normal: Floats, height: float, *, farthest: float = np.inf
+def position_on_ground(
+    box: NDArray[np.floating], camera: CameraModel, normal: Floats, height: float, *, max_distance: float = np.inf
 ) -> Place | None:
     """Return the position of an object on the ground, from the lower edge of its box.
 
     An object is assumed to be as deep as it is wide. If its box is about square, the object touches the ground below
-    its centre, as a ball does. Otherwise the box ends at the foot of the object's front.
+    its centre, as a ball does. Any other object touches the ground with its front at the lower edge of the box.
 
     Args:
         box: left, top, right, bottom, pixels.
         camera: the camera of the image.
         normal: the ground's upward normal in the optical frame: shape ``(3,)``, length 1.
         height: the height of the camera above the ground, metres.
-        farthest: no position is returned for objects farther away, metres along the view.
+        max_distance: the maximum distance along the viewing ray, metres; beyond it the result is None.
 
     Returns:
-        None if the ground is not visible there: at the horizon and above, or below the image's edge.
+        The position and size; None if the box ends at or above the horizon, or at the lower edge of the image.
     """
     left, _, right, bottom = (float(edge) for edge in box)
     if bottom >= camera.height - _EDGE_PIXELS:
         return None
-    foot = camera.rays(np.array([[(left + right) / 2, bottom]]))[0]
-    fall = -float(foot @ normal)
-    if fall < _LEAST_FALL or height <= 0 or height / fall > farthest:
+    ray = camera.rays(np.array([[(left + right) / 2, bottom]]))[0]
+    descent = -float(ray @ normal)
+    if descent < _MIN_DESCENT or height <= 0 or height / descent > max_distance:
         return None
-    at = foot * (height / fall)
-    width, tall = _size(box, camera, float(at[2]))
-    if not _SQUARE[0] <= width / tall <= _SQUARE[1]:
-        ahead = foot + fall * normal
-        at = at + ahead * (width / 2 / max(float(np.linalg.norm(ahead)), 1e-9))
-        width, tall = _size(box, camera, float(at[2]))
-    centre = at + normal * (tall / 2)
-    return Place((float(centre[0]), float(centre[1]), float(centre[2])), width, tall, width)
+    position = ray * (height / descent)
+    width, object_height = _size_in_metres(box, camera, float(position[2]))
+    if not _ROUND_ASPECT_RATIOS[0] <= width / object_height <= _ROUND_ASPECT_RATIOS[1]:
+        horizontal = ray + descent * normal
+        position = position + horizontal * (width / 2 / max(float(np.linalg.norm(horizontal)), 1e-9))
+        width, object_height = _size_in_metres(box, camera, float(position[2]))
+    centre = position + normal * (object_height / 2)
+    return Place((float(centre[0]), float(centre[1]), float(centre[2])), width, object_height, width)
 
 
-def _size(box: NDArray[np.floating], camera: CameraModel, reach: float) -> tuple[float, float]:
-    return float(box[2] - box[0]) / camera.fx * reach, float(box[3] - box[1]) / camera.fy * reach
+def _size_in_metres(box: NDArray[np.floating], camera: CameraModel, depth: float) -> tuple[float, float]:
+    return float(box[2] - box[0]) / camera.fx * depth, float(box[3] - box[1]) / camera.fy * depth
 
 
-def _shrunk(box: Floats, share: float) -> Floats:
-    middle, half = (box[:2] + box[2:]) / 2, (box[2:] - box[:2]) / 2
-    return np.concatenate([middle - half * share, middle + half * share])
+def _shrink_box(box: Floats, share: float) -> Floats:
+    centre, half_size = (box[:2] + box[2:]) / 2, (box[2:] - box[:2]) / 2
+    return np.concatenate([centre - half_size * share, centre + half_size * share])
 
 
-def _cut(depths: Floats, box: Floats) -> Floats:
+def _depths_in(depths: Floats, box: Floats) -> Floats:
     rows, columns = depths.shape
     left, top = max(0, floor(box[0])), max(0, floor(box[1]))
     right, bottom = min(columns, ceil(box[2])), min(rows, ceil(box[3]))
     return depths[top : max(top, bottom), left : max(left, right)]
 
 
-def _gap(depth: float) -> float:
+def _min_gap(depth: float) -> float:
     return max(_GAP_METRES, _GAP_SHARE * depth)
 
 
-def _nearest_surface(known: Floats) -> tuple[float, float]:
-    """Return the depth range of the nearest surface of sufficient size, from sorted depths."""
-    gaps = np.diff(known) > np.maximum(_GAP_METRES, _GAP_SHARE * known[:-1])
-    surfaces = np.split(known, np.flatnonzero(gaps) + 1)
+def _nearest_surface(depths: Floats) -> tuple[float, float]:
+    """Return the depth range of the nearest sufficiently large surface, from sorted depths."""
+    gaps = np.diff(depths) > np.maximum(_GAP_METRES, _GAP_SHARE * depths[:-1])
+    surfaces = np.split(depths, np.flatnonzero(gaps) + 1)
     for surface in surfaces:
-        if len(surface) >= _LEAST_SHARE * len(known):
+        if len(surface) >= _MIN_SURFACE_SHARE * len(depths):
             return float(surface[0]), float(surface[-1])
     largest = max(surfaces, key=len)
     return float(largest[0]), float(largest[-1])

@@ -8,16 +8,16 @@ from math import inf, pi
 
 from linkwright.vision.places.words import Answer
 
-_FRESH_SECONDS = 0.5
-"""An object that was seen within these is seen now."""
-_ROUND = 2 * pi + 0.3
-_TURN_FIRST = 0.6
-"""An object that is further to the side, rad, is turned to before the robot drives."""
+_MAX_AGE_SECONDS = 0.5
+"""The maximum age of a detection of an object that counts as visible now, seconds."""
+_FULL_TURN = 2 * pi + 0.3
+_MAX_DRIVING_BEARING = 0.6
+"""The bearing in rad beyond which the robot turns to the object before it drives."""
 _TURN_GAIN, _SPEED_GAIN = 1.8, 0.8
-_SLOWEST = 0.06
-_NEAR_ENOUGH, _FACING = 0.03, 0.15
-_BEHIND_OBSTACLE = 0.2
-"""An obstacle that is nearer than the object by less than this is the object."""
+_MIN_SPEED = 0.06
+_DISTANCE_TOLERANCE, _BEARING_TOLERANCE = 0.03, 0.15
+_OBJECT_MARGIN = 0.2
+"""The distance in m in front of the object's surface within which an obstacle counts as the object."""
 
 
 class Phase(Enum):
@@ -30,7 +30,7 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SeekSettings:
-    """Settings of seeking.
+    """The settings of a seeker.
 
     Attributes:
         distance: the final distance from the robot's centre to the object's nearest side, metres.
@@ -51,31 +51,31 @@ class SeekSettings:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """The robot's knowledge at a step.
+    """The knowledge of the robot at a step of seeking.
 
     Attributes:
-        time: seconds.
-        heading: the robot's heading, rad, in a frame that does not turn with it.
-        bearing: the bearing of the object, rad to the left; valid if the object was ever seen.
+        time: the time of the step, seconds.
+        heading: the robot's heading in a fixed frame, rad.
+        bearing: the angle from the robot's heading to the object, rad, positive to the left; valid if it was ever seen.
         surface: the distance from the robot's centre to the object's nearest side, metres; infinite if it was never
             seen.
-        seen_ago: seconds since the object was seen; infinite if it was never seen.
-        silence: the seconds since the last message of a detector.
-        free: the distance from the robot's centre to the nearest obstacle in its way, metres.
+        age: seconds since the object was last seen; infinite if it was never seen.
+        silence: seconds since the last message of a detector.
+        free: the distance from the robot's centre to the nearest obstacle ahead, metres.
     """
 
     time: float
     heading: float
     bearing: float = 0.0
     surface: float = inf
-    seen_ago: float = inf
+    age: float = inf
     silence: float = 0.0
     free: float = inf
 
 
 @dataclass(frozen=True, slots=True)
-class Move:
-    """A velocity in m/s and rad/s, and an event."""
+class Command:
+    """A linear velocity in m/s, an angular velocity in rad/s, and an event to report or None."""
 
     linear: float = 0.0
     angular: float = 0.0
@@ -83,14 +83,14 @@ class Move:
 
 
 class Seeker:
-    """Seeks an object. It stops when the object is lost, when detections stop arriving, or when the path is blocked.
+    """Seeks an object. It stops if the object is lost, if detections stop arriving, or if the path is blocked.
 
     Args:
-        settings: the settings.
+        settings: the settings; None for the defaults.
 
     Attributes:
         phase: the current phase.
-        follow: whether to keep following the object after reaching it.
+        follow: whether to follow the object after reaching it.
     """
 
     def __init__(self, settings: SeekSettings | None = None) -> None:
@@ -99,76 +99,78 @@ class Seeker:
         self.follow = False
         self._heading: float | None = None
         self._blocked_at: float | None = None
-        self._turned = self._side = 0.0
+        self._turned_angle = self._turn_direction = 0.0
         self._was_found = False
 
     def stop(self) -> None:
-        """Stop seeking."""
+        """Stop seeking, without an event."""
         self.phase = Phase.IDLE
         self.follow = False
-        self._forget()
+        self._reset()
 
     def begin(self, *, follow: bool = False) -> None:
         """Begin to seek a new object."""
         self.stop()
         self.phase, self.follow = Phase.LOOKING, follow
 
-    def step(self, view: View) -> Move:
-        """Return the next move; call it several times per second unless the seeker is idle."""
+    def step(self, view: View) -> Command:
+        """Return the next velocity and event; call it several times per second unless the seeker is idle."""
         if self.phase is Phase.IDLE:
-            return Move()
+            return Command()
         if view.silence > self.settings.lost_time:
-            return self._end(Answer.BLIND)
+            return self._finish(Answer.BLIND)
         if self.phase is Phase.LOOKING:
             return self._look(view)
-        if view.seen_ago > self.settings.lost_time:
+        if view.age > self.settings.lost_time:
             self.phase = Phase.LOOKING
-            self._forget()
+            self._reset()
             self._was_found = True
             return self._look(view)
-        return self._go(view)
+        return self._approach(view)
 
-    def _look(self, view: View) -> Move:
-        if view.seen_ago < _FRESH_SECONDS:
-            first = not self._was_found
+    def _look(self, view: View) -> Command:
+        if view.age < _MAX_AGE_SECONDS:
+            is_first = not self._was_found
             self.phase = Phase.GOING
-            move = self._go(view)
-            return Move(move.linear, move.angular, move.event or Answer.FOUND) if first else move
+            command = self._approach(view)
+            return Command(command.linear, command.angular, command.event or Answer.FOUND) if is_first else command
         if self._heading is not None:
-            self._turned += abs((view.heading - self._heading + pi) % (2 * pi) - pi)
+            self._turned_angle += abs((view.heading - self._heading + pi) % (2 * pi) - pi)
         self._heading = view.heading
-        if self._turned > _ROUND:
-            return self._end(Answer.LOST if self._was_found else Answer.NOT_FOUND)
-        side = -1.0 if view.seen_ago < inf and view.bearing < 0 else 1.0
-        self._side = self._side or side
-        return Move(0.0, self._side * self.settings.turn_speed / 2)
+        if self._turned_angle > _FULL_TURN:
+            return self._finish(Answer.LOST if self._was_found else Answer.NOT_FOUND)
+        direction = -1.0 if view.age < inf and view.bearing < 0 else 1.0
+        self._turn_direction = self._turn_direction or direction
+        return Command(0.0, self._turn_direction * self.settings.turn_speed / 2)
 
-    def _go(self, view: View) -> Move:
+    def _approach(self, view: View) -> Command:
         settings = self.settings
         angular = max(-settings.turn_speed, min(settings.turn_speed, _TURN_GAIN * view.bearing))
-        left = view.surface - settings.distance
-        if left <= _NEAR_ENOUGH:
-            if abs(view.bearing) > _FACING:
-                return Move(0.0, angular)
-            return Move(0.0, angular) if self.follow else self._end(Answer.ARRIVED)
-        if abs(view.bearing) > _TURN_FIRST:
-            return Move(0.0, angular)
-        speed = max(_SLOWEST, min(settings.speed, _SPEED_GAIN * left)) * (1.0 - abs(view.bearing) / _TURN_FIRST / 2)
-        if view.free < view.surface - _BEHIND_OBSTACLE:
-            room = view.free - settings.obstacle_distance
-            if room <= 0:
+        remaining = view.surface - settings.distance
+        if remaining <= _DISTANCE_TOLERANCE:
+            if abs(view.bearing) > _BEARING_TOLERANCE:
+                return Command(0.0, angular)
+            return Command(0.0, angular) if self.follow else self._finish(Answer.ARRIVED)
+        if abs(view.bearing) > _MAX_DRIVING_BEARING:
+            return Command(0.0, angular)
+        speed = max(_MIN_SPEED, min(settings.speed, _SPEED_GAIN * remaining)) * (
+            1.0 - abs(view.bearing) / _MAX_DRIVING_BEARING / 2
+        )
+        if view.free < view.surface - _OBJECT_MARGIN:
+            free_distance = view.free - settings.obstacle_distance
+            if free_distance <= 0:
                 self._blocked_at = view.time if self._blocked_at is None else self._blocked_at
-                waited = view.time - self._blocked_at
-                return self._end(Answer.BLOCKED) if waited > settings.blocked_time else Move(0.0, angular)
-            speed = min(speed, _SPEED_GAIN * room)
+                waiting_time = view.time - self._blocked_at
+                return self._finish(Answer.BLOCKED) if waiting_time > settings.blocked_time else Command(0.0, angular)
+            speed = min(speed, _SPEED_GAIN * free_distance)
         self._blocked_at = None
-        return Move(speed, angular)
+        return Command(speed, angular)
 
-    def _end(self, event: Answer) -> Move:
+    def _finish(self, event: Answer) -> Command:
         self.stop()
-        return Move(event=event)
+        return Command(event=event)
 
-    def _forget(self) -> None:
+    def _reset(self) -> None:
         self._heading = self._blocked_at = None
-        self._turned = self._side = 0.0
+        self._turned_angle = self._turn_direction = 0.0
         self._was_found = False

@@ -10,13 +10,13 @@ from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import CHINESE, ENGLISH, localized
-from linkwright.images.colour_words import SPELLINGS, named_colour, words_of
+from linkwright.images.colour_words import SPELLINGS, find_colour_word, words_of
 
 _CHINESE_COLOURS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
     "紫": "purple", "粉": "pink", "棕": "brown", "褐": "brown", "白": "white", "灰": "grey", "黑": "black",
 }  # fmt: skip
-_ALIKE = (
+_SYNONYMS = (
     ("ball", "football", "soccer ball", "sports ball", "sphere", "球", "足球", "皮球", "小球"),
     ("crate", "box", "cube", "箱子", "箱", "盒子", "方块", "木箱"),
     ("cone", "traffic cone", "锥桶", "路锥", "锥筒", "圆锥", "雪糕筒"),
@@ -36,9 +36,9 @@ _ALIKE = (
     ("cat", "猫"),
     ("car", "汽车", "车"),
 )  # fmt: skip
-"""Names of the same object, English ones first; answers use the first Chinese one."""
-_FIRST = {name: group[0] for group in _ALIKE for name in group}
-_CHINESE = {group[0]: next(name for name in group if not name.isascii()) for group in _ALIKE}
+"""Names of the same object, the English ones first; answers use the first English or Chinese name."""
+_COMMON_NAMES = {name: group[0] for group in _SYNONYMS for name in group}
+_CHINESE_NAMES = {group[0]: next(name for name in group if not name.isascii()) for group in _SYNONYMS}
 _PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
 _FILLERS = {"the", "a", "an", "that", "this", "please", "to", "some", "any"}
 _VERBS = re.compile(
@@ -53,11 +53,11 @@ _NUMBERS = {
     ENGLISH: ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
     CHINESE: ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
 }
-_ROUND, _ABOUT_ONE = "ball", (0.75, 1.33)
-_FILLED_BY_A_CIRCLE = (0.7, 0.86)
-"""The part of its box that a round patch fills: about pi / 4; a square one fills it."""
-_AHEAD, _BESIDE = 20.0, 110.0
-"""Up to how many degrees off an object is ahead, and to the left or right; beyond it is behind."""
+_ROUND_NOUN, _ROUND_ASPECT_RATIOS = "ball", (0.75, 1.33)
+_ROUND_FILL_SHARES = (0.7, 0.86)
+"""The range of the share of its box that a round patch fills, about pi / 4; a square patch fills all of it."""
+_MAX_AHEAD_DEGREES, _MAX_BESIDE_DEGREES = 20.0, 110.0
+"""The maximum angle in degrees at which an object is ahead, and to the left or right; beyond, it is behind."""
 
 
 class Answer(Enum):
@@ -75,7 +75,7 @@ class Answer(Enum):
 
 _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
     Answer.LOOKING: lambda it: phrase("I am looking for the {it}.", it=it),
-    Answer.FOUND: lambda it: phrase("I see the {it}, and go there.", it=it),
+    Answer.FOUND: lambda it: phrase("I see the {it} and go there.", it=it),
     Answer.ARRIVED: lambda it: phrase("I am at the {it}.", it=it),
     Answer.NOT_FOUND: lambda it: phrase("I cannot find the {it}.", it=it),
     Answer.LOST: lambda it: phrase("I have lost the {it}.", it=it),
@@ -83,17 +83,17 @@ _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
     Answer.BLIND: lambda _: phrase("I stop: no detections arrive."),
     Answer.STOPPED: lambda _: phrase("I stop."),
 }
-"""The answer about an object."""
+"""The answers, given the name of the object."""
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectRequest:
-    """A requested object.
+    """An object that a user asks for.
 
     Attributes:
-        noun: its name, as `object_name` returns it; empty for any object of that colour.
+        noun: the name of the object, as `object_name` returns it; empty for any object of the colour.
         colour: one of `COLOURS`; None for any colour.
-        text: the spoken words, without filler words.
+        text: the words of the request, without filler words.
     """
 
     noun: str
@@ -106,36 +106,36 @@ class ObjectRequest:
         return ENGLISH if self.text.isascii() else CHINESE
 
     def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
-        """Return whether the request means an object of a class.
+        """Return whether an object is the requested one.
 
-        A class may have its colour in its name, as ``red_ball`` does. A class that is only a colour matches any object
-        of that colour, and matches a ball if the patch is about as wide as high. A ball of any colour may also be a
-        round patch.
+        A class can have a colour in its name, as ``red_ball`` has. A class that is only a colour matches any object
+        of that colour, and matches a ball if the patch is about as wide as high. If the request is for a ball of any
+        colour, a round patch also matches.
 
         Args:
-            name: the class.
-            colour: the colour of the object, if known.
+            name: the class of the object.
+            colour: the colour of the object; None if it is unknown.
             shape: the width divided by the height.
             score: the score of the detection; for a patch of a colour, the share of its box that it fills.
         """
         words = words_of(name)
-        own_colour = named_colour(name)
-        rest = " ".join(word for word in words if word not in SPELLINGS)
-        if self.colour is not None and self.colour != (own_colour or colour):
+        class_colour = find_colour_word(name)
+        class_noun = " ".join(word for word in words if word not in SPELLINGS)
+        if self.colour is not None and self.colour != (class_colour or colour):
             return False
         if not self.noun:
             return True
-        if not rest:
-            if self.noun != _ROUND:
+        if not class_noun:
+            if self.noun != _ROUND_NOUN:
                 return self.colour is not None
-            is_round = self.colour is not None or _FILLED_BY_A_CIRCLE[0] < score < _FILLED_BY_A_CIRCLE[1]
-            return is_round and _ABOUT_ONE[0] < shape < _ABOUT_ONE[1]
-        return self.noun in (object_name(rest), object_name(rest.split()[-1]))
+            is_round = self.colour is not None or _ROUND_FILL_SHARES[0] < score < _ROUND_FILL_SHARES[1]
+            return is_round and _ROUND_ASPECT_RATIOS[0] < shape < _ROUND_ASPECT_RATIOS[1]
+        return self.noun in (object_name(class_noun), object_name(class_noun.split()[-1]))
 
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A seen object: class, colour if known, and distances ahead and to the left of the robot in metres."""
+    """A visible object: class, colour or None, and distances ahead and to the left of the robot in metres."""
 
     name: str
     colour: str | None
@@ -145,86 +145,94 @@ class Sighting:
 
 def object_name(name: str) -> str:
     """Return the common name of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
-    plain = name.strip().lower()
-    if plain in _FIRST:
-        return _FIRST[plain]
-    singular = _PLURALS.get(plain) or (plain[:-1] if len(plain) > 3 and plain.endswith("s") else plain)
-    return _FIRST.get(singular, singular if singular in _PLURALS.values() else plain)
+    normalized = name.strip().lower()
+    if normalized in _COMMON_NAMES:
+        return _COMMON_NAMES[normalized]
+    singular = _PLURALS.get(normalized) or (
+        normalized[:-1] if len(normalized) > 3 and normalized.endswith("s") else normalized
+    )
+    return _COMMON_NAMES.get(singular, singular if singular in _PLURALS.values() else normalized)
 
 
 def requested(text: str) -> ObjectRequest | None:
     """Parse a request: ``ball``, ``go to the red ball``, ``去红色的球那里``; None if it names no object."""
-    plain = text.strip().strip(".,!?。，！？").lower()
-    if plain.isascii():
-        plain = _VERBS.sub("", f"{' '.join(plain.split())} ", count=1) if _VERBS.match(plain) else plain
-        words = [word for word in words_of(plain) if word not in _FILLERS]
+    normalized = text.strip().strip(".,!?。，！？").lower()
+    if normalized.isascii():
+        normalized = (
+            _VERBS.sub("", f"{' '.join(normalized.split())} ", count=1) if _VERBS.match(normalized) else normalized
+        )
+        words = [word for word in words_of(normalized) if word not in _FILLERS]
         colour = next((SPELLINGS[word] for word in words if word in SPELLINGS), None)
-        rest = " ".join(word for word in words if word not in SPELLINGS and word not in ("thing", "one"))
-        return ObjectRequest(object_name(rest), colour, " ".join(words)) if colour or rest else None
-    plain = _CHINESE_VERBS.sub("", plain)
-    colour = next((_CHINESE_COLOURS[sign] for sign in plain if sign in _CHINESE_COLOURS), None)
-    rest = _CHINESE_FILLERS.sub("", plain)
-    rest = "".join(sign for sign in rest if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
-    return ObjectRequest(object_name(rest), colour, re.sub(r"那个|这个|一个|请", "", plain)) if colour or rest else None
+        noun = " ".join(word for word in words if word not in SPELLINGS and word not in ("thing", "one"))
+        return ObjectRequest(object_name(noun), colour, " ".join(words)) if colour or noun else None
+    normalized = _CHINESE_VERBS.sub("", normalized)
+    colour = next((_CHINESE_COLOURS[character] for character in normalized if character in _CHINESE_COLOURS), None)
+    noun = _CHINESE_FILLERS.sub("", normalized)
+    noun = "".join(sign for sign in noun if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
+    return (
+        ObjectRequest(object_name(noun), colour, re.sub(r"那个|这个|一个|请", "", normalized))
+        if colour or noun
+        else None
+    )
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
-    """Describe seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
+    """Describe visible objects, the nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
         groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
     if not groups:
         return localized(phrase("I see nothing that I know."), language)
     if language == CHINESE:
-        return f"我看到{_joined([_in_chinese(group) for group in groups.values()], '，', '和')}。"
-    return f"I see {_joined([_in_english(group) for group in groups.values()], ', ', ' and ')}."
+        return f"我看到{_join([_describe_in_chinese(group) for group in groups.values()], '，', '和')}。"
+    return f"I see {_join([_describe_in_english(group) for group in groups.values()], ', ', ' and ')}."
 
 
 def named(name: str, colour: str | None, language: str) -> str:
     """Return the name of an object with its colour: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in SPELLINGS]
-    shown = named_colour(name) or colour
+    colour_word = find_colour_word(name) or colour
     noun = " ".join(words)
     if language != CHINESE:
-        return " ".join(filter(None, (shown, noun or "thing")))
-    chinese = _CHINESE.get(object_name(noun), noun) if noun else "东西"
-    signs = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
-    return f"{signs[shown]}色的{chinese}" if shown else chinese
+        return " ".join(filter(None, (colour_word, noun or "thing")))
+    chinese = _CHINESE_NAMES.get(object_name(noun), noun) if noun else "东西"
+    colour_characters = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
+    return f"{colour_characters[colour_word]}色的{chinese}" if colour_word else chinese
 
 
 def answer(event: Answer, request: ObjectRequest, language: str) -> str:
-    """Return the answer to a request, which names the object as in the request, or translated."""
+    """Return the answer to a request. It names the object as the request does, or translates the name."""
     name = request.text if request.language == language else named(request.noun, request.colour, language)
     return localized(_ANSWERS[event](name), language)
 
 
-def _in_english(group: Sequence[Sighting]) -> str:
-    first = group[0]
-    name = named(first.name, first.colour, ENGLISH)
+def _describe_in_english(group: Sequence[Sighting]) -> str:
+    sighting = group[0]
+    name = named(sighting.name, sighting.colour, ENGLISH)
     if len(group) > 1:
-        return f"{_number(len(group), ENGLISH)} {_plural(name)}"
+        return f"{_number_word(len(group), ENGLISH)} {_plural(name)}"
     article = "an" if name[0] in "aeiou" else "a"
-    return f"{article} {name} {hypot(first.ahead, first.left):.1f} m {_direction(first, ENGLISH)}"
+    return f"{article} {name} {hypot(sighting.ahead, sighting.left):.1f} m {_direction(sighting, ENGLISH)}"
 
 
-def _in_chinese(group: Sequence[Sighting]) -> str:
-    first = group[0]
-    name = named(first.name, first.colour, CHINESE)
+def _describe_in_chinese(group: Sequence[Sighting]) -> str:
+    sighting = group[0]
+    name = named(sighting.name, sighting.colour, CHINESE)
     if len(group) > 1:
-        return f"{_number(len(group), CHINESE)}个{name}"
-    return f"{_direction(first, CHINESE)}{hypot(first.ahead, first.left):.1f}米处有一个{name}"
+        return f"{_number_word(len(group), CHINESE)}个{name}"
+    return f"{_direction(sighting, CHINESE)}{hypot(sighting.ahead, sighting.left):.1f}米处有一个{name}"
 
 
 def _direction(sighting: Sighting, language: str) -> str:
     angle = degrees(atan2(sighting.left, sighting.ahead))
-    if abs(angle) <= _AHEAD:
+    if abs(angle) <= _MAX_AHEAD_DEGREES:
         return localized(phrase("ahead"), language)
-    if abs(angle) > _BESIDE:
+    if abs(angle) > _MAX_BESIDE_DEGREES:
         return localized(phrase("behind me"), language)
     return localized(phrase("to the left") if angle > 0 else phrase("to the right"), language)
 
 
-def _number(count: int, language: str) -> str:
+def _number_word(count: int, language: str) -> str:
     words = _NUMBERS[language]
     return words[count] if count < len(words) else str(count)
 
@@ -236,5 +244,5 @@ def _plural(name: str) -> str:
     return name + ("es" if name.endswith(("x", "s", "ch", "sh")) else "s")
 
 
-def _joined(parts: Sequence[str], comma: str, last: str) -> str:
-    return parts[0] if len(parts) == 1 else comma.join(parts[:-1]) + last + parts[-1]
+def _join(phrases: Sequence[str], comma: str, conjunction: str) -> str:
+    return phrases[0] if len(phrases) == 1 else comma.join(phrases[:-1]) + conjunction + phrases[-1]

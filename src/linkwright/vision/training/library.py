@@ -1,4 +1,4 @@
-"""Checks for PyTorch, which the extra ``train`` installs."""
+"""Check for PyTorch, which the extra ``train`` installs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.diagnostics import missing_extra
 
 
 def need_pytorch() -> None:
-    """Check that PyTorch is installed.
+    """Raise if PyTorch is not installed.
 
     Raises:
         LinkwrightError: VISION301, PyTorch or its ONNX exporter is not installed.

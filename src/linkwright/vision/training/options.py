@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-_PARTS = 0.42, 1.1
-_WHOLE = 0.8, 1.25
+_CROP_SCALES = 0.42, 1.1
+_FULL_SCALES = 0.8, 1.25
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """The size of a crop of an image, and the range of scales.
+    """The size of image crops, and the range of scales.
 
     Attributes:
         size: width and height, in pixels.
-        scales: the smallest and the largest factor that an image is scaled by.
+        scales: the minimum and maximum factor by which an image is scaled.
     """
 
     size: tuple[int, int]
@@ -33,19 +33,19 @@ class Options:
         epochs: the number of epochs; each uses images with rare classes more than once.
         whole_epochs: the number of final epochs that use full images, in the size used for evaluation.
         batch: the number of images per step.
-        rate: the highest learning rate.
+        rate: the maximum learning rate.
         width: the width of the network's input, in pixels, a multiple of 32.
         height: the height of the network's input, in pixels, a multiple of 32.
         channels: the channels of the first convolution; the others have multiples of it.
         seed: the random seed.
         threads: the number of CPU threads.
-        precision: the number format of training: ``float32``, or ``bfloat16`` where 16 bits are enough; weights always
-            have 32.
-        device: the training device: ``auto`` for the first CUDA GPU that PyTorch sees, or else the CPU; ``cpu``.
+        precision: the number format in training: ``float32``, or ``bfloat16`` for computations in which 16 bits are
+            enough. Weights always have 32 bits.
+        device: the training device: ``cpu``, or ``auto`` for the first CUDA GPU that PyTorch finds, or else the CPU.
         weights: the ONNX file of an earlier training to start from; None for random weights.
         resume: whether to resume from ``last.pt`` in the output folder.
-        held_out: the folders of datasets used only for evaluation, with their split ``test``, or else ``val``.
-        command: the user's command line for the card, without ``--resume``, which does not change the result.
+        held_out: the folders of datasets used only for evaluation: their split ``test``, or ``val`` if there is none.
+        command: the command line for the card, without ``--resume``, which does not change the result.
     """
 
     dataset: Path
@@ -68,12 +68,12 @@ class Options:
     command: str = ""
 
     def view(self, epoch: int) -> View:
-        """Return the view for an epoch, counted from 0: crops at first, full images in the end.
+        """Return the crops for an epoch, counted from 0: small ones at first, full images in the last epochs.
 
         Features depend little on the size of an image, so small crops teach nearly as much as full images in a quarter
         of the time. Full images are only needed for objects that fill much of an image.
         """
         if epoch >= self.epochs - self.whole_epochs:
-            return View((self.width, self.height), _WHOLE)
+            return View((self.width, self.height), _FULL_SCALES)
         width, height = (max(32, round(side / 2 / 32) * 32) for side in (self.width, self.height))
-        return View((width, height), _PARTS)
+        return View((width, height), _CROP_SCALES)

@@ -1,4 +1,4 @@
-"""Turn a dataset into a network with its card: train, export, and evaluate the exported file."""
+"""Train a network on a dataset, export it, evaluate the exported file, and write its card."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.evaluation import Evaluation
-from linkwright.vision.training.card import Examination, card, made_of, origin
+from linkwright.vision.training.card import Examination, dataset_facts, make_card, origin
 from linkwright.vision.training.library import need_pytorch
-from linkwright.vision.training.measuring import measure
+from linkwright.vision.training.measuring import evaluate_detector
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.reading import Dataset, Labelled, open_dataset
+from linkwright.vision.training.reading import Dataset, LabelledFile, open_dataset
 
 if TYPE_CHECKING:
     from linkwright.vision.training.learning.course import Epoch
@@ -29,8 +29,8 @@ class TrainingResult:
     Attributes:
         network: the ONNX file.
         card: the card of the network.
-        examinations: the evaluations on the split ``val`` of the training dataset, then on each held-out dataset.
-        interrupted: whether the training ended before its last epoch; the network is then the best so far.
+        examinations: the results on the split ``val`` of the training dataset, then on each held-out dataset.
+        interrupted: whether Ctrl-C ended the training before the last epoch; the network is then the best so far.
     """
 
     network: Path
@@ -39,11 +39,11 @@ class TrainingResult:
     interrupted: bool
 
 
-def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult:
+def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult:
     """Train a network, export it, evaluate the file, and write its card next to it.
 
     Args:
-        options: the options.
+        options: the options of the training.
         on_epoch: called after each epoch.
 
     Raises:
@@ -58,15 +58,15 @@ def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult
     from linkwright.vision.training.learning.export import to_onnx
 
     dataset = open_dataset(options.dataset)
-    lesson, exam = dataset.read("train"), dataset.read("val")
-    others = [(open_dataset(folder), _judging_split(open_dataset(folder))) for folder in options.held_out]
-    held_out = [(other, split, other.read(split)) for other, split in others]
+    training_images, validation_images = dataset.read("train"), dataset.read("val")
+    held_out_splits = [(open_dataset(folder), _evaluation_split(open_dataset(folder))) for folder in options.held_out]
+    held_out = [(held_out_dataset, split, held_out_dataset.read(split)) for held_out_dataset, split in held_out_splits]
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise _cannot_write(options.output, error) from None
+        raise _write_error(options.output, error) from None
     size = options.width, options.height
-    course = Course(dataset.names, options, read_lesson(lesson, *size), read_lesson(exam, *size))
+    course = Course(dataset.names, options, read_lesson(training_images, *size), read_lesson(validation_images, *size))
     if options.resume:
         course.load(options.output / "last.pt")
     elif options.weights is not None:
@@ -79,30 +79,30 @@ def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult
             raise
         interrupted = True
     except OSError as error:
-        raise _cannot_write(options.output, error) from None
-    facts = _facts(options, dataset, lesson, course.epoch, course.best_epoch, course.network)
+        raise _write_error(options.output, error) from None
+    facts = _training_facts(options, dataset, training_images, course.epoch, course.best_epoch, course.network)
     facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {course.place}"
     network = options.output / f"{options.name}.onnx"
-    described = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
-    described["dataset"] = facts["images' sha256"]
+    metadata = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
+    metadata["dataset"] = facts["images' sha256"]
     best = course.best_network()
-    balance = course.balance(best)
-    facts["scores"] = f"{balance:.2f} of the network is 0.5 in the file, where F1 on the split val is greatest"
-    content = to_onnx(best, dataset.names, *size, described, balance)
+    threshold = course.best_threshold(best)
+    facts["scores"] = f"{threshold:.2f} of the network is 0.5 in the file, where F1 on the split val is greatest"
+    content = to_onnx(best, dataset.names, *size, metadata, threshold)
     facts["file"] = f"{network.name}, {len(content) / 1e6:.2f} MB, sha256 {hashlib.sha256(content).hexdigest()}"
     try:
         write_whole_file(network, content)
-        held_back = f"Held-back images of {dataset.folder.name}"
-        examinations = [Examination(held_back, measure(network, dataset.names, exam))]
+        title_of_validation = f"Held-back images of {dataset.folder.name}"
+        examinations = [Examination(title_of_validation, evaluate_detector(network, dataset.names, validation_images))]
         for other, split, images in held_out:
             title = f"Held out: {other.folder.name} ({split})"
-            judged = measure(network, other.names, images)
-            examinations.append(Examination(title, judged, origin(other.folder, dataset.folder)))
-        text = options.output / f"{options.name}.md"
-        write_whole_file(text, card(options.name, facts, examinations))
+            evaluation = evaluate_detector(network, other.names, images)
+            examinations.append(Examination(title, evaluation, origin(other.folder, dataset.folder)))
+        card_file = options.output / f"{options.name}.md"
+        write_whole_file(card_file, make_card(options.name, facts, examinations))
     except OSError as error:
-        raise _cannot_write(options.output, error) from None
-    return TrainingResult(network, text, tuple(examinations), interrupted)
+        raise _write_error(options.output, error) from None
+    return TrainingResult(network, card_file, tuple(examinations), interrupted)
 
 
 def judge(model: str, folder: Path, split: str | None) -> Evaluation:
@@ -117,53 +117,53 @@ def judge(model: str, folder: Path, split: str | None) -> Evaluation:
         LinkwrightError: the detector cannot be created; VISION302 to VISION305 see `open_dataset` and `Dataset.read`.
     """
     dataset = open_dataset(folder)
-    return measure(model, dataset.names, dataset.read(split or _judging_split(dataset)))
+    return evaluate_detector(model, dataset.names, dataset.read(split or _evaluation_split(dataset)))
 
 
-def _judging_split(dataset: Dataset) -> str:
+def _evaluation_split(dataset: Dataset) -> str:
     return next((split for split in ("test", "val") if split in dataset.splits), "val")
 
 
-def _facts(
-    options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: Network
+def _training_facts(
+    options: Options, dataset: Dataset, images: Sequence[LabelledFile], epochs: int, best_epoch: int, network: Network
 ) -> dict[str, str]:
     """Return the facts about the training for the card."""
     parameters = sum(parameter.numel() for parameter in network.parameters())
-    asked = sum(int((~labelled.ignored).sum()) for labelled in lesson)
+    object_count = sum(int((~labelled.ignored).sum()) for labelled in images)
     return {
         "command": f"`{options.command}`",
         "classes": ", ".join(dataset.names),
-        "trained on": f"{len(lesson)} images with {asked} objects of the dataset {dataset.folder.name}",
-        **made_of(dataset.folder),
-        "images' sha256": sum_of(lesson),
-        **_beginning(options.weights),
+        "trained on": f"{len(images)} images with {object_count} objects of the dataset {dataset.folder.name}",
+        **dataset_facts(dataset.folder),
+        "images' sha256": dataset_digest(images),
+        **_initial_weights_facts(options.weights),
         "input": f"{options.width} x {options.height}, red, green, blue, 0 to 1",
         "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",
         "weights": f"{parameters}",
         "seed": str(options.seed),
-        "epochs": f"{epochs} of {options.epochs}; the best, which this is, was {best}",
+        "epochs": f"{epochs} of {options.epochs}; the best, which this is, was {best_epoch}",
     }
 
 
-def _beginning(weights: Path | None) -> dict[str, str]:
+def _initial_weights_facts(weights: Path | None) -> dict[str, str]:
     if weights is None:
         return {}
     try:
         return {"started from": f"{weights.name}, sha256 {hashlib.sha256(weights.read_bytes()).hexdigest()}"}
-    except OSError:  # the file was deleted before the training was resumed
+    except OSError:  # the file may have been deleted before the training was resumed
         return {"started from": weights.name}
 
 
-def sum_of(lesson: Sequence[Labelled]) -> str:
-    """Return the SHA-256 of images and labels, in order, to identify a dataset."""
-    whole = hashlib.sha256()
-    for labelled in lesson:
-        whole.update(hashlib.sha256(labelled.path.read_bytes()).digest())
-        whole.update(labelled.classes.tobytes() + labelled.boxes.tobytes())
-    return whole.hexdigest()
+def dataset_digest(images: Sequence[LabelledFile]) -> str:
+    """Return the SHA-256 of images and labels in order, which identifies a dataset."""
+    digest = hashlib.sha256()
+    for labelled in images:
+        digest.update(hashlib.sha256(labelled.path.read_bytes()).digest())
+        digest.update(labelled.classes.tobytes() + labelled.boxes.tobytes())
+    return digest.hexdigest()
 
 
-def _cannot_write(path: Path, error: OSError) -> LinkwrightError:
+def _write_error(path: Path, error: OSError) -> LinkwrightError:
     reason = foreign(error.strerror or error)
     message = phrase("cannot write to '{path}': {reason}", path=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("VISION307", message))

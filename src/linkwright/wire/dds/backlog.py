@@ -15,7 +15,7 @@ from collections import deque
 from collections.abc import Callable
 
 PATIENCE = 3.0
-"""Seconds after which samples are replaced all the same: a reader that was stopped acknowledges nothing."""
+"""Seconds after which samples are replaced anyway, because a stopped reader acknowledges nothing."""
 
 
 class Backlog:
@@ -47,36 +47,36 @@ class Backlog:
         self._matters = matters
         self._now = now
         self._waiting: deque[bytes] = deque(maxlen=depth)
-        self._written = 0
+        self._unacknowledged_count = 0
         self._late_since: float | None = None
         self._lock = threading.RLock()  # reentrant: the warning of a failed write may use this writer
 
     def send(self, sample: bytes) -> bool:
         """Write a sample, or queue it; return whether any sample is queued."""
         with self._lock:
-            if not self._written and len(sample) <= self._fragment_size:
+            if not self._unacknowledged_count and len(sample) <= self._fragment_size:
                 self._write(sample)
                 return False
             self._waiting.append(sample)
-            return self._write_what_fits()
+            return self._write_queued()
 
     def review(self) -> bool:
         """Write the queued samples that may be written now; return whether any remain queued."""
         with self._lock:
-            return self._write_what_fits()
+            return self._write_queued()
 
-    def _write_what_fits(self) -> bool:
+    def _write_queued(self) -> bool:
         while self._waiting and self._has_room():
-            self._written += 1
+            self._unacknowledged_count += 1
             self._write(self._waiting.popleft())
         return bool(self._waiting)
 
     def _has_room(self) -> bool:
         """Return whether the next sample would not replace a sample that may still be requested."""
-        if self._written < self._depth:
+        if self._unacknowledged_count < self._depth:
             return True
         if self._acknowledged():
-            self._written, self._late_since = 0, None
+            self._unacknowledged_count, self._late_since = 0, None
             return True
         if not self._matters():
             return True

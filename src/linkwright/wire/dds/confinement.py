@@ -14,7 +14,7 @@ import sys
 from collections.abc import Sequence
 
 _GROUP = "239.255.0.1"
-"""The group of announcements to everybody in a domain (DDSI-RTPS 2.5, 9.6.1.4.1)."""
+"""The multicast group of the announcements in a domain (DDSI-RTPS 2.5, 9.6.1.4.1)."""
 
 _ADD_SOURCE_MEMBERSHIP = 39
 """``IP_ADD_SOURCE_MEMBERSHIP`` of Linux, which Python's `socket` has from 3.12 on."""
@@ -37,13 +37,13 @@ def confine(addresses: Sequence[str]) -> socket.socket | None:
     """
     if not sys.platform.startswith("linux"):
         return None
-    members = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    membership_socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         for address in addresses:
-            own = socket.inet_aton(address)
-            membership = _Membership.pack(socket.inet_aton(_GROUP), own, own)
-            members.setsockopt(socket.IPPROTO_IP, _ADD_SOURCE_MEMBERSHIP, membership)
+            packed_address = socket.inet_aton(address)
+            membership = _Membership.pack(socket.inet_aton(_GROUP), packed_address, packed_address)
+            membership_socket.setsockopt(socket.IPPROTO_IP, _ADD_SOURCE_MEMBERSHIP, membership)
     except OSError:
-        members.close()
+        membership_socket.close()
         raise
-    return members
+    return membership_socket

@@ -27,7 +27,7 @@ TIMEOUT = -10
 BUILTIN_PARTICIPANTS = 0x7FFF_0001
 BUILTIN_PUBLICATIONS = 0x7FFF_0003
 BUILTIN_SUBSCRIPTIONS = 0x7FFF_0004
-"""Topics that Cyclone makes from discovery (DDS_BUILTIN_TOPIC_DCPS...)."""
+"""Topics that Cyclone fills from discovery (DDS_BUILTIN_TOPIC_DCPS...)."""
 
 ANY_STATE = 0x7F
 """Sample, view and instance states: everything (DDS_ANY_STATE)."""
@@ -86,7 +86,7 @@ _QOS = c.c_void_p
 _ENTITY = c.c_int32
 _HANDLES = c.POINTER(c.c_uint64)
 
-_QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
+_QUICK_FUNCTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_create_qos": (_QOS, ()),
     "dds_delete_qos": (None, (_QOS,)),
     "dds_free": (None, (c.c_void_p,)),
@@ -132,7 +132,7 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_strretcode": (c.c_char_p, (c.c_int32,)),
 }
 
-_WAITING: dict[str, tuple[Any, tuple[Any, ...]]] = {
+_BLOCKING_FUNCTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_create_domain": (_ENTITY, (c.c_uint32, c.c_char_p)),
     "dds_create_participant": (_ENTITY, (c.c_uint32, _QOS, c.c_void_p)),
     "dds_create_topic_sertype": (
@@ -165,8 +165,8 @@ class CycloneError(Exception):
         code: the return code, which is negative.
     """
 
-    def __init__(self, code: int, what: str) -> None:
-        super().__init__(f"{what}: {describe(code)}")
+    def __init__(self, code: int, operation: str) -> None:
+        super().__init__(f"{operation}: {describe(code)}")
         self.code = code
 
 
@@ -179,13 +179,13 @@ class Cyclone:
         from cyclonedds.internal import DDS
 
         path = DDS._dll_handle._name
-        quick, waiting = c.PyDLL(path), c.CDLL(path)
-        for library, functions in ((quick, _QUICK), (waiting, _WAITING)):
+        quick_library, blocking_library = c.PyDLL(path), c.CDLL(path)
+        for library, functions in ((quick_library, _QUICK_FUNCTIONS), (blocking_library, _BLOCKING_FUNCTIONS)):
             for name, (result, arguments) in functions.items():
                 function = getattr(library, name)
                 function.restype, function.argtypes = result, arguments
                 setattr(self, name, function)
-        self.type_version: int | None = c.cast(quick.ddsi_sertype_v0, c.c_void_p).value
+        self.type_version: int | None = c.cast(quick_library.ddsi_sertype_v0, c.c_void_p).value
         self.take_bytes = _clayer.ddspy_take
         self.take_participants = _clayer.ddspy_take_participant
         self.take_endpoints = _clayer.ddspy_take_endpoint
@@ -280,18 +280,18 @@ def load() -> Cyclone:
     return Cyclone()
 
 
-def check_call(code: int, what: str) -> int:
+def check_call(code: int, operation: str) -> int:
     """Return the result of a successful call.
 
     Args:
         code: the return code of the call.
-        what: a description of the call, for the error.
+        operation: a description of the call, for the error.
 
     Raises:
         CycloneError: the call failed.
     """
     if code < 0:
-        raise CycloneError(code, what)
+        raise CycloneError(code, operation)
     return code
 
 

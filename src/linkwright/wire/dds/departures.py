@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph
 
 GRACE = 0.4
-"""Seconds after the end of a process within which it is heard that its participant has left."""
+"""Seconds after the end of a process within which the departure of its participant is announced."""
 
-FAREWELL_WITHIN = 1.0
-"""Seconds after an endpoint is gone within which it is heard that it was withdrawn, should that come late."""
+WITHDRAWAL_TIMEOUT_S = 1.0
+"""Seconds after an endpoint disappears within which the announcement of its withdrawal may still arrive."""
 
 POLL_SECONDS = 0.2
-"""Seconds after which processes are looked at again."""
+"""The interval, in seconds, between two checks of the processes."""
 
 
 @dataclass(slots=True)
@@ -37,19 +37,19 @@ class _MissingWriter:
     Attributes:
         endpoint: the writer.
         node: the node that the writer belongs to.
-        due: when the writer counts as lost, in seconds of the steady clock; None until all pending announcements have
-            been read.
+        deadline: when the writer counts as lost, in seconds of the steady clock; None until all pending announcements
+            have been read.
     """
 
     endpoint: RemoteEndpoint
     node: NodeIdentity
-    due: float | None = None
+    deadline: float | None = None
 
 
 class Departures:
-    """Decides whether publishers that disappeared were lost. All but `watch` is for one thread.
+    """Decides whether publishers that disappeared were lost.
 
-    This thread is the discovery thread.
+    Only the discovery thread may call the methods, except `watch`.
 
     Args:
         remote: the remote graph, which calls `endpoint_left` and `announced`.
@@ -65,9 +65,9 @@ class Departures:
         self._reported: set[bytes] = set()
         remote.departures = self
 
-    def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
+    def watch(self, callback: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers, which runs in the discovery thread."""
-        self._watchers.append(lost)
+        self._watchers.append(callback)
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Handle the disappearance of an endpoint.
@@ -82,7 +82,9 @@ class Departures:
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
         """Handle an announcement: missing endpoints that are not in the announcement were withdrawn."""
         self._gone = [
-            gone for gone in self._gone if gone.endpoint.participant != participant or gone.endpoint.guid in endpoints
+            missing
+            for missing in self._gone
+            if missing.endpoint.participant != participant or missing.endpoint.guid in endpoints
         ]
 
     def review(self) -> float | None:
@@ -93,37 +95,39 @@ class Departures:
         """
         if not self._watchers:
             return None
-        self._review_gone()
+        self._review_missing_writers()
         processes = self._review_processes()
         return POLL_SECONDS if self._gone or processes else None
 
-    def _review_gone(self) -> None:
-        now, waiting = self._now(), []
-        for gone in self._gone:
-            if gone.due is None:
-                gone.due = now + FAREWELL_WITHIN
-            if now < gone.due:
-                waiting.append(gone)
+    def _review_missing_writers(self) -> None:
+        now, undecided = self._now(), []
+        for missing in self._gone:
+            if missing.deadline is None:
+                missing.deadline = now + WITHDRAWAL_TIMEOUT_S
+            if now < missing.deadline:
+                undecided.append(missing)
             else:
-                self._report(gone.endpoint, gone.node)
-        self._gone = waiting
+                self._report(missing.endpoint, missing.node)
+        self._gone = undecided
 
     def _review_processes(self) -> bool:
         """Check the processes of participants on this machine; return whether there are any."""
         now = self._now()
-        here = [participant for participant in self._remote.participants() if participant.process is not None]
-        dead = {participant.guid for participant in here if participant.has_died()}
+        local_participants = [
+            participant for participant in self._remote.participants() if participant.process is not None
+        ]
+        dead = {participant.guid for participant in local_participants if participant.has_died()}
         self._dead_since = {guid: self._dead_since.get(guid, now) for guid in dead}
-        self._reported &= dead | {gone.endpoint.participant for gone in self._gone}
+        self._reported &= dead | {missing.endpoint.participant for missing in self._gone}
         for guid, since in self._dead_since.items():
             if now - since >= GRACE and guid not in self._reported:
                 self._reported.add(guid)
-                for endpoint, node in self._remote.writers_of(guid):
+                for endpoint, node in self._remote.participant_writers(guid):
                     self._report(endpoint, node)
-        return bool(here)
+        return bool(local_participants)
 
     def _report(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         info = endpoint.endpoint_info(node)
         if info is not None and info.kind is EndpointKind.PUBLISHER:
-            for lost in self._watchers:
-                lost(info)
+            for callback in self._watchers:
+                callback(info)

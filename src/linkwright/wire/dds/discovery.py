@@ -30,20 +30,20 @@ from linkwright.wire.dds.discovery_info import (
 )
 from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
 from linkwright.wire.dds.participant import SERVICES_NAME, Participant, process_namespace
-from linkwright.wire.dds.qos import endpoint_qos, profile_of
+from linkwright.wire.dds.qos import endpoint_qos, profile_from_policies
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, is_fast, is_process_running
 from linkwright.wire.dds.type_descriptions import WireTypes
 from linkwright.wire.dds.waiting import WaitingThread
 
 DISCOVERY_TYPE_HASH = "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
-"""Of ``rmw_dds_common/msg/ParticipantEntitiesInfo``, Iron and later."""
+"""The hash of ``rmw_dds_common/msg/ParticipantEntitiesInfo`` in Iron and later."""
 
 _PROCESS_PROPERTIES = (
     ("fastdds.physical_data.host", "fastdds.physical_data.process"),
     ("__Hostname", "__Pid"),
 )
 _HOST = socket.gethostname()
-_AT_ONCE = 256
+_MAX_SAMPLES = 256
 _WRITER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history=HistoryPolicy.KEEP_ALL)
 
@@ -58,7 +58,7 @@ class Discovery:
 
     Args:
         participant: our participant.
-        thread: the thread in which everything of this class runs.
+        thread: the thread in which all methods of this class run.
         remote: the tables.
         types: descriptions of types.
         gid_size: the size of a gid, in bytes, until a ROS 2 node is discovered.
@@ -75,7 +75,7 @@ class Discovery:
         self.changed = False
         """Whether something outside has changed since the flag was last read and reset."""
         self._nodes: Sequence[NodeEntities] = ()
-        self._evidence: dict[bytes, int] = {}
+        self._gid_sizes: dict[bytes, int] = {}
         self._participants = self._create_builtin_reader(BUILTIN_PARTICIPANTS)
         self._publications = self._create_builtin_reader(BUILTIN_PUBLICATIONS)
         self._subscriptions = self._create_builtin_reader(BUILTIN_SUBSCRIPTIONS)
@@ -110,8 +110,8 @@ class Discovery:
             return topic, self._participant.create_reader(topic, qos)
 
     def _take_participants(self) -> bool:
-        taken = self._dds.take_participants(self._participants, _AT_ONCE, self._on_participant_sample, _pointer)
-        return isinstance(taken, list) and len(taken) == _AT_ONCE
+        samples = self._dds.take_participants(self._participants, _MAX_SAMPLES, self._on_participant_sample, _pointer)
+        return isinstance(samples, list) and len(samples) == _MAX_SAMPLES
 
     def _take_endpoints(self, reader: int, *, is_writer: bool) -> bool:
         def sample(
@@ -119,8 +119,8 @@ class Discovery:
         ) -> None:
             self._on_endpoint_sample(guid, owner, topic, type_name, qos, info, is_writer)
 
-        taken = self._dds.take_endpoints(reader, _AT_ONCE, sample, _pointer)
-        return isinstance(taken, list) and len(taken) == _AT_ONCE
+        samples = self._dds.take_endpoints(reader, _MAX_SAMPLES, sample, _pointer)
+        return isinstance(samples, list) and len(samples) == _MAX_SAMPLES
 
     def _on_participant_sample(self, guid: bytes, qos: int, info: Any) -> None:
         if guid == self._participant.guid:
@@ -128,19 +128,19 @@ class Discovery:
         self.changed = True
         if info.instance_state != INSTANCE_ALIVE:
             self._remote.remove_participant(guid)
-            self._forget_evidence(guid)
+            self._forget_gid_size(guid)
             return
-        facts = parse_user_data(self._dds.user_data(qos))
-        name, process, host = self._dds.entity_name(qos), self._process_of(qos), self._host_of(qos)
+        user_data = parse_user_data(self._dds.user_data(qos))
+        name, process, host = self._dds.entity_name(qos), self._local_process(qos), self._announced_host(qos)
         if name == SERVICES_NAME:
             return
-        self._remote.add_participant(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
+        self._remote.add_participant(RemoteParticipant(guid, user_data.get("enclave", "/"), name, process, host))
 
-    def _host_of(self, qos: int) -> str:
+    def _announced_host(self, qos: int) -> str:
         """Return the machine that a Fast DDS or Cyclone participant announces; empty if none."""
         return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
-    def _process_of(self, qos: int) -> int | None:
+    def _local_process(self, qos: int) -> int | None:
         """Return the id of a participant's process on this machine; None if it is not known.
 
         The announced id is accepted only if such a process runs here. A process in a container may have the host name
@@ -162,15 +162,15 @@ class Discovery:
         if info.instance_state != INSTANCE_ALIVE:
             self._remote.remove_endpoint(guid)
             return
-        facts = parse_user_data(self._dds.user_data(qos))
-        profile = profile_of(qos, announces_history=not is_fast(guid))
-        endpoint = RemoteEndpoint(guid, info.instance_handle, owner, is_writer, topic, type_name, profile, facts)
+        user_data = parse_user_data(self._dds.user_data(qos))
+        profile = profile_from_policies(qos, announces_history=not is_fast(guid))
+        endpoint = RemoteEndpoint(guid, info.instance_handle, owner, is_writer, topic, type_name, profile, user_data)
         self._remote.add_endpoint(endpoint)
         if is_writer and topic == DISCOVERY_TOPIC:
-            self._note_evidence(endpoint)
+            self._record_gid_size(endpoint)
 
     def _take_entities(self, reader: int) -> bool:
-        samples = self._dds.take_bytes(reader, ANY_STATE, _AT_ONCE)
+        samples = self._dds.take_bytes(reader, ANY_STATE, _MAX_SAMPLES)
         if not isinstance(samples, list):
             return False
         for data, info in samples:
@@ -178,7 +178,7 @@ class Discovery:
             if entities is not None:
                 self._remote.entities_announced(entities)
                 self.changed = True
-        return len(samples) == _AT_ONCE
+        return len(samples) == _MAX_SAMPLES
 
     def request_missing_nodes(self) -> float | None:
         """Request announcements from participants that have not announced their nodes.
@@ -203,8 +203,8 @@ class Discovery:
 
     def review_gid_size(self) -> None:
         """Update the gid size to what the other participants understand."""
-        ours = {participant.guid for participant in self._remote.participants() if participant.is_ours}
-        sizes = {size for owner, size in self._evidence.items() if owner not in ours}
+        own_participants = {participant.guid for participant in self._remote.participants() if participant.is_ours}
+        sizes = {size for owner, size in self._gid_sizes.items() if owner not in own_participants}
         size = max(sizes, default=self.gid_size)
         if size != self.gid_size:
             self.gid_size = size
@@ -214,28 +214,28 @@ class Discovery:
 
     def _new_writer(self) -> tuple[int, int]:
         topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
-        facts = f"typehash={DISCOVERY_TYPE_HASH};".encode() if self.gid_size == GID_SIZE else b""
-        with endpoint_qos(_WRITER_QOS, facts) as qos:
+        user_data = f"typehash={DISCOVERY_TYPE_HASH};".encode() if self.gid_size == GID_SIZE else b""
+        with endpoint_qos(_WRITER_QOS, user_data) as qos:
             return topic, self._participant.create_writer(topic, qos)
 
-    def _note_evidence(self, writer: RemoteEndpoint) -> None:
-        self._evidence[writer.participant] = GID_SIZE if "typehash" in writer.facts else OLD_GID_SIZE
+    def _record_gid_size(self, writer: RemoteEndpoint) -> None:
+        self._gid_sizes[writer.participant] = GID_SIZE if "typehash" in writer.user_data else OLD_GID_SIZE
 
-    def _forget_evidence(self, participant: bytes) -> None:
-        self._evidence.pop(participant, None)
+    def _forget_gid_size(self, participant: bytes) -> None:
+        self._gid_sizes.pop(participant, None)
 
 
-def announced_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
+def announced_processes(get_property: Callable[[str], str]) -> Iterator[tuple[str, str]]:
     """Yield the host and the process id of a participant, once for each vendor's properties.
 
     Fast DDS 3 identifies its machine by the machine id; the id of this machine is replaced by its host name.
 
     Args:
-        property_of: returns the value of a property of the participant; empty if there is no such property.
+        get_property: returns the value of a property of the participant; empty if there is no such property.
     """
     for host, process in _PROCESS_PROPERTIES:
-        name = property_of(host).partition(":")[0]
-        yield _HOST if name and name == machine_id() else name, property_of(process)
+        host_name = get_property(host).partition(":")[0]
+        yield _HOST if host_name and host_name == machine_id() else host_name, get_property(process)
 
 
 @lru_cache(maxsize=1)
@@ -253,7 +253,7 @@ def _pointer(qos: int) -> int:
 
 
 INTERVALS = (0.02, 0.1, 0.2, 0.4, 0.8)
-"""Seconds after which a participant that has not announced its nodes is asked, and asked again."""
+"""Seconds before each request to a participant that has not announced its nodes."""
 
 
 class DiscoveryRequests:
@@ -272,7 +272,7 @@ class DiscoveryRequests:
     def __init__(self, listen: Callable[[], Callable[[], None]]) -> None:
         self._listen = listen
         self._stop: Callable[[], None] | None = None
-        self._asked: int | None = None
+        self._request_count: int | None = None
         self._due = 0.0
 
     def review(self, *, is_complete: bool) -> float | None:
@@ -286,19 +286,19 @@ class DiscoveryRequests:
         """
         now = time.monotonic()
         if is_complete:
-            self._end()
-            self._asked = None
+            self._delete_reader()
+            self._request_count = None
             return None
-        if self._asked is None:
-            self._asked, self._due = 0, now + INTERVALS[0]
-        elif now >= self._due and self._asked < len(INTERVALS):
-            self._end()
+        if self._request_count is None:
+            self._request_count, self._due = 0, now + INTERVALS[0]
+        elif now >= self._due and self._request_count < len(INTERVALS):
+            self._delete_reader()
             self._stop = self._listen()
-            self._asked += 1
-            self._due = now + INTERVALS[min(self._asked, len(INTERVALS) - 1)]
-        return None if self._asked == len(INTERVALS) else max(self._due - now, 0.0)
+            self._request_count += 1
+            self._due = now + INTERVALS[min(self._request_count, len(INTERVALS) - 1)]
+        return None if self._request_count == len(INTERVALS) else max(self._due - now, 0.0)
 
-    def _end(self) -> None:
+    def _delete_reader(self) -> None:
         if self._stop is not None:
             self._stop()
             self._stop = None

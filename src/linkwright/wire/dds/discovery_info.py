@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 OLD_GID_SIZE = 24
-"""Up to Humble: the 16 bytes of the GUID and eight zeros."""
+"""The size of a gid up to Humble: the 16 bytes of the GUID and eight zeros."""
 
 GID_SIZE = 16
-"""From Iron on."""
+"""The size of a gid from Iron on: the 16 bytes of the GUID."""
 
 _HEADER = b"\x00\x01\x00\x00"
 
@@ -44,18 +44,18 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
         info: the announcement.
         gid_size: the size of each gid, in bytes.
     """
-    parts = bytearray(info.participant.ljust(gid_size, b"\0"))
+    buffer = bytearray(info.participant.ljust(gid_size, b"\0"))
     padding = bytes(gid_size - GID_SIZE)
-    _count(parts, len(info.nodes))
+    _count(buffer, len(info.nodes))
     for node in info.nodes:
-        _string(parts, node.namespace)
-        _string(parts, node.name)
+        _string(buffer, node.namespace)
+        _string(buffer, node.name)
         for gids in (node.readers, node.writers):
-            _count(parts, len(gids))
+            _count(buffer, len(gids))
             for gid in gids:
-                parts += gid + padding
-    parts += bytes(-len(parts) % 4)
-    return _HEADER + bytes(parts)
+                buffer += gid + padding
+    buffer += bytes(-len(buffer) % 4)
+    return _HEADER + bytes(buffer)
 
 
 def decode(data: bytes) -> ParticipantEntities | None:
@@ -70,19 +70,19 @@ def decode(data: bytes) -> ParticipantEntities | None:
             info = reader.participant()
         except (struct.error, IndexError, UnicodeDecodeError):
             continue
-        if reader.at_end():
+        if reader.is_at_end():
             return info
     return None
 
 
-def _count(parts: bytearray, count: int) -> None:
-    parts += bytes(-len(parts) % 4) + struct.pack("<I", count)
+def _count(buffer: bytearray, count: int) -> None:
+    buffer += bytes(-len(buffer) % 4) + struct.pack("<I", count)
 
 
-def _string(parts: bytearray, text: str) -> None:
+def _string(buffer: bytearray, text: str) -> None:
     encoded = text.encode() + b"\0"
-    _count(parts, len(encoded))
-    parts += encoded
+    _count(buffer, len(encoded))
+    buffer += encoded
 
 
 class _Reader:
@@ -96,7 +96,7 @@ class _Reader:
         gid = self._gid()
         return ParticipantEntities(gid, [self._node() for _ in range(self._count())])
 
-    def at_end(self) -> bool:
+    def is_at_end(self) -> bool:
         return 0 <= len(self._data) - self._offset < 4
 
     def _node(self) -> NodeEntities:
@@ -127,6 +127,6 @@ class _Reader:
         end = self._offset + size
         if end > len(self._data):
             raise IndexError("longer than the sample")
-        found = self._data[self._offset : end]
+        value = self._data[self._offset : end]
         self._offset = end
-        return found
+        return value

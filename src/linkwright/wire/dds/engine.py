@@ -30,17 +30,17 @@ from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error
 
 CLOSING_TIME = 1.0
-"""Seconds that leaving may take until reliable samples are acknowledged."""
+"""The maximum time, in seconds, for which closing waits until reliable samples are acknowledged."""
 
-_LOOK_AGAIN = 0.01
-_NAMED_WITHIN = 1.0
+_POLL_INTERVAL_S = 0.01
+_NODE_NAME_TIMEOUT_S = 1.0
 """Seconds within which a participant announces which node an endpoint belongs to."""
 
-_ANNOUNCE_SPAN = 0.1
-"""Seconds after which new nodes are announced though more of them are being made."""
+_MAX_ANNOUNCE_DELAY_S = 0.1
+"""Seconds after which new nodes are announced even if more nodes are being created."""
 
 _FIRST_ANNOUNCE_SPAN = 1.0
-"""The same for the first announcement, from which others conclude that they know all of a process."""
+"""The same for the first announcement, which other processes take to be complete."""
 
 
 class Engine(AnyEngine):
@@ -87,13 +87,13 @@ class Engine(AnyEngine):
         self._services: dict[Any, IncomingService] = {}
         self._clients: dict[Any, OutsideServer] = {}
         self._presences: dict[Any, QuietReader | QuietClient] = {}
-        self._leaving: dict[OutgoingTopic, float] = {}
+        self._closing_deadlines: dict[OutgoingTopic, float] = {}
         self._waiting: dict[OutgoingTopic, None] = {}
         self._is_announced = False
         self._announced_at = time.monotonic()
-        self._announce_span = _FIRST_ANNOUNCE_SPAN
+        self._max_announce_delay = _FIRST_ANNOUNCE_SPAN
         self._matches_changed = False
-        self._mismatched: dict[OutgoingTopic | IncomingTopic, float] = {}
+        self._mismatch_deadlines: dict[OutgoingTopic | IncomingTopic, float] = {}
 
     def start(self) -> None:
         """Start the threads."""
@@ -111,12 +111,12 @@ class Engine(AnyEngine):
         """
         self._control.stop(CLOSING_TIME)
         self._reception.stop(CLOSING_TIME)
-        self._do_all_work()
+        self._process_all_requests()
         self.abandon()
         if not ends_by_error():
             self._discovery.publish([])
         deadline = time.monotonic() + CLOSING_TIME
-        for topic in (*self._outgoing.values(), *self._leaving):
+        for topic in (*self._outgoing.values(), *self._closing_deadlines):
             if not topic.acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
                 break
         self._pacer.stop(CLOSING_TIME)
@@ -162,7 +162,7 @@ class Engine(AnyEngine):
         if topic is not None:
             self._control.detach(topic.entity)
             topic.abandon()
-            self._leaving[topic] = time.monotonic() + CLOSING_TIME
+            self._closing_deadlines[topic] = time.monotonic() + CLOSING_TIME
             self._is_announced = False
 
     def open_subscription(self, subscription: Any) -> None:
@@ -204,12 +204,12 @@ class Engine(AnyEngine):
         if topic is not None:
             self._reception.detach(topic.entity)
             topic.close()
-        for pairs in (self._services, self._clients):
-            pair = pairs.pop(endpoint, None)
-            if pair is not None:
-                self._reception.detach(pair.pair.reader)
-                self._control.detach(pair.pair.writer)
-                pair.close()
+        for mirrors in (self._services, self._clients):
+            mirror = mirrors.pop(endpoint, None)
+            if mirror is not None:
+                self._reception.detach(mirror.pair.reader)
+                self._control.detach(mirror.pair.writer)
+                mirror.close()
 
     # --- between requests --------------------------------------------------------------------------------------------
 
@@ -219,46 +219,46 @@ class Engine(AnyEngine):
         Returns:
             The seconds until the next call, or None if no call is needed.
         """
-        self._do_some_work()
+        self._process_some_requests()
         self._handle_discovery()
-        self._end_leaving()
+        self._close_finished_topics()
         self._write_waiting()
-        late = self._review_replies()
+        has_late_replies = self._review_replies()
         self._log_mismatches()
         self._announce()
-        asking, departing = self._discovery.request_missing_nodes(), self._departures.review()
+        next_request, next_review = self._discovery.request_missing_nodes(), self._departures.review()
         if self._work:
             return 0.0
-        if self._leaving or self._waiting or self._mismatched or late:
-            return _LOOK_AGAIN
-        return min((seconds for seconds in (asking, departing) if seconds is not None), default=None)
+        if self._closing_deadlines or self._waiting or self._mismatch_deadlines or has_late_replies:
+            return _POLL_INTERVAL_S
+        return min((seconds for seconds in (next_request, next_review) if seconds is not None), default=None)
 
     def _handle_discovery(self) -> None:
         matches_changed, self._matches_changed = self._matches_changed, False
-        changed, self._discovery.changed = self._discovery.changed, False
-        if changed:
+        has_changed, self._discovery.changed = self._discovery.changed, False
+        if has_changed:
             self._discovery.review_gid_size()
             self._discover_fast()
-        if changed or matches_changed:
+        if has_changed or matches_changed:
             for client in tuple(self._clients.values()):
                 client.review()
-        if changed:
+        if has_changed:
             self._remote.announce()
 
-    def _connect_fast(self, mirrored: IncomingService | OutsideServer) -> None:
+    def _connect_fast(self, mirror: IncomingService | OutsideServer) -> None:
         """Make a new service or client known to the participants on Fast DDS, if they are served."""
         if self._fast is None:
             self._discover_fast()
         else:
-            mirrored.meet_fast(self._fast)
+            mirror.meet_fast(self._fast)
 
     def _discover_fast(self) -> None:
         """Create the participant for Fast DDS if needed, and look for newly discovered participants.
 
         It is needed once a participant on Fast DDS exists and this process has a service or a client.
         """
-        fast = self._remote.fast_participants()
-        if self._fast is None and self._is_fast_possible and fast and (self._services or self._clients):
+        fast_participants = self._remote.fast_participants()
+        if self._fast is None and self._is_fast_possible and fast_participants and (self._services or self._clients):
             self._is_fast_possible = False
             try:
                 self._fast = RtpsParticipant(self._settings, SERVICES_NAME, self._on_match)
@@ -270,11 +270,11 @@ class Engine(AnyEngine):
             for client in self._clients.values():
                 client.meet_fast(self._fast)
         if self._fast is not None:
-            self._fast.expect(fast)
+            self._fast.expect(fast_participants)
 
     def _fast_address(self, reader: bytes) -> Address | None:
         """Return the address of a Fast DDS reader on this machine; None if it is not known."""
-        return None if self._fast is None else self._fast.address_of(reader)
+        return None if self._fast is None else self._fast.reader_address(reader)
 
     def _on_match(self) -> None:
         self._matches_changed = True
@@ -294,55 +294,57 @@ class Engine(AnyEngine):
                 self._waiting[topic] = None
 
     def _on_mismatch(self, topic: OutgoingTopic | IncomingTopic) -> None:
-        self._mismatched[topic] = time.monotonic() + _NAMED_WITHIN
+        self._mismatch_deadlines[topic] = time.monotonic() + _NODE_NAME_TIMEOUT_S
         self._control.wake()
 
     def _log_mismatches(self) -> None:
         """Report incompatible QoS. The node names become known shortly after the mismatch."""
-        for topic, due in tuple(self._mismatched.items()):
-            is_due = time.monotonic() >= due
+        for topic, deadline in tuple(self._mismatch_deadlines.items()):
+            is_due = time.monotonic() >= deadline
             topic.log_mismatches(finally_=is_due)
             if is_due:
-                self._mismatched.pop(topic, None)
+                self._mismatch_deadlines.pop(topic, None)
 
     def _review_replies(self) -> bool:
-        waiting = [service for service in tuple(self._services.values()) if service.has_more_to_do]
-        for service in waiting:
+        busy_services = [service for service in tuple(self._services.values()) if service.has_more_to_do]
+        for service in busy_services:
             service.review()
-        return any(service.has_more_to_do for service in waiting)
+        return any(service.has_more_to_do for service in busy_services)
 
-    def _end_leaving(self) -> None:
+    def _close_finished_topics(self) -> None:
         now = time.monotonic()
-        for topic, due in tuple(self._leaving.items()):
-            if now >= due or topic.acknowledged(0):
-                del self._leaving[topic]
+        for topic, deadline in tuple(self._closing_deadlines.items()):
+            if now >= deadline or topic.acknowledged(0):
+                del self._closing_deadlines[topic]
                 self._waiting.pop(topic, None)
                 topic.close()
 
     def _announce(self) -> None:
         """Announce our nodes if they have changed. Several changes in a row are announced together."""
-        if not self._is_announced and (not self._work or time.monotonic() - self._announced_at > self._announce_span):
-            self._discovery.publish(self._described_nodes())
+        if not self._is_announced and (
+            not self._work or time.monotonic() - self._announced_at > self._max_announce_delay
+        ):
+            self._discovery.publish(self._node_entities())
             self._is_announced = True
-            self._announce_span = _ANNOUNCE_SPAN
+            self._max_announce_delay = _MAX_ANNOUNCE_DELAY_S
             self._announced_at = time.monotonic()
 
-    def _described_nodes(self) -> list[NodeEntities]:
+    def _node_entities(self) -> list[NodeEntities]:
         readers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}
         writers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}
         for publisher, outgoing in self._outgoing.items():
             writers.setdefault(publisher.node.identity, []).append(outgoing.guid)
         for subscription, incoming in self._incoming.items():
             readers.setdefault(subscription.node.identity, []).append(incoming.guid)
-        for pairs in (self._services, self._clients):
-            for endpoint, mirrored in pairs.items():
-                readers.setdefault(endpoint.node.identity, []).append(mirrored.pair.reader_guid)
-                writers.setdefault(endpoint.node.identity, []).append(mirrored.pair.writer_guid)
-        for presence, quiet in self._presences.items():
-            readers.setdefault(presence.node.identity, []).append(quiet.reader_guid)
-            writers.setdefault(presence.node.identity, []).extend(quiet.writer_guids)
-        described = []
+        for mirrors in (self._services, self._clients):
+            for endpoint, mirror in mirrors.items():
+                readers.setdefault(endpoint.node.identity, []).append(mirror.pair.reader_guid)
+                writers.setdefault(endpoint.node.identity, []).append(mirror.pair.writer_guid)
+        for presence, quiet_mirror in self._presences.items():
+            readers.setdefault(presence.node.identity, []).append(quiet_mirror.reader_guid)
+            writers.setdefault(presence.node.identity, []).extend(quiet_mirror.writer_guids)
+        nodes = []
         for node, count in self._nodes.items():
-            described.append(NodeEntities(node.namespace, node.name, readers[node], writers[node]))
-            described += [NodeEntities(node.namespace, node.name)] * (count - 1)
-        return described
+            nodes.append(NodeEntities(node.namespace, node.name, readers[node], writers[node]))
+            nodes += [NodeEntities(node.namespace, node.name)] * (count - 1)
+        return nodes

@@ -33,20 +33,20 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
     Returns:
         The number, which may be 0; None if the system does not report sockets.
     """
-    first = multicast_port(domain_id)
-    listening: Counter[int] = Counter()
+    base_port = multicast_port(domain_id)
+    socket_counts: Counter[int] = Counter()
     try:
-        own = _own_sockets()
+        own_sockets = _own_sockets()
         for name in _TABLES:
             for line in (tables / name).read_text().splitlines()[1:]:
-                words = line.split()
-                port = int(words[1].rpartition(":")[2], 16)
-                if words[9] not in own:
-                    listening[port] += 1
+                fields = line.split()
+                port = int(fields[1].rpartition(":")[2], 16)
+                if fields[9] not in own_sockets:
+                    socket_counts[port] += 1
     except (OSError, ValueError, IndexError):
         return None
-    unicast = range(first + _FIRST_UNICAST, first + _DOMAIN_GAIN, 2)
-    return max(listening[first], sum(listening[port] for port in unicast))
+    unicast_ports = range(base_port + _FIRST_UNICAST, base_port + _DOMAIN_GAIN, 2)
+    return max(socket_counts[base_port], sum(socket_counts[port] for port in unicast_ports))
 
 
 def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
@@ -62,27 +62,27 @@ def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | Non
         The number of bytes, 0 if no socket listens; None if the system does not report sockets.
     """
     pattern = b":%04X" % port
-    most = 0
+    max_bytes = 0
     try:
         for line in (tables / _TABLES[0]).read_bytes().splitlines():
             if pattern in line:
-                words = line.split()
-                if words[1].endswith(pattern):
-                    most = max(most, int(words[4].rpartition(b":")[2], 16))
+                fields = line.split()
+                if fields[1].endswith(pattern):
+                    max_bytes = max(max_bytes, int(fields[4].rpartition(b":")[2], 16))
     except (OSError, ValueError, IndexError):
         return None
-    return most
+    return max_bytes
 
 
 def _own_sockets() -> set[str]:
     """Return the inodes of this process's sockets."""
     folder = Path("/proc/self/fd")
-    found = set()
+    inodes = set()
     for entry in folder.iterdir():
         try:
             target = str(entry.readlink())
         except OSError:  # the file was closed in the meantime
             continue
         if target.startswith("socket:["):
-            found.add(target[len("socket:[") : -1])
-    return found
+            inodes.add(target[len("socket:[") : -1])
+    return inodes

@@ -49,14 +49,14 @@ def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
 
 def ros_name(topic: str) -> RosName | None:
     """Return the ROS name of a DDS topic; None if the topic does not belong to ROS."""
-    prefix, slash, rest = topic.partition("/")
+    prefix, slash, path = topic.partition("/")
     role = _ROLES.get(prefix)
     if role is None or not slash:
         return None
     suffix = _SUFFIXES[role]
-    if not rest.endswith(suffix) or len(rest) == len(suffix):
+    if not path.endswith(suffix) or len(path) == len(suffix):
         return None
-    return RosName(role, "/" + rest[: len(rest) - len(suffix)])
+    return RosName(role, "/" + path[: len(path) - len(suffix)])
 
 
 def ros_service_type(type_name: str) -> str | None:
@@ -72,15 +72,15 @@ def ros_service_type(type_name: str) -> str | None:
 
 def parse_user_data(data: bytes) -> dict[str, str]:
     """Parse USER_DATA of the form ``key=value;key=value;`` (rmw ``parse_key_value``)."""
-    facts = {}
+    entries = {}
     for item in data.decode("utf-8", errors="replace").split(";"):
         key, equals, value = item.partition("=")
         if equals and key.strip():
-            facts[key.strip()] = value.strip("\0 ")
-    return facts
+            entries[key.strip()] = value.strip("\0 ")
+    return entries
 
 
 def endpoint_id(guid: bytes) -> str:
     """Format the id that links a client's or service's reader and writer, as rmw_cyclonedds_cpp."""
-    first, *rest = guid
-    return f"{first:2x}" + "".join(f".{byte:x}" for byte in rest)
+    first_byte, *other_bytes = guid
+    return f"{first_byte:2x}" + "".join(f".{byte:x}" for byte in other_bytes)

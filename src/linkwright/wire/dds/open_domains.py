@@ -23,13 +23,13 @@ class OpenDomain:
         users: the number of participants in the domain.
         descriptions: the descriptions of types.
         types: Cyclone's types of the topics.
-        members: the socket that keeps announcements inside the machine; None if they may leave it.
+        confinement: the socket that keeps announcements inside the machine; None if they may leave it.
     """
 
-    def __init__(self, number: int, handle: int, members: socket | None = None) -> None:
+    def __init__(self, number: int, handle: int, confinement: socket | None = None) -> None:
         self.number = number
         self.handle = handle
-        self.members = members
+        self.confinement = confinement
         self.users = 0
         self.descriptions = WireTypes()
         self.types = TopicTypes()
@@ -62,8 +62,8 @@ def close_domain(domain: OpenDomain) -> None:
             del _opened[domain.number]
             if load().dds_delete(domain.handle) >= 0:
                 domain.types.free()
-            if domain.members is not None:
-                domain.members.close()
+            if domain.confinement is not None:
+                domain.confinement.close()
 
 
 def _create_domain(settings: Settings) -> OpenDomain:
@@ -74,10 +74,10 @@ def _create_domain(settings: Settings) -> OpenDomain:
     Raises:
         LinkwrightError: DDS102 or DDS103, Cyclone accepts none of the configurations.
     """
-    configurations, members = settings.configurations, None
+    configurations, confinement = settings.configurations, None
     if settings.on_loopback:
         try:
-            members = confine(own_addresses())
+            confinement = confine(own_addresses())
         except OSError:
             configurations = settings.on_loopback
     code = _first_taken(settings.domain_id, configurations)
@@ -85,13 +85,13 @@ def _create_domain(settings: Settings) -> OpenDomain:
         if not settings.user_configuration:
             # Log errors only. Each malformed or foreign packet causes a warning, so any process could flood the log.
             load().dds_set_log_mask(LOG_ERRORS)
-        return OpenDomain(settings.domain_id, code, members)
-    if members is not None:
-        members.close()
+        return OpenDomain(settings.domain_id, code, confinement)
+    if confinement is not None:
+        confinement.close()
     if settings.user_configuration:
-        without = _first_taken(settings.domain_id, settings.own_configurations)
-        if without >= 0:
-            load().dds_delete(without)
+        own_code = _first_taken(settings.domain_id, settings.own_configurations)
+        if own_code >= 0:
+            load().dds_delete(own_code)
             raise LinkwrightError(
                 Diagnostic(
                     code="DDS102",
@@ -100,8 +100,8 @@ def _create_domain(settings: Settings) -> OpenDomain:
                         user_configuration=settings.user_configuration,
                     ),
                     hint=phrase(
-                        "write XML text or the URL of an XML file, such as file:///home/me/cyclonedds.xml; Cyclone's "
-                        "own messages are above"
+                        "write XML text or the URL of an XML file, such as file:///home/me/cyclonedds.xml; "
+                        "Cyclone's messages above give the reason"
                     ),
                 )
             )
@@ -109,7 +109,7 @@ def _create_domain(settings: Settings) -> OpenDomain:
         Diagnostic(
             code="DDS103",
             message=phrase(
-                "Cyclone DDS cannot open domain {domain_id}; its own messages are above",
+                "Cyclone DDS cannot open domain {domain_id}; its messages above give the reason",
                 domain_id=settings.domain_id,
             ),
             hint=phrase(

@@ -26,20 +26,20 @@ from linkwright.wire.living_threads import guarded
 _BUFFER = 212_992
 """Bytes of a receive buffer on Linux, unless a process asks for more."""
 
-_PACKET = 61_440
-"""Bytes that a packet with a full fragment takes in that buffer, rounded up: three fit."""
+_PACKET_SIZE = 61_440
+"""The bytes that a packet with a full fragment takes in that buffer, rounded up. Three packets fit."""
 
-_LEAST_ROOM = 2
-"""Packets that have to fit before sending resumes: to check after each packet would take longer than to send it."""
+_MIN_ROOM = 2
+"""How many packets must fit before sending resumes. A check after each packet would take longer than sending it."""
 
 _PAUSE = 0.0002
-"""Seconds after which a full buffer is looked at again."""
+"""Seconds between two checks of a full buffer."""
 
-_LOOKS = 200
-"""How often, for one sample; a reader that was stopped takes nothing."""
+_MAX_CHECKS = 200
+"""The maximum number of these checks for one sample, because a stopped reader takes nothing."""
 
 _BLIND_PAUSE, _BLIND_PACKETS = 0.0005, 2
-"""The pause after so many packets where the system does not report the bytes in a buffer."""
+"""The pause, in seconds, after each group of packets if the system does not report the bytes in a buffer."""
 
 
 class Receiver:
@@ -47,20 +47,20 @@ class Receiver:
 
     Args:
         address: the address of the socket.
-        waiting: returns the number of bytes waiting at a port; None if the system does not report it.
+        count_waiting: returns the number of bytes waiting at a port; None if the system does not report it.
         pause: sleeps for the given number of seconds.
     """
 
     def __init__(
         self,
         address: Address,
-        waiting: Callable[[int], int | None] = waiting_bytes,
+        count_waiting: Callable[[int], int | None] = waiting_bytes,
         pause: Callable[[float], None] = time.sleep,
     ) -> None:
         self.address = address
-        self._waiting = waiting
+        self._waiting = count_waiting
         self._pause = pause
-        self._room = self._looks = 0
+        self._room = self._remaining_checks = 0
         self._is_stuck = False
 
     def begin(self) -> None:
@@ -68,7 +68,7 @@ class Receiver:
 
         If the reader received nothing of the previous sample, `wait_for_room` does not wait for this one.
         """
-        self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
+        self._room, self._remaining_checks = 0, 1 if self._is_stuck else _MAX_CHECKS
 
     def wait_for_room(self) -> bool:
         """Wait until a packet fits into the buffer.
@@ -83,15 +83,15 @@ class Receiver:
         return not self._is_stuck
 
     def _next_room(self) -> int:
-        while self._looks:
-            waiting = self._waiting(self.address[1])
-            if waiting is None:
+        while self._remaining_checks:
+            waiting_count = self._waiting(self.address[1])
+            if waiting_count is None:
                 self._pause(_BLIND_PAUSE)
                 return _BLIND_PACKETS
-            room = (_BUFFER - waiting) // _PACKET
-            if room >= _LEAST_ROOM:
+            room = (_BUFFER - waiting_count) // _PACKET_SIZE
+            if room >= _MIN_ROOM:
                 return room
-            self._looks -= 1
+            self._remaining_checks -= 1
             self._pause(_PAUSE)
         return 0
 
@@ -102,11 +102,11 @@ class Pacer:
     The thread starts with the first sample.
 
     Args:
-        address_of: returns the address of a reader on this machine from the reader's GUID; None if it is not known.
+        find_address: returns the address of a reader on this machine from the reader's GUID; None if it is not known.
     """
 
-    def __init__(self, address_of: Callable[[bytes], Address | None]) -> None:
-        self._address_of = address_of
+    def __init__(self, find_address: Callable[[bytes], Address | None]) -> None:
+        self._find_address = find_address
         self._work: SimpleQueue[PacedWriter | None] = SimpleQueue()
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
@@ -115,8 +115,8 @@ class Pacer:
 
     def addresses_of(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
         """Return the addresses of the participants of readers on this machine, by GUID prefix."""
-        found = {reader[:PREFIX]: self._address_of(reader) for reader in readers}
-        return {prefix: address for prefix, address in found.items() if address is not None}
+        addresses = {reader[:PREFIX]: self._find_address(reader) for reader in readers}
+        return {prefix: address for prefix, address in addresses.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
         """Queue a writer, whose samples are then sent. Callable from any thread."""
@@ -134,30 +134,32 @@ class Pacer:
         if self._socket is not None:
             self._socket.close()
 
-    def send(self, writer: bytes, number: int, sample: bytes, written: int, places: dict[bytes, Address]) -> None:
+    def send(
+        self, writer: bytes, number: int, sample: bytes, published_ns: int, addresses: dict[bytes, Address]
+    ) -> None:
         """Send a sample on behalf of a writer.
 
         Args:
             writer: the writer's GUID.
             number: the sequence number that the writer assigns to the sample.
             sample: the serialized sample, whose length is a multiple of four bytes.
-            written: when the sample was published, in ns since the epoch.
-            places: the addresses of the participants with readers; see `addresses_of`.
+            published_ns: when the sample was published, in ns since the epoch.
+            addresses: the addresses of the participants with readers; see `addresses_of`.
         """
         if self._socket is None:
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        stamp, data = info_timestamp(written), memoryview(sample)
-        readers = {prefix: self._receiver(address) for prefix, address in places.items()}
+        stamp, data = info_timestamp(published_ns), memoryview(sample)
+        readers = {prefix: self._receiver(address) for prefix, address in addresses.items()}
         for receiver in readers.values():
             receiver.begin()
-        for which in range(1, fragment_count(sample) + 1):
-            part = data[(which - 1) * FRAGMENT : which * FRAGMENT]
-            start = fragment_start(UNKNOWN, writer[PREFIX:], number, len(sample), which, len(part))
+        for fragment_number in range(1, fragment_count(sample) + 1):
+            fragment = data[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
+            start = fragment_start(UNKNOWN, writer[PREFIX:], number, len(sample), fragment_number, len(fragment))
             for prefix, receiver in tuple(readers.items()):
                 if receiver.wait_for_room():
                     head = message(writer[:PREFIX], stamp, start, to=prefix)
                     with suppress(OSError):  # Cyclone sends the packets that the system refuses here
-                        self._socket.sendto(head + part, receiver.address)
+                        self._socket.sendto(head + fragment, receiver.address)
                 else:
                     del readers[prefix]
 
@@ -198,15 +200,15 @@ class PacedWriter:
         self._readers = readers
         self._pacer = pacer
         self._waiting: deque[tuple[bytes, int]] = deque(maxlen=depth)
-        self._written = 0
+        self._written_count = 0
         self._is_pacing = False
         self._is_numbered = True
-        self._changed = threading.Condition(threading.RLock())  # reentrant, as in `Backlog`
+        self._condition = threading.Condition(threading.RLock())  # reentrant, as in `Backlog`
 
     def write(self, sample: bytes) -> None:
         """Write a sample immediately, or queue it behind large samples. Callable from any thread."""
-        with self._changed:
-            if not self._is_pacing and not self._places(sample):
+        with self._condition:
+            if not self._is_pacing and not self._paced_addresses(sample):
                 self._write_now(sample)
                 return
             self._waiting.append((sample, time.time_ns()))
@@ -217,35 +219,35 @@ class PacedWriter:
 
     def send_next(self) -> bool:
         """Send the next queued sample; return whether more are queued. Called in the pacer's thread."""
-        with self._changed:
+        with self._condition:
             if self._waiting:
-                sample, published = self._waiting.popleft()
+                sample, published_ns = self._waiting.popleft()
             else:
                 self._is_pacing = False
-                self._changed.notify_all()
+                self._condition.notify_all()
                 return False
-        places = self._places(sample)
-        if places:
-            self._pacer.send(self._guid, self._written + 1, sample, published, places)
-        if not self._write_now(sample, published) and places:
+        addresses = self._paced_addresses(sample)
+        if addresses:
+            self._pacer.send(self._guid, self._written_count + 1, sample, published_ns, addresses)
+        if not self._write_now(sample, published_ns) and addresses:
             self._is_numbered = False  # readers have received this number with another sample
         return True
 
     def wait_until_written(self, seconds: float) -> bool:
         """Wait until no sample is queued; return False if that takes longer than `seconds`."""
-        with self._changed:
-            return self._changed.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
+        with self._condition:
+            return self._condition.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
 
     def close(self) -> None:
         """Drop the queued samples."""
-        with self._changed:
+        with self._condition:
             self._waiting.clear()
 
-    def _places(self, sample: bytes) -> dict[bytes, Address]:
+    def _paced_addresses(self, sample: bytes) -> dict[bytes, Address]:
         """Return the addresses to which a sample is paced; empty if the sample fits into one packet."""
         return self._pacer.addresses_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
-    def _write_now(self, sample: bytes, published: int | None = None) -> bool:
-        is_written = self._write(sample, published)
-        self._written += is_written
+    def _write_now(self, sample: bytes, published_ns: int | None = None) -> bool:
+        is_written = self._write(sample, published_ns)
+        self._written_count += is_written
         return is_written

@@ -13,7 +13,7 @@ from linkwright.wire.dds.settings import Settings
 from linkwright.wire.dds.type_descriptions import WireTypes
 
 NAME = "linkwright"
-"""How our participants' entity names begin."""
+"""The beginning of the entity names of Linkwright's participants."""
 
 SERVICES_NAME = "linkwright-services"
 """The entity name of our participants for services with Fast DDS, which have no nodes of their own."""
@@ -68,7 +68,7 @@ class Participant:
         return self._domain.descriptions
 
     def create_topic(self, name: str, described_type: object) -> int:
-        """Create a topic of a type, of which only the name is announced.
+        """Create a topic. Only the name of its type is announced.
 
         Args:
             name: the topic's DDS name.
@@ -109,6 +109,6 @@ def _participant_error(settings: Settings, error: CycloneError) -> LinkwrightErr
             message=phrase(
                 "DDS domain {domain_id} cannot be joined: {error}", domain_id=settings.domain_id, error=error
             ),
-            hint=phrase("use another ROS_DOMAIN_ID, which has other ports"),
+            hint=phrase("use another ROS_DOMAIN_ID, because each domain has its own ports"),
         )
     )

@@ -78,4 +78,4 @@ class QuietClient:
 
 
 def _ignore(_: Any) -> None:
-    """Ignore a mismatch: the other side reports the incompatible QoS to its own users."""
+    """Ignore a mismatch: the other process reports the incompatible QoS to its own users."""

@@ -34,7 +34,7 @@ _XCDR1 = 0
 def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
     """Yield the policies of a reader or writer. They are valid only inside the ``with`` block.
 
-    Samples of this participant are not received by it, because the bus of the process has already delivered them.
+    The participant does not receive its own samples, because the bus of the process has already delivered them.
 
     Args:
         profile: the offered or requested QoS; policies left to the middleware have Cyclone's defaults for ROS.
@@ -43,16 +43,16 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
     dds = load()
     qos: int = dds.dds_create_qos()
     try:
-        kind = _KEEP_ALL if profile.history is HistoryPolicy.KEEP_ALL else _KEEP_LAST
-        depth = UNLIMITED if kind == _KEEP_ALL else max(profile.depth, 1)
-        dds.dds_qset_history(qos, kind, depth)
+        history_kind = _KEEP_ALL if profile.history is HistoryPolicy.KEEP_ALL else _KEEP_LAST
+        depth = UNLIMITED if history_kind == _KEEP_ALL else max(profile.depth, 1)
+        dds.dds_qset_history(qos, history_kind, depth)
         if profile.reliability is ReliabilityPolicy.BEST_EFFORT:
             dds.dds_qset_reliability(qos, _BEST_EFFORT, 0)
         else:
             dds.dds_qset_reliability(qos, _RELIABLE, MAX_BLOCKING_NS)
         if profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             dds.dds_qset_durability(qos, _TRANSIENT_LOCAL)
-            dds.dds_qset_durability_service(qos, 0, kind, depth, UNLIMITED, UNLIMITED, UNLIMITED)
+            dds.dds_qset_durability_service(qos, 0, history_kind, depth, UNLIMITED, UNLIMITED, UNLIMITED)
         else:
             dds.dds_qset_durability(qos, _VOLATILE)
         deadline, lifespan = limit_ns(profile.deadline), limit_ns(profile.lifespan)
@@ -60,9 +60,11 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
             dds.dds_qset_deadline(qos, deadline)
         if lifespan is not None:
             dds.dds_qset_lifespan(qos, lifespan)
-        manual = profile.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+        is_manual = profile.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
         lease = limit_ns(profile.liveliness_lease_duration)
-        dds.dds_qset_liveliness(qos, _MANUAL_BY_TOPIC if manual else _AUTOMATIC, INFINITY if lease is None else lease)
+        dds.dds_qset_liveliness(
+            qos, _MANUAL_BY_TOPIC if is_manual else _AUTOMATIC, INFINITY if lease is None else lease
+        )
         dds.dds_qset_ignorelocal(qos, _IGNORE_PARTICIPANT)
         dds.dds_qset_writer_data_lifecycle(qos, False)
         dds.dds_qset_data_representation(qos, 1, (c.c_int16 * 1)(_XCDR1))
@@ -86,7 +88,7 @@ def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
         dds.dds_delete_qos(qos)
 
 
-def profile_of(qos: int, *, announces_history: bool = True) -> QoSProfile:
+def profile_from_policies(qos: int, *, announces_history: bool = True) -> QoSProfile:
     """Return the ROS profile for a remote endpoint's policies.
 
     Args:
@@ -94,26 +96,26 @@ def profile_of(qos: int, *, announces_history: bool = True) -> QoSProfile:
         announces_history: whether the endpoint announces its history; if not, Cyclone reports only a default.
     """
     dds = load()
-    kind, depth, duration = c.c_int(), c.c_int32(), c.c_int64()
+    value, depth, duration = c.c_int(), c.c_int32(), c.c_int64()
 
     def limit(getter: str) -> Duration:
-        found = getattr(dds, getter)(qos, c.byref(duration))
-        return Duration(nanoseconds=duration.value) if found and 0 < duration.value < INFINITY else INFINITE
+        is_set = getattr(dds, getter)(qos, c.byref(duration))
+        return Duration(nanoseconds=duration.value) if is_set and 0 < duration.value < INFINITY else INFINITE
 
     history, length = HistoryPolicy.UNKNOWN, 0
-    if announces_history and dds.dds_qget_history(qos, c.byref(kind), c.byref(depth)):
-        history = HistoryPolicy.KEEP_ALL if kind.value == _KEEP_ALL else HistoryPolicy.KEEP_LAST
+    if announces_history and dds.dds_qget_history(qos, c.byref(value), c.byref(depth)):
+        history = HistoryPolicy.KEEP_ALL if value.value == _KEEP_ALL else HistoryPolicy.KEEP_LAST
         length = 0 if history is HistoryPolicy.KEEP_ALL else max(depth.value, 1)
     reliability = ReliabilityPolicy.UNKNOWN
-    if dds.dds_qget_reliability(qos, c.byref(kind), c.byref(duration)):
-        reliability = ReliabilityPolicy.RELIABLE if kind.value == _RELIABLE else ReliabilityPolicy.BEST_EFFORT
+    if dds.dds_qget_reliability(qos, c.byref(value), c.byref(duration)):
+        reliability = ReliabilityPolicy.RELIABLE if value.value == _RELIABLE else ReliabilityPolicy.BEST_EFFORT
     durability = DurabilityPolicy.UNKNOWN
-    if dds.dds_qget_durability(qos, c.byref(kind)):
-        durability = DurabilityPolicy.VOLATILE if kind.value == _VOLATILE else DurabilityPolicy.TRANSIENT_LOCAL
+    if dds.dds_qget_durability(qos, c.byref(value)):
+        durability = DurabilityPolicy.VOLATILE if value.value == _VOLATILE else DurabilityPolicy.TRANSIENT_LOCAL
     liveliness, lease = LivelinessPolicy.UNKNOWN, INFINITE
-    if dds.dds_qget_liveliness(qos, c.byref(kind), c.byref(duration)):
-        manual = kind.value == _MANUAL_BY_TOPIC
-        liveliness = LivelinessPolicy.MANUAL_BY_TOPIC if manual else LivelinessPolicy.AUTOMATIC
+    if dds.dds_qget_liveliness(qos, c.byref(value), c.byref(duration)):
+        is_manual = value.value == _MANUAL_BY_TOPIC
+        liveliness = LivelinessPolicy.MANUAL_BY_TOPIC if is_manual else LivelinessPolicy.AUTOMATIC
         lease = Duration(nanoseconds=duration.value) if duration.value < INFINITY else INFINITE
     return QoSProfile(
         depth=length,

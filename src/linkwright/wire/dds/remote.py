@@ -26,16 +26,16 @@ from linkwright.wire.outside import Outside
 from linkwright.wire.type_names import ros_type
 
 _FAST_DDS = b"\x01\x0f"
-"""How the GUIDs of its entities begin."""
+"""The prefix of the GUIDs of entities of Fast DDS."""
 
 _PREFIX = 12
-"""Bytes of a GUID that name the participant."""
+"""The number of bytes of a GUID that identify the participant."""
 
-_ENDPOINTS_WITHIN = 1.3
-"""Seconds within which a participant's first endpoint is heard of; Fast DDS repeats lost announcements after 1 s."""
+_FIRST_ENDPOINT_TIMEOUT_S = 1.3
+"""Seconds within which a participant's first endpoint is discovered; Fast DDS repeats lost announcements after 1 s."""
 
-_ALL_WITHIN = 3.0
-"""Seconds within which a participant that listens to announcements makes one, and the endpoints in it are heard of."""
+_ANNOUNCEMENT_TIMEOUT_S = 3.0
+"""Seconds within which a participant that reads announcements sends one, and its endpoints are discovered."""
 
 
 @dataclass(slots=True)
@@ -58,8 +58,8 @@ class RemoteParticipant:
     peer_process: int | None = None
     host: str = ""
     entities: ParticipantEntities | None = None
-    came_at: float = field(default_factory=time.monotonic)
-    """When it was first heard of, by the steady clock."""
+    discovered_at: float = field(default_factory=time.monotonic)
+    """The steady time at which the participant was discovered, in seconds."""
 
     def endpoints(self) -> set[bytes]:
         """Return the GUIDs of the endpoints that the participant announces for its nodes."""
@@ -75,8 +75,8 @@ class RemoteParticipant:
         """The id of the participant's process; None unless it is known to run on this machine."""
         if not self.is_ours:
             return self.peer_process
-        _, _, rest = self.entity_name.partition("/")
-        namespace, _, process = rest.partition("/")
+        _, _, process_path = self.entity_name.partition("/")
+        namespace, _, process = process_path.partition("/")
         if not namespace or namespace != process_namespace() or not process.isdecimal():
             return None
         return int(process)
@@ -101,7 +101,7 @@ class RemoteEndpoint:
         topic: the DDS topic.
         type_name: the DDS type.
         qos: the policies.
-        facts: the entries of the USER_DATA.
+        user_data: the entries of the USER_DATA.
     """
 
     guid: bytes
@@ -111,7 +111,7 @@ class RemoteEndpoint:
     topic: str
     type_name: str
     qos: QoSProfile
-    facts: dict[str, str] = field(default_factory=dict)
+    user_data: dict[str, str] = field(default_factory=dict)
 
     @property
     def name(self) -> RosName | None:
@@ -136,21 +136,20 @@ class RemoteEndpoint:
         if name is None:
             return None
         if name.role is Role.TOPIC:
-            kind = EndpointKind.PUBLISHER if self.is_writer else EndpointKind.SUBSCRIPTION
+            endpoint_kind = EndpointKind.PUBLISHER if self.is_writer else EndpointKind.SUBSCRIPTION
             type_name = ros_type(self.type_name)
         elif name.role is Role.REQUEST:
-            kind = EndpointKind.CLIENT if self.is_writer else EndpointKind.SERVICE
+            endpoint_kind = EndpointKind.CLIENT if self.is_writer else EndpointKind.SERVICE
             type_name = ros_service_type(self.type_name)
         else:
             return None
         if type_name is None:
             return None
         # rmw_fastrtps announces the hash of the request or response type. Other implementations announce the hash of
-        # the
-        # service type.
+        # the service type.
         announces_hash = name.role is Role.TOPIC or not self.is_fast
-        type_hash = self.facts.get("typehash", "") if announces_hash else ""
-        return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
+        type_hash = self.user_data.get("typehash", "") if announces_hash else ""
+        return EndpointInfo(endpoint_kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 
 class DepartureWatch(Protocol):
@@ -177,22 +176,22 @@ class RemoteGraph(Outside):
         self._participants: dict[bytes, RemoteParticipant] = {}
         self._endpoints: dict[bytes, RemoteEndpoint] = {}
         self._by_handle: dict[int, RemoteEndpoint] = {}
-        self._early: dict[bytes, ParticipantEntities] = {}
-        self._dead: tuple[float, frozenset[bytes]] = (0.0, frozenset())
+        self._early_announcements: dict[bytes, ParticipantEntities] = {}
+        self._dead_cache: tuple[float, frozenset[bytes]] = (0.0, frozenset())
         self.departures: DepartureWatch | None = None
-        """Is notified of endpoints that are gone."""
+        """Receives notifications of endpoints that disappear; None if nothing receives them."""
 
     # --- called by discovery ------------------------------------------------------------------------------------
 
     def add_participant(self, participant: RemoteParticipant) -> None:
         """Record a participant."""
         with self._lock:
-            known = self._participants.get(participant.guid)
-            early = self._early.pop(participant.guid, None)
-            participant.entities = known.entities if known else early
-            if known is not None:
-                participant.came_at, participant.peer_process = known.came_at, known.peer_process
-                participant.host = participant.host or known.host
+            previous = self._participants.get(participant.guid)
+            early_announcement = self._early_announcements.pop(participant.guid, None)
+            participant.entities = previous.entities if previous else early_announcement
+            if previous is not None:
+                participant.discovered_at, participant.peer_process = previous.discovered_at, previous.peer_process
+                participant.host = participant.host or previous.host
             self._participants[participant.guid] = participant
 
     def remove_participant(self, guid: bytes) -> None:
@@ -201,7 +200,7 @@ class RemoteGraph(Outside):
             for endpoint in [endpoint for endpoint in self._endpoints.values() if endpoint.participant == guid]:
                 self._forget(endpoint)
             self._participants.pop(guid, None)
-            self._early.pop(guid, None)
+            self._early_announcements.pop(guid, None)
 
     def add_endpoint(self, endpoint: RemoteEndpoint) -> None:
         """Record a reader or writer."""
@@ -224,7 +223,7 @@ class RemoteGraph(Outside):
         with self._lock:
             participant = self._participants.get(entities.participant)
             if participant is None:
-                self._early[entities.participant] = entities
+                self._early_announcements[entities.participant] = entities
             else:
                 participant.entities = entities
             if self.departures is not None:
@@ -232,7 +231,7 @@ class RemoteGraph(Outside):
 
     def _forget(self, endpoint: RemoteEndpoint) -> None:
         if self.departures is not None:
-            self.departures.endpoint_left(endpoint, self._owner_of(endpoint))
+            self.departures.endpoint_left(endpoint, self._endpoint_owner(endpoint))
         self._endpoints.pop(endpoint.guid, None)
         self._by_handle.pop(endpoint.handle, None)
 
@@ -242,7 +241,7 @@ class RemoteGraph(Outside):
         """Return the reader or writer with a handle; None if it is not known."""
         return self._by_handle.get(handle)
 
-    def endpoints_of(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
+    def topic_endpoints(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
         """Return the writers or the readers of a DDS topic."""
         with self._lock:
             return [
@@ -268,7 +267,7 @@ class RemoteGraph(Outside):
         Participants that are known to have been killed do not count.
         """
         dead = self._dead_participants()
-        readers = self.endpoints_of(topic, writers=False)
+        readers = self.topic_endpoints(topic, writers=False)
         return any(reader.is_fast and reader.participant not in dead for reader in readers)
 
     def is_dead(self, prefix: bytes) -> bool:
@@ -281,7 +280,7 @@ class RemoteGraph(Outside):
         Such a participant has a writer of ``ros_discovery_info``.
         """
         with self._lock:
-            speakers = {
+            announcers = {
                 endpoint.participant
                 for endpoint in self._endpoints.values()
                 if endpoint.is_writer and endpoint.topic == DISCOVERY_TOPIC
@@ -289,7 +288,7 @@ class RemoteGraph(Outside):
             return all(
                 participant.entities is not None
                 for guid, participant in self._participants.items()
-                if guid in speakers or participant.is_ours
+                if guid in announcers or participant.is_ours
             )
 
     def is_complete(self) -> bool:
@@ -301,27 +300,27 @@ class RemoteGraph(Outside):
         """
         now = time.monotonic()
         with self._lock:
-            known = {endpoint.participant for endpoint in self._endpoints.values()}
+            participants_with_endpoints = {endpoint.participant for endpoint in self._endpoints.values()}
             listeners = {
                 endpoint.participant for endpoint in self._endpoints.values() if endpoint.topic == DISCOVERY_TOPIC
             }
             for guid, participant in self._participants.items():
-                age = now - participant.came_at
-                if guid not in known and age < _ENDPOINTS_WITHIN:
+                age = now - participant.discovered_at
+                if guid not in participants_with_endpoints and age < _FIRST_ENDPOINT_TIMEOUT_S:
                     return False
                 # Fast DDS may announce readers up to a second before writers.
-                if age < _ALL_WITHIN and guid in listeners and participant.entities is None:
+                if age < _ANNOUNCEMENT_TIMEOUT_S and guid in listeners and participant.entities is None:
                     return False
-                if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
+                if age < _ANNOUNCEMENT_TIMEOUT_S and not self._endpoints.keys() >= participant.endpoints():
                     return False
         return self.have_all_announced()
 
     def our_processes(self) -> set[int]:
         """Return the known process ids of running Linkwright processes on this machine."""
-        ours = [
+        own_participants = [
             participant for participant in self.participants() if participant.is_ours and not participant.has_died()
         ]
-        return {our.process for our in ours if our.process is not None}
+        return {participant.process for participant in own_participants if participant.process is not None}
 
     def nodes(self) -> list[NodeIdentity]:
         """Return the nodes of other processes, in the order of their participants.
@@ -346,20 +345,21 @@ class RemoteGraph(Outside):
                 info
                 for endpoint in self._endpoints.values()
                 if endpoint.participant not in dead
-                and (info := endpoint.endpoint_info(owners.get(endpoint.guid), self._host_of(endpoint))) is not None
+                and (info := endpoint.endpoint_info(owners.get(endpoint.guid), self._endpoint_host(endpoint)))
+                is not None
             ]
 
-    def _host_of(self, endpoint: RemoteEndpoint) -> str:
+    def _endpoint_host(self, endpoint: RemoteEndpoint) -> str:
         participant = self._participants.get(endpoint.participant)
         return participant.host if participant else ""
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
         """Return the full name of the node that owns an endpoint; empty until it is announced."""
         with self._lock:
-            owner = self._owner_of(endpoint)
+            owner = self._endpoint_owner(endpoint)
         return owner.full_name if owner else ""
 
-    def _owner_of(self, endpoint: RemoteEndpoint) -> NodeIdentity | None:
+    def _endpoint_owner(self, endpoint: RemoteEndpoint) -> NodeIdentity | None:
         participant = self._participants.get(endpoint.participant)
         if participant is None or participant.entities is None:
             return None
@@ -368,7 +368,7 @@ class RemoteGraph(Outside):
                 return NodeIdentity(node.name, node.namespace, participant.enclave)
         return None
 
-    def writers_of(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
+    def participant_writers(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
         """Return a participant's writers, each with its node, or None until the node is announced."""
         with self._lock:
             writers = [
@@ -376,7 +376,7 @@ class RemoteGraph(Outside):
                 for endpoint in self._endpoints.values()
                 if endpoint.participant == participant and endpoint.is_writer
             ]
-            return [(writer, self._owner_of(writer)) for writer in writers]
+            return [(writer, self._endpoint_owner(writer)) for writer in writers]
 
     def _owners(self) -> dict[bytes, NodeIdentity]:
         return {
@@ -390,10 +390,10 @@ class RemoteGraph(Outside):
     def _dead_participants(self) -> frozenset[bytes]:
         """Return the GUIDs of participants whose process was killed. The result is cached briefly."""
         now = time.monotonic()
-        looked_at, dead = self._dead
-        if now - looked_at > 0.25:
+        checked_at, dead = self._dead_cache
+        if now - checked_at > 0.25:
             dead = frozenset(participant.guid for participant in self.participants() if participant.has_died())
-            self._dead = (now, dead)
+            self._dead_cache = (now, dead)
         return dead
 
 

@@ -7,7 +7,7 @@ from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.dds.names import endpoint_id
 
 
-def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> bytes:
+def service_user_data(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> bytes:
     """Return the USER_DATA for both endpoints of a client or server, which links them.
 
     Args:
@@ -16,7 +16,7 @@ def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> by
         is_server: whether `endpoint` is a service.
     """
     key = "serviceid" if is_server else "clientid"
-    hash_text = _hash_of(endpoint)
+    hash_text = _announced_hash(endpoint)
     return (f"{key}={endpoint_id(identity)};" + (f"typehash={hash_text};" if hash_text else "")).encode()
 
 
@@ -28,7 +28,7 @@ def request_and_response_types(service_type: str) -> tuple[str, str]:
     return f"{service_type}_Request", f"{service_type}_Response"
 
 
-def _hash_of(endpoint: Endpoint) -> str:
+def _announced_hash(endpoint: Endpoint) -> str:
     """Return the announced hash of a service's type, or the computed one; empty if unknown."""
     if endpoint.type_hash:
         return endpoint.type_hash

@@ -36,7 +36,7 @@ from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServ
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
-from linkwright.wire.dds.service_types import request_and_response_types, service_facts
+from linkwright.wire.dds.service_types import request_and_response_types, service_user_data
 from linkwright.wire.service_messages import forward_request, forward_response, to_cdr
 
 if TYPE_CHECKING:
@@ -50,9 +50,9 @@ HEADER = struct.Struct("<Qq")
 _ENCAPSULATION = 4
 _BODY = _ENCAPSULATION + HEADER.size
 _LITTLE_ENDIAN = b"\x00\x01\x00\x00"
-_AT_ONCE = 64
-_REPLY_WAITS = 1.0
-"""Seconds for which a reply waits until the client's reader is known; then it is written all the same."""
+_MAX_SAMPLES = 64
+_REPLY_TIMEOUT_S = 1.0
+"""Seconds for which a reply waits until the client's reader is known. After that, the reply is written anyway."""
 
 
 class Pair:
@@ -70,13 +70,15 @@ class Pair:
         self.name = endpoint.name
         self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
-        facts = service_facts(os.urandom(16), endpoint, is_server=is_server)
+        user_data = service_user_data(os.urandom(16), endpoint, is_server=is_server)
         # Only the names of the types are described, because requests of Fast DDS arrive without the header.
-        described = (domain.types.by_name(half) for half in request_and_response_types(endpoint.type_name))
-        request = participant.create_topic(self.request_topic, next(described))
-        reply = participant.create_topic(self.reply_topic, next(described))
+        type_descriptions = (
+            domain.types.by_name(type_name) for type_name in request_and_response_types(endpoint.type_name)
+        )
+        request = participant.create_topic(self.request_topic, next(type_descriptions))
+        reply = participant.create_topic(self.reply_topic, next(type_descriptions))
         self._topics = (request, reply)
-        with endpoint_qos(endpoint.qos_profile, facts) as qos:
+        with endpoint_qos(endpoint.qos_profile, user_data) as qos:
             self.reader = participant.create_reader(request if is_server else reply, qos)
             self.writer = participant.create_writer(reply if is_server else request, qos)
         self.reader_guid = self._dds.guid(self.reader)
@@ -96,8 +98,8 @@ class Pair:
 
     def samples(self) -> Iterator[tuple[bytes, Any]]:
         """Take the samples that have arrived, as CDR; yield each with Cyclone's sample info."""
-        taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
-        return (sample for sample in (taken if isinstance(taken, list) else ()) if sample[1].valid_data)
+        results = self._dds.take_bytes(self.reader, ANY_STATE, _MAX_SAMPLES)
+        return (sample for sample in (results if isinstance(results, list) else ()) if sample[1].valid_data)
 
     def write(self, client_id: int, number: int, message: Any) -> None:
         """Write a request or a reply, with the header that identifies the request."""
@@ -116,56 +118,56 @@ class OutsideServer:
     Args:
         client: the client.
         domain: the domain with the servers.
-        matched: called in the receiving thread when an endpoint was matched or has left.
+        on_match: called in the receiving thread when an endpoint was matched or has left.
     """
 
-    def __init__(self, client: Client[Any, Any], domain: Domain, matched: Callable[[], None]) -> None:
+    def __init__(self, client: Client[Any, Any], domain: Domain, on_match: Callable[[], None]) -> None:
         self._client = client
-        self._matched = matched
+        self._on_match = on_match
         self._remote = domain.remote
         self._dds = load()
         self.pair = Pair(client, domain, is_server=False)
         self._client_id = int.from_bytes(os.urandom(8), "little")
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
-        self._by_cyclone = False
+        self._uses_cyclone = False
         self._fast: FastClient | None = None
 
     def meet_fast(self, participant: RtpsParticipant) -> None:
         """Start calling servers on Fast DDS, too."""
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
-    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
+    def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Write a request; return a function that cancels it."""
-        if self._fast is not None and not self._by_cyclone:
-            return self._fast.send(request, answer)
-        self._answers[number] = answer
+        if self._fast is not None and not self._uses_cyclone:
+            return self._fast.send(request, on_response)
+        self._answers[number] = on_response
         self.pair.write(self._client_id, number, request)
         return partial(self._forget, number)
 
     def on_data(self) -> bool:
         """Pass on the replies for this client; return whether there are more samples."""
         if self.pair.has_matched(self.pair.reader):
-            self._matched()
+            self._on_match()
         count = 0
         for data, _ in self.pair.samples():
             count += 1
             client_id, number, body = _split_sample(data)
-            answer = self._answers.pop(number, None) if client_id == self._client_id else None
-            if answer is not None:
-                forward_response(body, self._client, answer)
-        return count == _AT_ONCE
+            on_response = self._answers.pop(number, None) if client_id == self._client_id else None
+            if on_response is not None:
+                forward_response(body, self._client, on_response)
+        return count == _MAX_SAMPLES
 
     def on_writer_status(self) -> bool:
         """Handle a change in the readers that match the writer. Returns False: there are no samples."""
         if self.pair.has_matched(self.pair.writer):
-            self._matched()
+            self._on_match()
         return False
 
     def review(self) -> None:
         """Update whether there is a server whose reader and writer both match ours."""
-        self._by_cyclone = self._is_server_available()
-        is_ready = self._by_cyclone or (self._fast is not None and self._fast.is_ready())
+        self._uses_cyclone = self._is_server_available()
+        is_ready = self._uses_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
             self._is_ready = is_ready
             self._client.set_outside(self if is_ready else None)
@@ -186,10 +188,10 @@ class OutsideServer:
         self._answers.pop(number, None)
 
     def _is_server_available(self) -> bool:
-        listening = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
-        ours = [endpoint for endpoint in listening if endpoint is not None and not endpoint.is_fast]
-        replying = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
-        return any(_have_same_owner(a, b, "serviceid") for a in ours for b in replying)
+        request_readers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
+        cyclone_readers = [endpoint for endpoint in request_readers if endpoint is not None and not endpoint.is_fast]
+        reply_writers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
+        return any(_have_same_owner(a, b, "serviceid") for a in cyclone_readers for b in reply_writers)
 
 
 class IncomingService:
@@ -198,18 +200,18 @@ class IncomingService:
     Args:
         service: the service.
         domain: the domain with the clients.
-        waits: called when a reply must wait until its client is reachable.
+        on_waiting: called when a reply must wait until its client is reachable.
     """
 
-    def __init__(self, service: Service[Any, Any], domain: Domain, waits: Callable[[], None]) -> None:
+    def __init__(self, service: Service[Any, Any], domain: Domain, on_waiting: Callable[[], None]) -> None:
         self._service = service
-        self._waits = waits
+        self._on_waiting = on_waiting
         self._remote = domain.remote
         self._dds = load()
         self.pair = Pair(service, domain, is_server=True)
         self._fast: FastServer | None = None
-        self._early: list[EarlyRequest] = []
-        self._late: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
+        self._early_requests: list[EarlyRequest] = []
+        self._late_replies: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
         self._lock = Lock()
 
     def on_data(self) -> bool:
@@ -225,31 +227,31 @@ class IncomingService:
                 gid = bytes(16) if sender is None else sender.guid
                 reply = partial(self._reply, sender, client_id, number)
                 forward_request(body, self._service, reply, RequestId(gid, number))
-        return count == _AT_ONCE
+        return count == _MAX_SAMPLES
 
     def meet_fast(self, participant: RtpsParticipant) -> None:
         """Start answering clients on Fast DDS, too."""
         self._fast = FastServer(self._service, participant)
-        early, self._early = self._early, []
-        for request in early:
+        early_requests, self._early_requests = self._early_requests, []
+        for request in early_requests:
             self._fast.on_early_request(request)
 
     def review(self) -> None:
         """Write replies whose clients are reachable by now, or were unreachable for too long."""
         with self._lock:
-            for _ in range(len(self._late)):
-                due, sender, client_id, number, response = self._late.popleft()
-                if time.monotonic() >= due or self._can_reach(sender):
+            for _ in range(len(self._late_replies)):
+                deadline, sender, client_id, number, response = self._late_replies.popleft()
+                if time.monotonic() >= deadline or self._can_reach(sender):
                     self.pair.write(client_id, number, response)
                 else:
-                    self._late.append((due, sender, client_id, number, response))
+                    self._late_replies.append((deadline, sender, client_id, number, response))
         if self._fast is not None:
             self._fast.review()
 
     @property
     def has_more_to_do(self) -> bool:
         """Whether replies or requests wait until their clients are discovered."""
-        return bool(self._late) or (self._fast is not None and self._fast.has_more_to_do)
+        return bool(self._late_replies) or (self._fast is not None and self._fast.has_more_to_do)
 
     def close(self) -> None:
         """Stop answering other processes."""
@@ -264,10 +266,10 @@ class IncomingService:
             return False
         request = EarlyRequest(guid, data, info.source_timestamp, time.monotonic())
         if self._fast is None:
-            self._early = [*self._early[-_AT_ONCE:], request]
+            self._early_requests = [*self._early_requests[-_MAX_SAMPLES:], request]
         else:
             self._fast.on_early_request(request)
-            self._waits()
+            self._on_waiting()
         return True
 
     def _reply(self, sender: RemoteEndpoint | None, client_id: int, number: int, response: Any) -> None:
@@ -276,11 +278,13 @@ class IncomingService:
                 self.pair.write(client_id, number, response)
             else:
                 with self._lock:
-                    self._late.append((time.monotonic() + _REPLY_WAITS, sender, client_id, number, response))
-                self._waits()
+                    self._late_replies.append(
+                        (time.monotonic() + _REPLY_TIMEOUT_S, sender, client_id, number, response)
+                    )
+                self._on_waiting()
 
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
-        """Return whether the client's reader matches our writer; otherwise it would miss the reply."""
+        """Return whether the client's reader matches our writer; otherwise the client would miss the reply."""
         readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
         return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 
@@ -292,8 +296,8 @@ def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
     """
     if a is None or b is None:
         return False
-    if key in a.facts or key in b.facts:
-        return a.facts.get(key) == b.facts.get(key)
+    if key in a.user_data or key in b.user_data:
+        return a.user_data.get(key) == b.user_data.get(key)
     return a.participant == b.participant
 
 

@@ -19,21 +19,24 @@ from linkwright.messages import is_before_iron
 from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
 from linkwright.wire.domain_id import read_domain_id
 
-_PARTICIPANTS = 99
-"""How many processes on one machine find each other without multicast, where the domain has ports for them."""
+_MAX_PARTICIPANTS = 99
+"""The maximum number of processes on one machine that find each other without multicast.
+
+The highest domains have ports for fewer processes.
+"""
 
 _LAST_PORT = 0xFFFF
 _FIRST_UNICAST_PORT = 7411
 _PORTS_OF_A_DOMAIN = 250
 
 _FRAGMENT_SIZE = 60_000
-"""Bytes of a sample that go into one packet where the configuration is our own; larger ones go in several."""
+"""The maximum size, in bytes, of a sample that is sent in one packet, if the configuration is Linkwright's."""
 
 _CYCLONES_FRAGMENT_SIZE = 1344
-"""The same where Cyclone chooses."""
+"""The same, if Cyclone chooses the size."""
 
 LEASE = 5
-"""Seconds of silence after which a process counts as gone, where the configuration is our own."""
+"""Seconds of silence after which a process counts as gone, if the configuration is Linkwright's."""
 
 _STATIC_PEERS_SEPARATOR = ";"
 
@@ -44,14 +47,14 @@ def max_participants(domain_id: int) -> int:
     Each participant uses two ports, and only a few ports are left for the highest domains. The ports are those of RTPS
     (DDSI-RTPS 2.5, 9.6.1).
     """
-    return min(_PARTICIPANTS, (_LAST_PORT - _FIRST_UNICAST_PORT - _PORTS_OF_A_DOMAIN * domain_id) // 2)
+    return min(_MAX_PARTICIPANTS, (_LAST_PORT - _FIRST_UNICAST_PORT - _PORTS_OF_A_DOMAIN * domain_id) // 2)
 
 
 class Range(Enum):
     """The range in which other participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
 
     MACHINE = "machine"
-    """Our own default: this machine, on all its ways."""
+    """Linkwright's default: this machine, through all its interfaces."""
 
     LOCALHOST = "LOCALHOST"
     SUBNET = "SUBNET"
@@ -102,25 +105,29 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     """
     variables = os.environ if environment is None else environment
     warnings: list[str] = []
-    reach = _range(variables, warnings)
+    discovery_range = _range(variables, warnings)
     peers = [peer for peer in variables.get("ROS_STATIC_PEERS", "").split(_STATIC_PEERS_SEPARATOR) if peer]
-    if peers and reach in (Range.OFF, Range.SYSTEM_DEFAULT):
-        warnings.append(f"{len(peers)} static peers were specified, but discovery is {reach.value}: they are ignored")
+    if peers and discovery_range in (Range.OFF, Range.SYSTEM_DEFAULT):
+        warnings.append(
+            f"{len(peers)} static peers were specified, but discovery is {discovery_range.value}: they are ignored"
+        )
     user = variables.get("CYCLONEDDS_URI", "")
     domain_id = read_domain_id(variables, domain_id)
-    own = tuple(_configurations(reach, peers, max_participants(domain_id)))
-    configurations = tuple(",".join(part for part in (configuration, user) if part) for configuration in own)
+    own_configurations = tuple(_configurations(discovery_range, peers, max_participants(domain_id)))
+    configurations = tuple(
+        ",".join(fragment for fragment in (configuration, user) if fragment) for configuration in own_configurations
+    )
     return Settings(
         domain_id=domain_id,
-        range=reach,
+        range=discovery_range,
         configurations=configurations,
         gid_size=OLD_GID_SIZE if is_before_iron(variables) else GID_SIZE,
         warnings=tuple(warnings),
         user_configuration=user,
-        own_configurations=own,
-        peers=() if reach in (Range.OFF, Range.SYSTEM_DEFAULT) else tuple(peers),
-        fragment_size=_FRAGMENT_SIZE if not user and _stays_here(reach, peers) else _CYCLONES_FRAGMENT_SIZE,
-        on_loopback=configurations[-_ON_LOOPBACK:] if _stays_here(reach, peers) else (),
+        own_configurations=own_configurations,
+        peers=() if discovery_range in (Range.OFF, Range.SYSTEM_DEFAULT) else tuple(peers),
+        fragment_size=_FRAGMENT_SIZE if not user and _stays_here(discovery_range, peers) else _CYCLONES_FRAGMENT_SIZE,
+        on_loopback=configurations[-_LOOPBACK_CONFIGURATIONS:] if _stays_here(discovery_range, peers) else (),
     )
 
 
@@ -132,14 +139,14 @@ def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
     localhost_only = variables.get("ROS_LOCALHOST_ONLY", "")
     if localhost_only == "1":
         return Range.LOCALHOST
-    named = variables.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
-    if named:
+    range_name = variables.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
+    if range_name:
         choices = [choice.value for choice in Range if choice is not Range.MACHINE]
-        if named in choices:
-            return Range(named)
-        hint = did_you_mean(named, choices)
+        if range_name in choices:
+            return Range(range_name)
+        hint = did_you_mean(range_name, choices)
         warnings.append(
-            f"Invalid value '{named}' specified for 'ROS_AUTOMATIC_DISCOVERY_RANGE', assuming localhost only"
+            f"Invalid value '{range_name}' specified for 'ROS_AUTOMATIC_DISCOVERY_RANGE', assuming localhost only"
             + (f" ({hint})" if hint else "")
         )
         return Range.LOCALHOST
@@ -150,16 +157,16 @@ def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
 
 _AUTO_INDEX = "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{0}</MaxAutoParticipantIndex>"
 
-_REPEATED = "<SPDPInterval>3 s</SPDPInterval>"
-"""How often a process announces itself where that goes beyond the machine: as often as Fast DDS does."""
+_ANNOUNCEMENT_INTERVAL = "<SPDPInterval>3 s</SPDPInterval>"
+"""How often a process announces itself beyond this machine: as often as Fast DDS does."""
 
 _THIS_MACHINE = '<Peer address="127.0.0.1" PruneDelay="inf"/>'
 """The ports of this machine, for as long as the process lives.
 
 A node of Fast DDS on LOCALHOST announces itself on loopback alone, and Cyclone ignores packets on loopback unless
-loopback is one of its interfaces. So we announce ourselves to it, and it answers at our address on the network. Were
-loopback an interface, its address would be announced to the network, and Fast DDS on other machines sends all data to
-their own loopback as well.
+loopback is one of its interfaces. So this process announces itself to the node, which answers at this process's address
+on the network. If loopback were an interface, its address would be announced to the network, and Fast DDS on other
+machines would send all data to their own loopback, too.
 """
 
 _RELIABLE_TRAFFIC = (
@@ -167,60 +174,65 @@ _RELIABLE_TRAFFIC = (
     "<HeartbeatInterval minsched='5 ms'>10 ms</HeartbeatInterval><BurstSize><MaxRexmit>200 kB</MaxRexmit></BurstSize>"
     "<SocketReceiveBufferSize max='8 MB'/></Internal>"
 )
-"""More than Cyclone's half megabyte may wait for acknowledgement, for an image alone is larger; readers are asked for
-acknowledgements every 10 ms in place of 100, for as long as any are missing; and what is sent again goes in portions
-that fit the receive buffer of a process with Linux's default."""
+"""Settings of reliable writers.
 
-_OWN_ADDRESSES = 3
-"""At how many addresses besides loopback others of this machine are looked for."""
+More than Cyclone's half megabyte may wait for acknowledgement, because a single image is larger. While acknowledgements
+are missing, they are requested every 10 ms instead of every 100 ms. Retransmissions are limited to portions that fit
+into Linux's default receive buffer.
+"""
 
-_ON_LOOPBACK = 2
-"""How many of the configurations for this machine use loopback alone; they come last."""
+_MAX_OWN_ADDRESSES = 3
+"""The maximum number of addresses besides loopback at which processes of this machine are contacted."""
+
+_LOOPBACK_CONFIGURATIONS = 2
+"""The number of configurations for this machine that use only loopback; they come last."""
 
 _LOOPBACK = '<NetworkInterface address="127.0.0.1" multicast="true"/>'
-_OTHERS = '<NetworkInterface autodetermine="true"/>'
+_OTHER_INTERFACES = '<NetworkInterface autodetermine="true"/>'
 
 
-def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: bool) -> str:
+def _machine(interfaces: str, addresses: list[str], max_index: int, *, multicast: bool) -> str:
     """Return a configuration for discovery on this machine.
 
     Discovery uses unicast to each participant index at the machine's own addresses, and multicast that never leaves the
     machine (TTL 0). Multicast is received on loopback only, so that announcements of other machines are ignored.
     """
     peers = "".join(f'<Peer address="{address}"/>' for address in ("127.0.0.1", *addresses))
-    by_multicast = (
+    multicast_elements = (
         "<AllowMulticast>spdp</AllowMulticast><MulticastTimeToLive>0</MulticastTimeToLive>"
         "<MulticastRecvNetworkInterfaceAddresses>127.0.0.1</MulticastRecvNetworkInterfaceAddresses>"
         if multicast
         else "<AllowMulticast>false</AllowMulticast>"
     )
     return (
-        f"<CycloneDDS><Domain><General><Interfaces>{interfaces}</Interfaces>{by_multicast}"
+        f"<CycloneDDS><Domain><General><Interfaces>{interfaces}</Interfaces>{multicast_elements}"
         f"<MaxMessageSize>65000 B</MaxMessageSize><FragmentSize>{_FRAGMENT_SIZE} B</FragmentSize></General>"
-        f"<Discovery>{_AUTO_INDEX.format(most)}<LeaseDuration>{LEASE} s</LeaseDuration>"
+        f"<Discovery>{_AUTO_INDEX.format(max_index)}<LeaseDuration>{LEASE} s</LeaseDuration>"
         f"<Peers>{peers}</Peers></Discovery>"
         f"{_RELIABLE_TRAFFIC}</Domain></CycloneDDS>"
     )
 
 
-def _stays_here(reach: Range, peers: list[str]) -> bool:
+def _stays_here(discovery_range: Range, peers: list[str]) -> bool:
     """Return whether discovery is restricted to processes of this machine."""
-    return reach is Range.MACHINE or (reach is Range.LOCALHOST and not peers)
+    return discovery_range is Range.MACHINE or (discovery_range is Range.LOCALHOST and not peers)
 
 
-def _configurations(reach: Range, peers: list[str], most: int) -> list[str]:
+def _configurations(discovery_range: Range, peers: list[str], max_index: int) -> list[str]:
     """Return the configurations in order of preference, without the user's own configuration."""
-    if _stays_here(reach, peers):
-        addresses = own_addresses()[:_OWN_ADDRESSES]
-        loopback_alone = [
-            _machine(_LOOPBACK, [], most, multicast=True),
-            _machine('<NetworkInterface address="127.0.0.1"/>', [], most, multicast=False),
+    if _stays_here(discovery_range, peers):
+        addresses = own_addresses()[:_MAX_OWN_ADDRESSES]
+        loopback_only = [
+            _machine(_LOOPBACK, [], max_index, multicast=True),
+            _machine('<NetworkInterface address="127.0.0.1"/>', [], max_index, multicast=False),
         ]
-        on_network = [_machine(_LOOPBACK + _OTHERS, addresses, most, multicast=True)] if addresses else []
-        return on_network + loopback_alone
-    if reach is Range.SYSTEM_DEFAULT:
+        on_network = (
+            [_machine(_LOOPBACK + _OTHER_INTERFACES, addresses, max_index, multicast=True)] if addresses else []
+        )
+        return on_network + loopback_only
+    if discovery_range is Range.SYSTEM_DEFAULT:
         return [""]
-    if reach is Range.OFF:
+    if discovery_range is Range.OFF:
         off = (
             "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General>"
             "<Discovery><ParticipantIndex>none</ParticipantIndex>"
@@ -229,12 +241,13 @@ def _configurations(reach: Range, peers: list[str], most: int) -> list[str]:
         return [off]
     from xml.sax.saxutils import quoteattr  # imported here: it loads modules of urllib, which are rarely needed
 
-    local = reach is Range.LOCALHOST
-    listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
+    local = discovery_range is Range.LOCALHOST
+    peer_elements = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
     return [
         "<CycloneDDS><Domain>"
         + ("<General><AllowMulticast>false</AllowMulticast></General>" if local else "")
-        + f"<Discovery>{_AUTO_INDEX.format(32)}{_REPEATED}<Peers>{listed}</Peers></Discovery></Domain></CycloneDDS>"
+        + f"<Discovery>{_AUTO_INDEX.format(32)}{_ANNOUNCEMENT_INTERVAL}<Peers>{peer_elements}</Peers>"
+        + "</Discovery></Domain></CycloneDDS>"
     ]
 
 
@@ -248,29 +261,29 @@ def own_addresses() -> list[str]:
     Cyclone prints an error if it is given an interface that does not exist. A process that is configured to stay on the
     machine may be reachable only at the address of its interface.
     """
-    addresses = _interface_addresses() if sys.platform.startswith("linux") else _by_name()
+    addresses = _interface_addresses() if sys.platform.startswith("linux") else _addresses_by_name()
     return [address for address in dict.fromkeys(addresses) if address and not address.startswith("127.")]
 
 
 def _interface_addresses() -> list[str]:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
-        return [_address(asking, name) for _, name in socket.if_nameindex()]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as query_socket:
+        return [_address(query_socket, name) for _, name in socket.if_nameindex()]
 
 
-def _address(asking: socket.socket, name: str) -> str:
+def _address(query_socket: socket.socket, name: str) -> str:
     """Return the address of an interface; empty if the interface has none."""
     from fcntl import ioctl
 
     try:
-        answer = ioctl(asking.fileno(), _SIOCGIFADDR, struct.pack(_REQUEST, name.encode()[:15]))
+        response = ioctl(query_socket.fileno(), _SIOCGIFADDR, struct.pack(_REQUEST, name.encode()[:15]))
     except OSError:
         return ""
-    return socket.inet_ntoa(answer[20:24])
+    return socket.inet_ntoa(response[20:24])
 
 
-def _by_name() -> list[str]:
+def _addresses_by_name() -> list[str]:
     try:
-        found = socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)
+        results = socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)
     except OSError:
         return []
-    return [str(address[0]) for *_, address in found]
+    return [str(address[0]) for *_, address in results]

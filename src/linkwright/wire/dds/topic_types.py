@@ -26,13 +26,13 @@ from typing import Any
 
 from linkwright.wire.dds.cyclone import check_call, load
 
-_UNUSED = "linkwright_type_{}"
-"""The names of the topics that types are taken from."""
+_TOPIC_NAME = "linkwright_type_{}"
+"""The pattern for the names of the topics from which types are taken."""
 
-_FUNCTIONS = 14
-"""Members of the table: its version, an argument, and the functions."""
+_TABLE_SIZE = 14
+"""The number of members of the table: its version, an argument, and the functions."""
 
-_DESCRIBING = slice(8, 11)
+_DESCRIBING_FUNCTIONS = slice(8, 11)
 """``type_id``, ``type_map`` and ``type_info``."""
 
 _VERSION_ON_WINDOWS = 1
@@ -60,23 +60,23 @@ class TopicTypes:
         Raises:
             CycloneError: Cyclone refuses the topic.
         """
-        what = f"topic '{name}'"
+        operation = f"topic '{name}'"
         with self._lock:  # no other thread may see a type while it is created
             address = self._made.get(described_type)
             if address is None:
-                address = self._made[described_type] = self._new(participant, described_type, what)
+                address = self._made[described_type] = self._new(participant, described_type, operation)
         pointer = c.c_void_p(self._dds.ddsi_sertype_ref(address))
         code = self._dds.dds_create_topic_sertype(participant, name.encode(), c.byref(pointer), None, None, None)
         if code < 0:
             self._dds.ddsi_sertype_unref(address)
-        return check_call(code, what)
+        return check_call(code, operation)
 
     def free(self) -> None:
         """Free the types of a closed domain, after Cyclone has stopped referring to them."""
         while self._made:
             self._dds.ddsi_sertype_free(self._made.popitem()[1])
 
-    def _new(self, participant: int, described_type: Any, what: str) -> int:
+    def _new(self, participant: int, described_type: Any, operation: str) -> int:
         """Create a type and return its address.
 
         The type belongs to an unused topic of the Python package, which is deleted with `participant`. If the topic
@@ -84,10 +84,10 @@ class TopicTypes:
         without a lock (``ddsi_topic_descriptor_from_type``). Graphs of one process that joined at the same time
         then crashed.
         """
-        name = _UNUSED.format(len(self._made))
-        unused = check_call(self._dds.create_topic(participant, name, described_type, None, None), what)
+        name = _TOPIC_NAME.format(len(self._made))
+        unused_topic = check_call(self._dds.create_topic(participant, name, described_type, None, None), operation)
         pointer = c.c_void_p()
-        check_call(self._dds.dds_get_entity_sertype(unused, c.byref(pointer)), "asking for a type")
+        check_call(self._dds.dds_get_entity_sertype(unused_topic, c.byref(pointer)), "asking for a type")
         address: int = self._dds.ddsi_sertype_ref(pointer)
         functions = c.c_void_p.from_address(address)
         functions.value = _table_without_descriptions(functions.value or 0)
@@ -102,11 +102,11 @@ def _table_without_descriptions(table: int) -> int:
     because Cyclone may use it until the process ends.
     """
     dds = load()
-    known = (c.c_void_p * _FUNCTIONS).from_address(table)
-    if known[0] not in (dds.type_version, _VERSION_ON_WINDOWS):
+    members = (c.c_void_p * _TABLE_SIZE).from_address(table)
+    if members[0] not in (dds.type_version, _VERSION_ON_WINDOWS):
         return table
-    copy: int = dds.dds_alloc(c.sizeof(known))
-    c.memmove(copy, table, c.sizeof(known))
-    own = (c.c_void_p * _FUNCTIONS).from_address(copy)
-    own[_DESCRIBING] = [None] * len(own[_DESCRIBING])
+    copy: int = dds.dds_alloc(c.sizeof(members))
+    c.memmove(copy, table, c.sizeof(members))
+    copied_members = (c.c_void_p * _TABLE_SIZE).from_address(copy)
+    copied_members[_DESCRIBING_FUNCTIONS] = [None] * len(copied_members[_DESCRIBING_FUNCTIONS])
     return copy

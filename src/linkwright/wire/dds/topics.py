@@ -45,16 +45,19 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.subscription import Subscription
 
 _PATIENCE = 2 * LEASE
-"""Seconds for which a publisher that keeps everything waits for readers."""
+"""Seconds for which a publisher with KEEP_ALL waits for slow readers."""
 
 _NAMELESS = "a node that is not known by name"
 
-AT_ONCE = 256
-"""How many samples are taken before other readers have their turn."""
+MAX_SAMPLES = 256
+"""The maximum number of samples that are taken before other readers are served."""
 
 
-_LARGEST_KEPT = 16 << 20
-"""Bytes of the largest blocks that are kept; of each thread's memory, glibc then keeps twice as many that are free."""
+_MAX_KEPT_BLOCK = 16 << 20
+"""The maximum size, in bytes, of memory blocks that are kept.
+
+glibc then keeps up to twice as many free bytes for each thread.
+"""
 
 
 @lru_cache(maxsize=1)
@@ -65,10 +68,10 @@ def keep_large_blocks() -> None:
     image publisher. It keeps blocks up to the size of the largest block that was ever mapped and freed
     (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function maps and frees such a block, without using its pages.
     """
-    bytes(_LARGEST_KEPT)
+    bytes(_MAX_KEPT_BLOCK)
 
 
-def type_facts(message_class: Any) -> bytes:
+def type_user_data(message_class: Any) -> bytes:
     """Return the USER_DATA with the type's hash, as ROS 2 announces it from Iron on.
 
     Older distributions ignore the hash.
@@ -82,22 +85,22 @@ class MirroredTopic(ABC):
     Args:
         endpoint: the subscription or publisher.
         domain: the domain.
-        mismatch: called when an endpoint of another process has incompatible QoS.
+        on_mismatch: called when an endpoint of another process has incompatible QoS.
     """
 
     _STATUS: int
-    """Called with changes."""
+    """The mask of the statuses that `on_status` handles."""
 
-    def __init__(self, endpoint: Endpoint, domain: Domain, mismatch: Callable[[Any], None]) -> None:
+    def __init__(self, endpoint: Endpoint, domain: Domain, on_mismatch: Callable[[Any], None]) -> None:
         self._dds = load()
-        self._mismatch = mismatch
+        self._on_mismatch = on_mismatch
         self._participant = domain.participant
         self._remote = domain.remote
         profile = self._profile_of(endpoint)
         self.topic_name = dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
-        described, facts = self._describe_type(endpoint, domain)
-        self._topic = self._participant.create_topic(self.topic_name, described)
-        with endpoint_qos(profile, facts) as qos:
+        type_description, user_data = self._describe_type(endpoint, domain)
+        self._topic = self._participant.create_topic(self.topic_name, type_description)
+        with endpoint_qos(profile, user_data) as qos:
             self.entity = self._create(qos)
         self.guid = self._dds.guid(self.entity)
         endpoint.gid = self.guid
@@ -110,13 +113,13 @@ class MirroredTopic(ABC):
         For a type that no package here defines, the description is only its name. This suffices if the messages are raw
         bytes.
         """
-        announced = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
+        announced_hash = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
         try:
-            return domain.types.message(endpoint.interface), announced or type_facts(endpoint.interface)
+            return domain.types.message(endpoint.interface), announced_hash or type_user_data(endpoint.interface)
         except InterfaceNotFoundError:
             if not endpoint.raw:
                 raise
-            return domain.types.by_name(endpoint.type_name), announced
+            return domain.types.by_name(endpoint.type_name), announced_hash
 
     def _profile_of(self, endpoint: Any) -> QoSProfile:
         """Return the QoS profile to offer or to request."""
@@ -134,8 +137,8 @@ class OutgoingTopic(MirroredTopic):
     Args:
         publisher: the publisher.
         domain: the domain to write in.
-        mismatch: called when a subscription of another process requests more than the publisher offers.
-        waiting: called when messages are queued, so that `review` must be called again soon.
+        on_mismatch: called when a subscription of another process requests more than the publisher offers.
+        on_waiting: called when messages are queued, so that `review` must be called again soon.
     """
 
     _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
@@ -144,16 +147,16 @@ class OutgoingTopic(MirroredTopic):
         self,
         publisher: Publisher[Any],
         domain: Domain,
-        mismatch: Callable[[Any], None],
-        waiting: Callable[[OutgoingTopic], None],
+        on_mismatch: Callable[[Any], None],
+        on_waiting: Callable[[OutgoingTopic], None],
     ) -> None:
-        super().__init__(publisher, domain, mismatch)
+        super().__init__(publisher, domain, on_mismatch)
         self._publisher = publisher
-        self._waiting = waiting
-        self._paced = self._make_paced(domain)
+        self._waiting = on_waiting
+        self._paced_writer = self._make_paced_writer(domain)
         self._backlog = self._make_backlog(domain.fragment_size)
         publisher.assert_outside = self._assert_liveliness
-        self._always = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self._is_transient_local = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._send = self._sender()
         self.on_status()
 
@@ -161,13 +164,13 @@ class OutgoingTopic(MirroredTopic):
         """Handle status changes: matched readers and incompatible QoS."""
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
-        matched = MatchedStatus()
-        if self._dds.dds_get_publication_matched_status(self.entity, c.byref(matched)) >= 0:
-            listened_to = self._always or matched.current_count > 0
-            self._publisher.set_outside(self._send if listened_to else None, self._acknowledged)
-            self._publisher.set_outside_count(matched.current_count)
+        match_status = MatchedStatus()
+        if self._dds.dds_get_publication_matched_status(self.entity, c.byref(match_status)) >= 0:
+            is_needed = self._is_transient_local or match_status.current_count > 0
+            self._publisher.set_outside(self._send if is_needed else None, self._acknowledged)
+            self._publisher.set_outside_count(match_status.current_count)
         if status.value & OFFERED_INCOMPATIBLE_QOS:
-            self._mismatch(self)
+            self._on_mismatch(self)
         return False
 
     def review(self) -> bool:
@@ -182,17 +185,17 @@ class OutgoingTopic(MirroredTopic):
 
         Returns False if that takes longer than the given time.
         """
-        until = time.monotonic_ns() + nanoseconds
+        deadline_ns = time.monotonic_ns() + nanoseconds
         while self.review():
-            if not self._wait_for_acks(max(0, until - time.monotonic_ns())):
+            if not self._wait_for_acks(max(0, deadline_ns - time.monotonic_ns())):
                 return False
-        return self._wait_for_acks(max(0, until - time.monotonic_ns()))
+        return self._wait_for_acks(max(0, deadline_ns - time.monotonic_ns()))
 
     def close(self) -> None:
         """Delete the writer."""
         self._publisher.set_outside(None)
-        if self._paced is not None:
-            self._paced.close()
+        if self._paced_writer is not None:
+            self._paced_writer.close()
         self._participant.delete(self.entity, self._topic)
 
     def abandon(self) -> None:
@@ -214,13 +217,13 @@ class OutgoingTopic(MirroredTopic):
 
         Samples in the backlog are not considered.
         """
-        until = time.monotonic_ns() + nanoseconds
-        if self._paced is not None and not self._paced.wait_until_written(nanoseconds / 1e9):
+        deadline_ns = time.monotonic_ns() + nanoseconds
+        if self._paced_writer is not None and not self._paced_writer.wait_until_written(nanoseconds / 1e9):
             return False
-        code: int = self._dds.dds_wait_for_acks(self.entity, max(0, until - time.monotonic_ns()))
+        code: int = self._dds.dds_wait_for_acks(self.entity, max(0, deadline_ns - time.monotonic_ns()))
         return code >= 0
 
-    def _make_paced(self, domain: Domain) -> PacedWriter | None:
+    def _make_paced_writer(self, domain: Domain) -> PacedWriter | None:
         """Return a writer that sends through the pacer, or None if the pacer cannot be used.
 
         The pacer requires that newer samples replace older ones, and that Cyclone's packets have the size that the
@@ -234,8 +237,8 @@ class OutgoingTopic(MirroredTopic):
 
     def _fast_readers(self) -> list[bytes]:
         """Return the GUIDs of the readers of Fast DDS that match the writer."""
-        known = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
-        return [endpoint.guid for endpoint in known if endpoint is not None and endpoint.is_fast]
+        endpoints = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
+        return [endpoint.guid for endpoint in endpoints if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
         """Return a queue for large samples; None if the writer never replaces requested samples."""
@@ -256,7 +259,7 @@ class OutgoingTopic(MirroredTopic):
         backlog = self._backlog
 
         def send(message: Any) -> None:
-            data = message if type(message) is bytes else _bytes_of(message)
+            data = message if type(message) is bytes else _to_bytes(message)
             if backlog is None:
                 self._write(data)
             elif backlog.send(data):
@@ -269,12 +272,12 @@ class OutgoingTopic(MirroredTopic):
             keep_large_blocks()
         if len(data) & 3:
             data += bytes(-len(data) & 3)
-        if self._paced is not None:
-            self._paced.write(data)
+        if self._paced_writer is not None:
+            self._paced_writer.write(data)
         else:
             self._write_published(data, None)
 
-    def _write_published(self, data: bytes, published: int | None) -> bool:
+    def _write_published(self, data: bytes, published_ns: int | None) -> bool:
         """Write a sample with Cyclone; return whether Cyclone accepted it.
 
         If the writer keeps all samples, or the pacer has already sent the sample, writing is retried until slow readers
@@ -282,22 +285,22 @@ class OutgoingTopic(MirroredTopic):
 
         Args:
             data: the sample.
-            published: when the sample was published, in ns since the epoch; None for now.
+            published_ns: when the sample was published, in ns since the epoch; None for now.
         """
         sample = Sample(data, len(data))
-        now = time.monotonic()
-        insists = published is not None or self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
-        code = self._hand_over(sample, published)
-        while code == TIMEOUT and insists and time.monotonic() < now + _PATIENCE and not self._participant.closed:
-            code = self._hand_over(sample, published)
+        start = time.monotonic()
+        must_retry = published_ns is not None or self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
+        code = self._hand_over(sample, published_ns)
+        while code == TIMEOUT and must_retry and time.monotonic() < start + _PATIENCE and not self._participant.closed:
+            code = self._hand_over(sample, published_ns)
         self._failed(code)
         return code >= 0
 
-    def _hand_over(self, sample: Sample, published: int | None) -> int:
-        if published is None:
+    def _hand_over(self, sample: Sample, published_ns: int | None) -> int:
+        if published_ns is None:
             code: int = self._dds.dds_write(self.entity, c.byref(sample))
         else:
-            code = self._dds.dds_write_ts(self.entity, c.byref(sample), published)
+            code = self._dds.dds_write_ts(self.entity, c.byref(sample), published_ns)
         return code
 
     def _failed(self, code: int) -> None:
@@ -316,7 +319,7 @@ class OutgoingTopic(MirroredTopic):
             finally_: whether to report also subscriptions whose node name is not known yet.
         """
         offered = self._publisher.qos_profile
-        for reader in self._remote.endpoints_of(self.topic_name, writers=False):
+        for reader in self._remote.topic_endpoints(self.topic_name, writers=False):
             policies = incompatible_policies(offered, reader.qos)
             name = self._remote.node_name(reader)
             if policies and (name or finally_) and self._log_limits.is_new(reader.guid):
@@ -329,8 +332,8 @@ class IncomingTopic(MirroredTopic):
 
     _STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
 
-    def __init__(self, subscription: Subscription[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
-        super().__init__(subscription, domain, mismatch)
+    def __init__(self, subscription: Subscription[Any], domain: Domain, on_mismatch: Callable[[Any], None]) -> None:
+        super().__init__(subscription, domain, on_mismatch)
         self._subscription = subscription
 
     def on_status(self) -> bool:
@@ -352,23 +355,23 @@ class IncomingTopic(MirroredTopic):
         return self._participant.create_reader(self._topic, qos)
 
     def _receive(self) -> bool:
-        samples = self._dds.take_bytes(self.entity, ANY_STATE, AT_ONCE)
+        samples = self._dds.take_bytes(self.entity, ANY_STATE, MAX_SAMPLES)
         if not isinstance(samples, list):
             return False
-        receive, received = self._subscription.receive, time.time_ns()
+        receive, received_ns = self._subscription.receive, time.time_ns()
         publisher, gid = None, bytes(16)
         for data, info in samples:
             if info.valid_data:
                 if info.publication_handle != publisher:
                     publisher = info.publication_handle
-                    gid = self._gid_of(publisher)
+                    gid = self._publisher_gid(publisher)
                 try:
-                    receive(data, MessageInfo(info.source_timestamp, received, gid, True))
+                    receive(data, MessageInfo(info.source_timestamp, received_ns, gid, True))
                 except Exception as error:  # noqa: BLE001 - the other samples taken from Cyclone must not be lost
                     self._subscription.report(error)
-        return len(samples) == AT_ONCE
+        return len(samples) == MAX_SAMPLES
 
-    def _gid_of(self, handle: int) -> bytes:
+    def _publisher_gid(self, handle: int) -> bytes:
         """Return the GID of a publisher; zeros if it is not known.
 
         The reader may know the GID before the discovery tables do.
@@ -378,22 +381,22 @@ class IncomingTopic(MirroredTopic):
             return endpoint.guid
         return self._dds.writer_guid(self.entity, handle) or bytes(16)
 
-    def _on_change(self, changed: int) -> None:
-        if changed & SUBSCRIPTION_MATCHED:
-            matched = MatchedStatus()
-            self._dds.dds_get_subscription_matched_status(self.entity, c.byref(matched))
-            self._subscription.set_outside_count(matched.current_count)
-        if changed & SAMPLE_LOST:
-            lost = CountStatus()
-            self._dds.dds_get_sample_lost_status(self.entity, c.byref(lost))
-            if lost.total_count_change > 0:
-                self._subscription.count_lost_outside(lost.total_count_change)
-        if changed & LIVELINESS_CHANGED:
-            lives = LivelinessChangedStatus()
-            self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(lives))
-            self._subscription.set_outside_liveliness(lives.alive_count, lives.not_alive_count)
-        if changed & REQUESTED_INCOMPATIBLE_QOS:
-            self._mismatch(self)
+    def _on_change(self, status: int) -> None:
+        if status & SUBSCRIPTION_MATCHED:
+            match_status = MatchedStatus()
+            self._dds.dds_get_subscription_matched_status(self.entity, c.byref(match_status))
+            self._subscription.set_outside_count(match_status.current_count)
+        if status & SAMPLE_LOST:
+            lost_status = CountStatus()
+            self._dds.dds_get_sample_lost_status(self.entity, c.byref(lost_status))
+            if lost_status.total_count_change > 0:
+                self._subscription.count_lost_outside(lost_status.total_count_change)
+        if status & LIVELINESS_CHANGED:
+            liveliness_status = LivelinessChangedStatus()
+            self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(liveliness_status))
+            self._subscription.set_outside_liveliness(liveliness_status.alive_count, liveliness_status.not_alive_count)
+        if status & REQUESTED_INCOMPATIBLE_QOS:
+            self._on_mismatch(self)
 
     def log_mismatches(self, *, finally_: bool) -> None:
         """Report publishers of other processes that offer less than this subscription requests.
@@ -402,7 +405,7 @@ class IncomingTopic(MirroredTopic):
             finally_: whether to report also publishers whose node name is not known yet.
         """
         requested = self._subscription.qos_profile
-        for writer in self._remote.endpoints_of(self.topic_name, writers=True):
+        for writer in self._remote.topic_endpoints(self.topic_name, writers=True):
             policies = incompatible_policies(writer.qos, requested)
             name = self._remote.node_name(writer)
             if policies and (name or finally_) and self._log_limits.is_new(writer.guid):
@@ -415,7 +418,7 @@ class IncomingTopic(MirroredTopic):
 class _LogLimits:
     """Limits how often warnings of a topic are logged."""
 
-    _AGAIN_AFTER = 30.0
+    _LOG_INTERVAL_S = 30.0
 
     def __init__(self) -> None:
         self._guids: set[bytes] = set()
@@ -427,14 +430,14 @@ class _LogLimits:
         self._guids.add(guid)
         return is_new
 
-    def is_due(self, what: str) -> bool:
+    def is_due(self, key: str) -> bool:
         """Return whether a message should be logged, for the first time or again after some time."""
         now = time.monotonic()
-        is_due = now - self._logged.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
+        is_due = now - self._logged.get(key, -self._LOG_INTERVAL_S) >= self._LOG_INTERVAL_S
         if is_due:
-            self._logged[what] = now
+            self._logged[key] = now
         return is_due
 
 
-def _bytes_of(message: Any) -> bytes:
+def _to_bytes(message: Any) -> bytes:
     return bytes(message) if isinstance(message, bytearray) else serialize(message)

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 SETTLED_AFTER = 0.3
-"""Seconds without news after which discovery counts as complete."""
+"""Seconds without changes after which discovery counts as complete."""
 
 _SETTLED_AMONG_KNOWN = 0.05
-"""The same where all processes are known: one may have further participants, or be making endpoints just now."""
+"""The same, if all processes are known. A process may still be creating participants or endpoints."""
 
 
 class DdsTransport(BackgroundTransport):
@@ -55,10 +55,12 @@ class DdsTransport(BackgroundTransport):
     def _knows_all_processes(self) -> bool:
         """Return whether all processes in the domain are known, so that discovery need not wait.
 
-        This is possible only if discovery is restricted to this machine, for processes of Linkwright, and if this
-        process has only one participant.
+        The result is True only if discovery is restricted to this machine, all processes in the domain belong to
+        Linkwright, and this process has only one participant.
         """
         if self._settings.range is not Range.MACHINE:
             return False
-        others, known = other_processes(self._settings.domain_id), self._remote.our_processes()
-        return others is not None and os.getpid() not in known and len(known) >= others
+        process_count, known_processes = other_processes(self._settings.domain_id), self._remote.our_processes()
+        return (
+            process_count is not None and os.getpid() not in known_processes and len(known_processes) >= process_count
+        )

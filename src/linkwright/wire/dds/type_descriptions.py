@@ -27,7 +27,7 @@ class UndescribableError(Exception):
 
 
 class WireTypes:
-    """Creates the descriptions, each of them once. Any thread may use this object."""
+    """Creates and caches the descriptions of types. Any thread may use this object."""
 
     def __init__(self) -> None:
         self._made: dict[object, Any] = {}
@@ -35,26 +35,26 @@ class WireTypes:
 
     def message(self, message_class: type[Any]) -> Any:
         """Return the description of a message type."""
-        return self._described(definition_of(message_class))
+        return self._describe(definition_of(message_class))
 
     def discovery(self) -> Any:
         """Return the description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: only its name.
 
         The members differ between distributions (`discovery_info`), and Cyclone would reject data that do not match.
         """
-        return self._named(DISCOVERY_TYPE)
+        return self._describe_name(DISCOVERY_TYPE)
 
     def by_name(self, type_name: str) -> Any:
         """Return a description with only a type's name, so that Cyclone does not check its samples."""
-        return self._named(dds_type(type_name))
+        return self._describe_name(dds_type(type_name))
 
-    def _named(self, name: str) -> Any:
+    def _describe_name(self, name: str) -> Any:
         with self._lock:
             if name not in self._made:
                 self._made[name] = struct_class(name, {})
             return self._made[name]
 
-    def _described(self, structure: Structure) -> Any:
+    def _describe(self, structure: Structure) -> Any:
         with self._lock:
             if structure not in self._made:
                 self._made[structure] = struct_class(dds_type(structure.type_name), self._members(structure))
@@ -101,13 +101,13 @@ def struct_class(type_name: str, members: dict[str, Any]) -> Any:
     from cyclonedds.idl import make_idl_struct
 
     short = type_name.rpartition("::")[2]
-    described: Any = make_idl_struct(short, type_name.replace("::", "."), members, dataclassify=False)
-    described.__idl__.populate()
+    description: Any = make_idl_struct(short, type_name.replace("::", "."), members, dataclassify=False)
+    description.__idl__.populate()
     if members:
-        described.__idl__.fill_type_data()
+        description.__idl__.fill_type_data()
     else:
-        described.__idl__._xt_bytedata = empty_type_data(type_name)
-    return described
+        description.__idl__._xt_bytedata = empty_type_data(type_name)
+    return description
 
 
 _MINIMAL = bytes.fromhex("f1510100 01000000 00000000 04000000 00000000")
@@ -134,8 +134,8 @@ def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
     complete = _COMPLETE + _number(8 + len(name)) + _number(0) + _number(len(name)) + name
     complete += bytes(-len(complete) % 4) + _NO_MEMBERS
     information = _with_dependencies(_MINIMAL_ID, _MINIMAL) + _with_dependencies(_COMPLETE_ID, complete)
-    same = _number(1) + _type_id(complete) + _type_id(_MINIMAL)
-    return _sized(information), _pair(_MINIMAL) + _pair(complete) + _sized(same)
+    complete_to_minimal = _number(1) + _type_id(complete) + _type_id(_MINIMAL)
+    return _sized(information), _pair(_MINIMAL) + _pair(complete) + _sized(complete_to_minimal)
 
 
 def _with_dependencies(member_id: int, type_object: bytes) -> bytes:

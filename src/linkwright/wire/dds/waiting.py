@@ -11,9 +11,9 @@ from linkwright.wire.dds.cyclone import INFINITY, check_call, load
 from linkwright.wire.living_threads import guarded
 
 Handler = Callable[[], bool]
-"""Does pending work; True when there is more, so that others get their turn first."""
+"""Does pending work; returns True if there is more, which waits until the other handlers have run."""
 
-_AT_ONCE = 64
+_MAX_TRIGGERED = 64
 
 
 class WaitingThread(threading.Thread):
@@ -42,7 +42,7 @@ class WaitingThread(threading.Thread):
         self._handlers: dict[int, Handler] = {}
         self._report = report
         self._idle = idle
-        self._stopping = False
+        self._is_stopping = False
 
     def attach(self, entity: int, handler: Handler) -> None:
         """Register a handler, which is called while an enabled status of the entity is set."""
@@ -60,7 +60,7 @@ class WaitingThread(threading.Thread):
 
     def stop(self, timeout: float) -> bool:
         """End the thread; return whether it has ended within `timeout` seconds."""
-        self._stopping = True
+        self._is_stopping = True
         self.wake()
         if threading.current_thread() is not self and self.is_alive():
             self.join(timeout)
@@ -68,28 +68,28 @@ class WaitingThread(threading.Thread):
 
     def run(self) -> None:
         """Wait for work and call handlers until `stop` is called."""
-        triggered = (c.c_ssize_t * _AT_ONCE)()
-        taken = c.c_bool()
+        triggered = (c.c_ssize_t * _MAX_TRIGGERED)()
+        was_set = c.c_bool()
         unfinished: set[int] = set()
-        due: float | None = None
-        while not self._stopping:
-            timeout = 0 if unfinished else _nanoseconds_until(due)
-            count = self._dds.dds_waitset_wait(self._waitset, triggered, _AT_ONCE, timeout)
+        deadline: float | None = None
+        while not self._is_stopping:
+            timeout = 0 if unfinished else _nanoseconds_until(deadline)
+            count = self._dds.dds_waitset_wait(self._waitset, triggered, _MAX_TRIGGERED, timeout)
             if count < 0:
                 return  # the participant was deleted
-            entities = unfinished.union(triggered[: min(count, _AT_ONCE)])
+            entities = unfinished.union(triggered[: min(count, _MAX_TRIGGERED)])
             unfinished = set()
             if 0 in entities:
                 entities.discard(0)
-                self._dds.dds_take_guardcondition(self._guard, c.byref(taken))
+                self._dds.dds_take_guardcondition(self._guard, c.byref(was_set))
             for entity in entities:
                 handler = self._handlers.get(entity)
                 if handler is not None and guarded(handler, self._report):
                     unfinished.add(entity)
-            if self._idle is not None and not self._stopping:
+            if self._idle is not None and not self._is_stopping:
                 seconds = guarded(self._idle, self._report)
-                due = None if seconds is None else time.monotonic() + seconds
+                deadline = None if seconds is None else time.monotonic() + seconds
 
 
-def _nanoseconds_until(due: float | None) -> int:
-    return INFINITY if due is None else max(0, int((due - time.monotonic()) * 1e9))
+def _nanoseconds_until(deadline: float | None) -> int:
+    return INFINITY if deadline is None else max(0, int((deadline - time.monotonic()) * 1e9))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from linkwright.wire.zenoh.remote import RemoteGraph
 
 GRACE = 0.4
-"""Seconds after a publisher is gone within which the rest of its session's tokens are heard of."""
+"""Seconds after a publisher disappears within which the changes of its session's other tokens arrive."""
 
 
 @dataclass(slots=True)
@@ -36,18 +36,18 @@ class _MissingPublisher:
     Attributes:
         key: the key expression of the token.
         token: the token.
-        due: when to decide whether the publisher is lost, in seconds of the steady clock.
+        deadline: when to decide whether the publisher is lost, in seconds of the steady clock.
     """
 
     key: str
     token: Token
-    due: float
+    deadline: float
 
 
 class Departures:
-    """Decides whether publishers that disappeared were lost. All but `watch` is for one thread.
+    """Decides whether publishers that disappeared were lost.
 
-    This thread is the discovery thread.
+    Only the discovery thread may call the methods, except `watch`.
 
     Args:
         remote: the remote graph.
@@ -59,15 +59,15 @@ class Departures:
         self._now = now
         self._watchers: list[Callable[[EndpointInfo], None]] = []
         self._gone: list[_MissingPublisher] = []
-        self._here: set[str] = set()
-        self._left: set[str] = set()
-        self._ended: dict[str, float] = {}
-        self._unordered: set[tuple[str, str]] = set()
-        self._nodes_gone: dict[tuple[str, str], float] = {}
+        self._live_sessions: set[str] = set()
+        self._departed_sessions: set[str] = set()
+        self._ended_at: dict[str, float] = {}
+        self._unordered_nodes: set[tuple[str, str]] = set()
+        self._nodes_removed_at: dict[tuple[str, str], float] = {}
 
-    def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
+    def watch(self, callback: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers, which runs in the discovery thread."""
-        self._watchers.append(lost)
+        self._watchers.append(callback)
 
     @property
     def is_watched(self) -> bool:
@@ -77,28 +77,28 @@ class Departures:
     @property
     def here(self) -> AbstractSet[str]:
         """The ids of the live sessions of Linkwright, which announce their departure."""
-        return self._here
+        return self._live_sessions
 
     def session_started(self, session: str) -> None:
         """Record that a Linkwright session has started."""
-        self._here.add(session)
+        self._live_sessions.add(session)
 
     def session_leaves(self, session: str) -> None:
         """Record that a Linkwright session is about to end."""
-        self._left.add(session)
+        self._departed_sessions.add(session)
 
     def session_ended(self, session: str) -> None:
         """Record that a Linkwright session has ended."""
-        self._here.discard(session)
-        self._ended[session] = self._now()
+        self._live_sessions.discard(session)
+        self._ended_at[session] = self._now()
 
     def token_removed(self, key: str, token: Token) -> None:
         """Record that a token has disappeared."""
         if token.kind is None:
-            self._nodes_gone[token.node_key] = self._now()
+            self._nodes_removed_at[token.node_key] = self._now()
             return
-        if token.node_key in self._nodes_gone:
-            self._unordered.add(token.node_key)
+        if token.node_key in self._nodes_removed_at:
+            self._unordered_nodes.add(token.node_key)
         if self._watchers and token.kind is EndpointKind.PUBLISHER:
             self._gone.append(_MissingPublisher(key, token, self._now() + GRACE))
 
@@ -109,34 +109,34 @@ class Departures:
             The seconds until the next call, or None if no call is needed.
         """
         now = self._now()
-        due = [gone for gone in self._gone if gone.due <= now]
-        self._gone = [gone for gone in self._gone if gone.due > now]
-        for gone in due:
+        expired = [missing for missing in self._gone if missing.deadline <= now]
+        self._gone = [gone for gone in self._gone if gone.deadline > now]
+        for gone in expired:
             info = gone.token.described() if self._is_lost(gone) else None
             if info is not None:
-                for lost in self._watchers:
-                    lost(info)
+                for callback in self._watchers:
+                    callback(info)
         if not self._gone:
             self._forget(now)
-        return max(self._gone[0].due - now, 0.0) if self._gone else None
+        return max(self._gone[0].deadline - now, 0.0) if self._gone else None
 
-    def _is_lost(self, gone: _MissingPublisher) -> bool:
-        token = gone.token
-        if self._remote.has_token(gone.key):
+    def _is_lost(self, missing: _MissingPublisher) -> bool:
+        token = missing.token
+        if self._remote.has_token(missing.key):
             return False
-        if token.session in self._here or token.session in self._ended:
-            return token.session in self._ended and token.session not in self._left
-        if token.node_key not in self._nodes_gone:
+        if token.session in self._live_sessions or token.session in self._ended_at:
+            return token.session in self._ended_at and token.session not in self._departed_sessions
+        if token.node_key not in self._nodes_removed_at:
             return False
-        return token.node_key in self._unordered or self._remote.has_endpoints(token.node_key)
+        return token.node_key in self._unordered_nodes or self._remote.has_endpoints(token.node_key)
 
     def _forget(self, now: float) -> None:
         """Remove the records of nodes and sessions that disappeared long enough ago."""
-        for node_key, since in tuple(self._nodes_gone.items()):
+        for node_key, since in tuple(self._nodes_removed_at.items()):
             if now - since > GRACE:
-                del self._nodes_gone[node_key]
-                self._unordered.discard(node_key)
-        for session, since in tuple(self._ended.items()):
+                del self._nodes_removed_at[node_key]
+                self._unordered_nodes.discard(node_key)
+        for session, since in tuple(self._ended_at.items()):
             if now - since > GRACE:
-                del self._ended[session]
-                self._left.discard(session)
+                del self._ended_at[session]
+                self._departed_sessions.discard(session)

@@ -32,8 +32,8 @@ from linkwright.wire.zenoh.session import close_session, configuration, is_clien
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
 
-_CLOSING_TIME = 1.0
-"""Seconds that the thread's last work may take."""
+_CLOSE_TIMEOUT_S = 1.0
+"""The maximum time, in seconds, for which closing waits for the thread."""
 
 
 class Engine(AnyEngine):
@@ -45,7 +45,7 @@ class Engine(AnyEngine):
         departures: decides whether remote publishers that disappeared were lost.
         work: the queue of requests; other threads append to it and call `wake`.
         logger: logs problems.
-        patience: opens the session, which may take several attempts.
+        opener: opens the session, which may take several attempts.
 
     Raises:
         LinkwrightError: the session cannot be opened.
@@ -60,40 +60,40 @@ class Engine(AnyEngine):
         departures: Departures,
         work: Work,
         logger: Logger,
-        patience: SessionOpener,
+        opener: SessionOpener,
     ) -> None:
         super().__init__(work, logger)
         self._settings = settings
         self._remote = remote
         self._departures = departures
         self._is_client = is_client(settings)
-        self._session = patience.open(configuration(settings))
+        self._session = opener.open(configuration(settings))
         self._session_id = str(self._session.zid())
         self._ids = itertools.count()
         self._nodes: dict[NodeIdentity, list[tuple[str, Any]]] = {}
-        self._mirrored: dict[Any, Any] = {}
+        self._mirrors: dict[Any, Any] = {}
         self._tokens: dict[Any, Any] = {}
         self._own_gids: set[bytes] = set()
-        self._news: deque[tuple[bool, str]] = deque()
-        self._wake = threading.Event()
-        self._ended = threading.Event()
+        self._token_changes: deque[tuple[bool, str]] = deque()
+        self._wake_event = threading.Event()
+        self._end_event = threading.Event()
         self._is_stale = False
         self._has_changed = False
-        self._follows = False
+        self._is_following = False
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh", daemon=True)
-        self._here: Any = None
+        self._presence_token: Any = None
         self._interests = Interests(self._session, settings.domain_id, self._on_token)
 
     def start(self) -> None:
         """Start the thread."""
-        self._here = self._session.liveliness().declare_token(self._own_token("here"))
+        self._presence_token = self._session.liveliness().declare_token(self._own_token("here"))
         if not self._is_client:
             self._interests.add_all()
         self._thread.start()
 
     def wake(self) -> None:
         """Wake the thread that processes the queue of requests. Callable from any thread."""
-        self._wake.set()
+        self._wake_event.set()
 
     def has_neighbours(self) -> bool:
         """Return whether this session is connected to another session or a router."""
@@ -105,18 +105,18 @@ class Engine(AnyEngine):
 
         The departure of our nodes is announced, unless the process ends because of an error.
         """
-        self._ended.set()
-        self._wake.set()
+        self._end_event.set()
+        self._wake_event.set()
         if self._thread.ident is not None and self._thread is not threading.current_thread():
-            self._thread.join(_CLOSING_TIME)
-        self._do_all_work()
-        for mirrored in self._mirrored.values():
-            if hasattr(mirrored, "abandon"):
-                mirrored.abandon()
+            self._thread.join(_CLOSE_TIMEOUT_S)
+        self._process_all_requests()
+        for mirror in self._mirrors.values():
+            if hasattr(mirror, "abandon"):
+                mirror.abandon()
         if not ends_by_error():
             self._announce_departure()
-        for mirrored in self._mirrored.values():
-            mirrored.close()
+        for mirror in self._mirrors.values():
+            mirror.close()
         self._interests.close()
         close_session(self._session)
 
@@ -127,10 +127,10 @@ class Engine(AnyEngine):
         """
         import ctypes
 
-        self._ended.set()
-        for mirrored in self._mirrored.values():
-            if hasattr(mirrored, "abandon"):
-                mirrored.abandon()
+        self._end_event.set()
+        for mirror in self._mirrors.values():
+            if hasattr(mirror, "abandon"):
+                mirror.abandon()
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))
 
     # --- work in the engine's thread ---------------------------------------------------------------------------------
@@ -144,13 +144,13 @@ class Engine(AnyEngine):
 
     def remove_node(self, node: NodeIdentity) -> None:
         """Withdraw a node."""
-        announced = self._nodes.get(node)
-        if announced:
-            _, token = announced.pop()
+        node_tokens = self._nodes.get(node)
+        if node_tokens:
+            _, token = node_tokens.pop()
             token.undeclare()
             if self._interests.remove(tokens.node_token_pattern(self._settings.domain_id, node)):
                 self._remote.forget_nodes(node.full_name)
-            if not announced:
+            if not node_tokens:
                 del self._nodes[node]
 
     def open_publisher(self, publisher: Any) -> None:
@@ -158,7 +158,7 @@ class Engine(AnyEngine):
         from linkwright.wire.zenoh.topics import OutgoingTopic
 
         try:
-            token = self._token_of(publisher, EndpointKind.PUBLISHER)
+            token = self._create_token(publisher, EndpointKind.PUBLISHER)
             outgoing = OutgoingTopic(publisher, token, self._session, self._matches_changed)
         except BaseException:
             publisher.set_outside(None)
@@ -174,7 +174,7 @@ class Engine(AnyEngine):
         """Mirror a subscription."""
         from linkwright.wire.zenoh.topics import IncomingTopic
 
-        token = self._token_of(subscription, EndpointKind.SUBSCRIPTION)
+        token = self._create_token(subscription, EndpointKind.SUBSCRIPTION)
         key = token.data_key
         if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # unknown type: accept any hash
             key = tokens.data_key(token.domain_id, token.name, token.type_name, "*")
@@ -182,17 +182,17 @@ class Engine(AnyEngine):
 
     def open_service(self, service: Any) -> None:
         """Mirror a service."""
-        token = self._token_of(service, EndpointKind.SERVICE)
+        token = self._create_token(service, EndpointKind.SERVICE)
         self._announce(service, IncomingService(service, token, self._session))
 
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
-        token = self._token_of(client, EndpointKind.CLIENT)
+        token = self._create_token(client, EndpointKind.CLIENT)
         self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
 
     def open_presence(self, presence: Any) -> None:
         """Announce an endpoint that neither sends nor receives, by declaring its token."""
-        token = self._token_of(presence, presence.kind)
+        token = self._create_token(presence, presence.kind)
         presence.gid = token.gid
         self._tokens[presence] = self._session.liveliness().declare_token(token.key)
 
@@ -204,30 +204,30 @@ class Engine(AnyEngine):
         token = self._tokens.pop(endpoint, None)
         if token is not None:
             token.undeclare()
-        mirrored = self._mirrored.pop(endpoint, None)
-        if mirrored is not None:
-            mirrored.close()
-            self._own_gids.discard(mirrored.token.gid)
-            kind = _OPPOSITE.get(mirrored.token.kind)
-            if kind is not None and self._interests.remove(tokens.peer_token_pattern(mirrored.token, kind)):
-                self._remote.forget_endpoints(kind, mirrored.token.data_key)
+        mirror = self._mirrors.pop(endpoint, None)
+        if mirror is not None:
+            mirror.close()
+            self._own_gids.discard(mirror.token.gid)
+            peer_kind = _OPPOSITE.get(mirror.token.kind)
+            if peer_kind is not None and self._interests.remove(tokens.peer_token_pattern(mirror.token, peer_kind)):
+                self._remote.forget_endpoints(peer_kind, mirror.token.data_key)
 
-    def _announce(self, endpoint: Any, mirrored: Any) -> None:
+    def _announce(self, endpoint: Any, mirror: Any) -> None:
         """Announce an endpoint whose mirror has been created, and subscribe to matching tokens."""
-        self._mirrored[endpoint] = mirrored
+        self._mirrors[endpoint] = mirror
         if endpoint.is_listed:
-            self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
-        kind = _OPPOSITE.get(mirrored.token.kind)
-        if kind is not None:
-            self._interests.add(tokens.peer_token_pattern(mirrored.token, kind))
-        self._review(mirrored)
+            self._tokens[endpoint] = self._session.liveliness().declare_token(mirror.token.key)
+        peer_kind = _OPPOSITE.get(mirror.token.kind)
+        if peer_kind is not None:
+            self._interests.add(tokens.peer_token_pattern(mirror.token, peer_kind))
+        self._review(mirror)
 
-    def _token_of(self, endpoint: Any, kind: EndpointKind) -> Token:
-        announced = self._nodes.get(endpoint.node.identity)
-        if not announced:
+    def _create_token(self, endpoint: Any, kind: EndpointKind) -> Token:
+        node_tokens = self._nodes.get(endpoint.node.identity)
+        if not node_tokens:
             self.add_node(endpoint.node.identity)
-            announced = self._nodes[endpoint.node.identity]
-        node_id = announced[-1][0]
+            node_tokens = self._nodes[endpoint.node.identity]
+        node_id = node_tokens[-1][0]
         return Token(
             self._settings.domain_id,
             self._session_id,
@@ -237,11 +237,11 @@ class Engine(AnyEngine):
             kind,
             endpoint.name,
             dds_type(endpoint.type_name),
-            self._hash_of(endpoint, kind),
+            self._type_hash(endpoint, kind),
             qos_text.write(endpoint.qos_profile),
         )
 
-    def _hash_of(self, endpoint: Any, kind: EndpointKind) -> str:
+    def _type_hash(self, endpoint: Any, kind: EndpointKind) -> str:
         if not self._settings.hashes:
             return tokens.NO_HASH
         if endpoint.type_hash:
@@ -253,64 +253,64 @@ class Engine(AnyEngine):
                 return tokens.NO_HASH
             raise
 
-    def look_around(self, seconds: float, answered: Callable[[], None]) -> None:
+    def look_around(self, seconds: float, on_answered: Callable[[], None]) -> None:
         """Start discovering the whole graph.
 
         Args:
             seconds: the maximum time that processes have to announce themselves.
-            answered: called from any thread when all have answered or the time is over.
+            on_answered: called from any thread when all have answered or the time is over.
         """
-        self._interests.request_all(seconds, answered)
+        self._interests.request_all(seconds, on_answered)
         self._interests.add_all()
 
     def process_tokens(self) -> None:
         """Process the tokens that have been received since the last call."""
-        while self._news:
-            appeared, key = self._news.popleft()
-            self._has_changed = self._note(appeared=appeared, key=key) or self._has_changed
-        follows = self._departures.is_watched and not self._interests.in_all
-        if follows and (self._has_changed or not self._follows):
-            there = self._remote.sessions() | self._departures.here
-            self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), there)
-        self._follows = follows
+        while self._token_changes:
+            appeared, key = self._token_changes.popleft()
+            self._has_changed = self._record_token(appeared=appeared, key=key) or self._has_changed
+        must_follow = self._departures.is_watched and not self._interests.subscribes_to_all
+        if must_follow and (self._has_changed or not self._is_following):
+            live_sessions = self._remote.sessions() | self._departures.here
+            self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), live_sessions)
+        self._is_following = must_follow
 
     @property
-    def runs_this(self) -> bool:
+    def is_current_thread(self) -> bool:
         """Whether the calling thread is the engine's thread."""
         return threading.current_thread() is self._thread
 
     # --- callbacks from threads of Zenoh -----------------------------------------------------------------------------
 
     def _on_token(self, sample: zenoh.Sample) -> None:
-        self._news.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr)))
-        self._wake.set()
+        self._token_changes.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr)))
+        self._wake_event.set()
 
     def _matches_changed(self) -> None:
         self._is_stale = True
-        self._wake.set()
+        self._wake_event.set()
 
     # --- the thread --------------------------------------------------------------------------------------------------
 
     def _run(self) -> None:
         self._look_for_router()
-        while not self._ended.is_set():
-            self._wake.clear()
-            self._do_some_work()
+        while not self._end_event.is_set():
+            self._wake_event.clear()
+            self._process_some_requests()
             guarded(self._update_mirrors, self._report)
-            again = 0.0 if self._work else guarded(self._departures.review, self._report)
-            self._wake.wait(again)
+            timeout = 0.0 if self._work else guarded(self._departures.review, self._report)
+            self._wake_event.wait(timeout)
 
     def _update_mirrors(self) -> None:
         self.process_tokens()
-        changed, self._has_changed = self._has_changed, False
-        if changed or self._is_stale:
+        has_changed, self._has_changed = self._has_changed, False
+        if has_changed or self._is_stale:
             self._is_stale = False
-            for mirrored in tuple(self._mirrored.values()):
-                self._review(mirrored)
-        if changed:
+            for mirror in tuple(self._mirrors.values()):
+                self._review(mirror)
+        if has_changed:
             self._remote.announce()
 
-    def _note(self, *, appeared: bool, key: str) -> bool:
+    def _record_token(self, *, appeared: bool, key: str) -> bool:
         """Record that a token appeared or disappeared; return whether that changes the remote graph."""
         if key.startswith(OURS):
             self._record_session(appeared=appeared, key=key)
@@ -327,30 +327,30 @@ class Engine(AnyEngine):
 
     def _record_session(self, *, appeared: bool, key: str) -> None:
         """Record that a token of a Linkwright session appeared or disappeared."""
-        _, _, session, what = key.split("/")
-        if what == "here" and appeared:
+        _, _, session, state = key.split("/")
+        if state == "here" and appeared:
             self._departures.session_started(session)
-        elif what == "here":
+        elif state == "here":
             self._departures.session_ended(session)
-            self._follows = False  # makes `process_tokens` end the subscription to that session
+            self._is_following = False  # makes `process_tokens` end the subscription to that session
         elif appeared:
             self._departures.session_leaves(session)
 
-    def _review(self, mirrored: Any) -> None:
-        kind = _OPPOSITE.get(mirrored.token.kind)
-        if kind is not None:
-            mirrored.review(self._remote.count(kind, mirrored.token.data_key))
+    def _review(self, mirror: Any) -> None:
+        peer_kind = _OPPOSITE.get(mirror.token.kind)
+        if peer_kind is not None:
+            mirror.review(self._remote.count(peer_kind, mirror.token.data_key))
 
     def _look_for_router(self) -> None:
         """Wait for a router if ZENOH_ROUTER_CHECK_ATTEMPTS is set, then continue without one."""
         attempts = self._settings.attempts
         for attempt in itertools.count():
-            if self._ended.is_set() or (attempts is not None and attempt >= attempts):
+            if self._end_event.is_set() or (attempts is not None and attempt >= attempts):
                 break
             if self._session.info.routers_zid():
                 return
-            self._ended.wait(1.0)
-        if attempts and not self._ended.is_set() and not self._session.info.routers_zid():
+            self._end_event.wait(1.0)
+        if attempts and not self._end_event.is_set() and not self._session.info.routers_zid():
             self._logger.warning(
                 "There is no Zenoh router: nodes of rmw_zenoh_cpp are not found. Start one with "
                 "'linkwright run rmw_zenoh_cpp rmw_zenohd', or 'ros2 run rmw_zenoh_cpp rmw_zenohd'"
@@ -358,17 +358,17 @@ class Engine(AnyEngine):
 
     def _announce_departure(self) -> None:
         """Announce the departure of this session, then withdraw its endpoints and its nodes."""
-        left = self._session.liveliness().declare_token(self._own_token("left"))
+        departure_token = self._session.liveliness().declare_token(self._own_token("left"))
         for token in self._tokens.values():
             token.undeclare()
-        for announced in self._nodes.values():
-            for _, token in announced:
+        for node_tokens in self._nodes.values():
+            for _, token in node_tokens:
                 token.undeclare()
-        self._here.undeclare()
-        left.undeclare()
+        self._presence_token.undeclare()
+        departure_token.undeclare()
 
-    def _own_token(self, what: str) -> str:
-        return f"{OURS}/{self._settings.domain_id}/{self._session_id}/{what}"
+    def _own_token(self, state: str) -> str:
+        return f"{OURS}/{self._settings.domain_id}/{self._session_id}/{state}"
 
 
 _OPPOSITE = {
@@ -376,4 +376,4 @@ _OPPOSITE = {
     EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
     EndpointKind.CLIENT: EndpointKind.SERVICE,
 }
-"""The kind of endpoint outside that each kind counts."""
+"""The kind of remote endpoints that are counted for each kind of endpoint."""

@@ -18,7 +18,7 @@ from zenoh.handlers import Callback
 from linkwright.wire.zenoh import tokens
 
 OURS = "@linkwright"
-"""Sessions of Linkwright's have a token ``@linkwright/<domain>/<session>/here``, and ``left`` before they leave."""
+"""Linkwright's sessions have a token ``@linkwright/<domain>/<session>/here``, and add ``left`` before they end."""
 
 
 class Interests:
@@ -27,19 +27,19 @@ class Interests:
     Args:
         session: the session.
         domain_id: the ROS domain.
-        hear: called, from threads of Zenoh, with each token that appears or disappears.
+        on_token: called, from threads of Zenoh, with each token that appears or disappears.
     """
 
-    def __init__(self, session: zenoh.Session, domain_id: int, hear: Callable[[zenoh.Sample], None]) -> None:
+    def __init__(self, session: zenoh.Session, domain_id: int, on_token: Callable[[zenoh.Sample], None]) -> None:
         self._liveliness = session.liveliness()
-        self._hear = hear
+        self._on_token = on_token
         self._all = f"{tokens.ROOT}/{domain_id}/**"
         self._sessions = f"{OURS}/{domain_id}"
         self._counts: Counter[str] = Counter()
         self._declared: dict[str, Any] = {}
-        self._followed: AbstractSet[str] = frozenset()
-        self.in_all = False
-        """Whether all tokens of the domain are heard of."""
+        self._followed_sessions: AbstractSet[str] = frozenset()
+        self.subscribes_to_all = False
+        """Whether the session subscribes to all tokens of the domain."""
 
     def add(self, key: str) -> None:
         """Subscribe to the tokens that match a key expression.
@@ -47,7 +47,7 @@ class Interests:
         Repeated subscriptions to the same expression are counted.
         """
         self._counts[key] += 1
-        if not self.in_all and self._counts[key] == 1:
+        if not self.subscribes_to_all and self._counts[key] == 1:
             self._declare(key)
 
     def remove(self, key: str) -> bool:
@@ -56,65 +56,65 @@ class Interests:
         if self._counts[key]:
             return False
         del self._counts[key]
-        declared = self._declared.pop(key, None)
-        if declared is not None:
-            declared.undeclare()
-        return not self.in_all
+        subscriber = self._declared.pop(key, None)
+        if subscriber is not None:
+            subscriber.undeclare()
+        return not self.subscribes_to_all
 
-    def follow(self, publishing: AbstractSet[str], there: AbstractSet[str]) -> None:
-        """Subscribe to all tokens of other sessions, from which it follows how the sessions leave.
+    def follow(self, publishing_sessions: AbstractSet[str], live_sessions: AbstractSet[str]) -> None:
+        """Subscribe to all tokens of other sessions, which show how these sessions end.
 
         The subscription to a session ends when none of its tokens is left.
 
         Args:
-            publishing: the ids of the sessions whose publishers are known.
-            there: the ids of the live sessions, known by their own token or any other.
+            publishing_sessions: the ids of the sessions whose publishers are known.
+            live_sessions: the ids of the live sessions, known by their own token or any other.
         """
-        for session in self._followed - there:
-            for key in self._keys_of(session):
+        for session in self._followed_sessions - live_sessions:
+            for key in self._session_keys(session):
                 self._declared.pop(key).undeclare()
-        for session in publishing - self._followed:
-            for key in self._keys_of(session):
+        for session in publishing_sessions - self._followed_sessions:
+            for key in self._session_keys(session):
                 self._declare(key)
-        self._followed = self._followed & there | publishing
+        self._followed_sessions = self._followed_sessions & live_sessions | publishing_sessions
 
-    def _keys_of(self, session: str) -> tuple[str, str]:
+    def _session_keys(self, session: str) -> tuple[str, str]:
         return f"{self._sessions}/{session}/*", self._all.replace("**", f"{session}/**")
 
     def add_all(self) -> None:
         """Subscribe to all tokens of the domain."""
-        if self.in_all:
+        if self.subscribes_to_all:
             return
-        self.in_all = True
-        before, self._declared = self._declared, {}
+        self.subscribes_to_all = True
+        previous, self._declared = self._declared, {}
         self._declare(f"{self._sessions}/**")
         self._declare(self._all)
-        for declared in before.values():
-            declared.undeclare()
+        for subscriber in previous.values():
+            subscriber.undeclare()
 
-    def request_all(self, seconds: float, answered: Callable[[], None]) -> None:
+    def request_all(self, seconds: float, on_answered: Callable[[], None]) -> None:
         """Request the live tokens of the domain.
 
         This must be called before `add_all`, after which Zenoh answers from its own memory.
 
         Args:
             seconds: the longest wait.
-            answered: called from a thread of Zenoh when all have answered, or the time is over.
+            on_answered: called from a thread of Zenoh when all have answered, or the time is over.
         """
 
         def receive(reply: zenoh.Reply) -> None:
             if reply.ok is not None:
-                self._hear(reply.ok)
+                self._on_token(reply.ok)
 
-        handler: Any = Callback(receive, answered, indirect=False)
+        handler: Any = Callback(receive, on_answered, indirect=False)
         self._liveliness.get(self._all, handler, timeout=seconds)
 
     def close(self) -> None:
         """End all subscriptions."""
-        for declared in self._declared.values():
-            declared.undeclare()
+        for subscriber in self._declared.values():
+            subscriber.undeclare()
         self._declared.clear()
 
     def _declare(self, key: str) -> None:
-        handler: Any = Callback(self._hear, indirect=False)
+        handler: Any = Callback(self._on_token, indirect=False)
         self._declared[key] = self._liveliness.declare_subscriber(key, handler, history=True)

@@ -1,6 +1,6 @@
 """Joins a graph to others over Zenoh, if Zenoh is installed.
 
-This is checked without importing it.
+Whether Zenoh is installed is checked without importing it.
 """
 
 from __future__ import annotations

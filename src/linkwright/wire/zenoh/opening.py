@@ -14,13 +14,13 @@ from linkwright.graph.log.logger import Logger
 from linkwright.wire.zenoh.reaching import configured_addresses, mode_value, obstacles
 from linkwright.wire.zenoh.session import could_not_connect, open_with, session_error
 
-_AGAIN = 1.0
-"""Seconds after which the addresses are called again."""
+_RETRY_INTERVAL_S = 1.0
+"""Seconds between two attempts to connect."""
 
-_LOGGED_AFTER = 1.0
+_LOG_DELAY_S = 1.0
 """Seconds after which the log names the reason of a wait."""
 
-_LOGGED_AGAIN_AFTER = 10.0
+_LOG_INTERVAL_S = 10.0
 
 
 class SessionOpener:
@@ -30,12 +30,12 @@ class SessionOpener:
 
     Args:
         logger: logs the reason for a wait.
-        given_up: an event that ends the wait; set when the session is no longer needed.
+        cancel_event: an event that ends the wait; set when the session is no longer needed.
     """
 
-    def __init__(self, logger: Logger, given_up: threading.Event) -> None:
+    def __init__(self, logger: Logger, cancel_event: threading.Event) -> None:
         self._logger = logger
-        self._given_up = given_up
+        self._cancel_event = cancel_event
         self.waits = False
         """Whether a session is being opened that waits for others."""
 
@@ -43,8 +43,8 @@ class SessionOpener:
         """Open a session.
 
         Raises:
-            LinkwrightError: DDS112, the session cannot be opened, no process was reached in time, or `given_up` was
-                set.
+            LinkwrightError: DDS112, the session cannot be opened, no process was reached in time, or `cancel_event`
+                was set.
         """
         seconds = _wait_seconds(config)
         if seconds == 0:
@@ -59,14 +59,18 @@ class SessionOpener:
             reporter.end()
             self.waits = False
 
-    def _open_until(self, config: zenoh.Config, until: float) -> zenoh.Session:
+    def _open_until(self, config: zenoh.Config, deadline: float) -> zenoh.Session:
         while True:
-            opened = _try_open(config)
-            if isinstance(opened, zenoh.Session):
-                return opened
-            rest = until - time.monotonic()
-            if not could_not_connect(opened) or rest <= 0 or self._given_up.wait(min(_AGAIN, rest)):
-                raise session_error(opened, config) from opened
+            result = _try_open(config)
+            if isinstance(result, zenoh.Session):
+                return result
+            remaining_s = deadline - time.monotonic()
+            if (
+                not could_not_connect(result)
+                or remaining_s <= 0
+                or self._cancel_event.wait(min(_RETRY_INTERVAL_S, remaining_s))
+            ):
+                raise session_error(result, config) from result
 
     def _log_wait(self, reasons: str) -> None:
         self._logger.warning(f"Waiting for a Zenoh router: {reasons}")
@@ -78,15 +82,15 @@ class ObstacleReporter:
     Args:
         config: the configuration of the session.
         log: called from the thread with the reasons.
-        linked: returns whether the session is connected, so that there is nothing to report.
+        is_connected: returns whether the session is connected, so that there is nothing to report.
     """
 
     def __init__(
-        self, config: zenoh.Config, log: Callable[[str], None], linked: Callable[[], bool] = lambda: False
+        self, config: zenoh.Config, log: Callable[[str], None], is_connected: Callable[[], bool] = lambda: False
     ) -> None:
         self._config = config
         self._log = log
-        self._linked = linked
+        self._is_connected = is_connected
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh-waits", daemon=True)
 
@@ -99,18 +103,18 @@ class ObstacleReporter:
         self._over.set()
 
     def _run(self) -> None:
-        pause = _LOGGED_AFTER
-        while not self._over.wait(pause):
-            if self._linked():
-                pause = _LOGGED_AFTER
+        pause_s = _LOG_DELAY_S
+        while not self._over.wait(pause_s):
+            if self._is_connected():
+                pause_s = _LOG_DELAY_S
                 continue
             reasons = (
                 joined(obstacles(self._config), "; ")
                 or f"{', '.join(configured_addresses(self._config))} accepts no session"
             )
-            if not self._over.is_set() and not self._linked():
+            if not self._over.is_set() and not self._is_connected():
                 self._log(reasons)
-            pause = _LOGGED_AGAIN_AFTER
+            pause_s = _LOG_INTERVAL_S
 
 
 def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:

@@ -49,17 +49,17 @@ def read(text: str) -> QoSProfile:
         ValueError: the text is not a profile.
     """
     reliability, durability, history, deadline, lifespan, liveliness = text.split(":")
-    kind, depth = history.split(",")
-    lives, lease_s, lease_ns = liveliness.split(",")
-    keeps = HistoryPolicy(int(kind or HistoryPolicy.KEEP_LAST))
+    history_kind, depth = history.split(",")
+    liveliness_kind, lease_s, lease_ns = liveliness.split(",")
+    history_policy = HistoryPolicy(int(history_kind or HistoryPolicy.KEEP_LAST))
     return QoSProfile(
-        depth=0 if keeps is HistoryPolicy.KEEP_ALL else max(int(depth or _DEFAULT_DEPTH), 1),
-        history=keeps,
+        depth=0 if history_policy is HistoryPolicy.KEEP_ALL else max(int(depth or _DEFAULT_DEPTH), 1),
+        history=history_policy,
         reliability=ReliabilityPolicy(int(reliability or ReliabilityPolicy.RELIABLE)),
         durability=DurabilityPolicy(int(durability or DurabilityPolicy.VOLATILE)),
         deadline=_read_time(*deadline.split(",")),
         lifespan=_read_time(*lifespan.split(",")),
-        liveliness=LivelinessPolicy(int(lives or LivelinessPolicy.AUTOMATIC)),
+        liveliness=LivelinessPolicy(int(liveliness_kind or LivelinessPolicy.AUTOMATIC)),
         liveliness_lease_duration=_read_time(lease_s, lease_ns),
     )
 
@@ -68,8 +68,8 @@ def _write_time(duration: Duration) -> str:
     nanoseconds = limit_ns(duration)
     if nanoseconds is None:
         return ","
-    seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
-    return f"{seconds},{rest}"
+    seconds, remainder = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
+    return f"{seconds},{remainder}"
 
 
 def _read_time(seconds: str, nanoseconds: str) -> Duration:

@@ -18,12 +18,12 @@ import zenoh
 from linkwright.diagnostics import Phrase, foreign, phrase
 
 _PATIENCE = 2.0
-"""Seconds for which an address may take to answer."""
+"""Seconds within which an address must answer."""
 
 _ADDRESS = re.compile(r"(?P<kind>\w+)/(?P<host>\[[^]]+\]|[^:/?#]+):(?P<port>\d+)(?:[?#].*)?")
 _LAST_PORT = 65535
-_CALLED = ("tcp", "tls")
-"""Kinds of addresses that are called here; others (QUIC, UDP, serial lines) are Zenoh's alone."""
+_CHECKED_KINDS = ("tcp", "tls")
+"""The kinds of addresses that this module checks; it ignores others, such as QUIC, UDP and serial lines."""
 
 
 def configured_addresses(config: zenoh.Config) -> list[str]:
@@ -49,7 +49,7 @@ def obstacles(config: zenoh.Config) -> list[Phrase]:
     tls = json.loads(config.get_json("transport/link/tls")) or {}
     found = [found for address in configured_addresses(config) if (found := obstacle(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
-        found.append(phrase("the process there may have the same 'id': leave 'id' out of the configuration"))
+        found.append(phrase("the process at this address may have the same 'id': leave 'id' out of the configuration"))
     return found
 
 
@@ -60,22 +60,22 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
         address: the address, such as ``tls/cloud.example.com:7448``.
         tls: the settings below ``transport/link/tls``.
     """
-    parts = _ADDRESS.fullmatch(address)
-    if parts is None:
-        if address.partition("/")[0] not in _CALLED:
+    match = _ADDRESS.fullmatch(address)
+    if match is None:
+        if address.partition("/")[0] not in _CHECKED_KINDS:
             return Phrase("")
         return phrase("'{address}' is not an address: write it as tcp/HOST:PORT or tls/HOST:PORT", address=address)
-    if parts["kind"] not in _CALLED:
+    if match["kind"] not in _CHECKED_KINDS:
         return Phrase("")
-    host, port = parts["host"].strip("[]"), int(parts["port"])
+    host, port = match["host"].strip("[]"), int(match["port"])
     if port > _LAST_PORT:
         return phrase("'{address}' is not an address: its port must be at most 65535", address=address)
     try:
-        with socket.create_connection((host, port), _PATIENCE) as called:
+        with socket.create_connection((host, port), _PATIENCE) as connection:
             return (
-                _tls_obstacle(address, called, host, tls)
-                if parts["kind"] == "tls"
-                else _protocol_obstacle(address, called)
+                _tls_obstacle(address, connection, host, tls)
+                if match["kind"] == "tls"
+                else _protocol_obstacle(address, connection)
             )
     except socket.gaierror as error:
         return phrase("the host name of {address} cannot be resolved: {reason}", address=address, reason=_reason(error))
@@ -90,26 +90,26 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
         return phrase("{address} is unreachable: {reason}", address=address, reason=_reason(error))
 
 
-def _protocol_obstacle(address: str, called: socket.socket) -> Phrase:
+def _protocol_obstacle(address: str, connection: socket.socket) -> Phrase:
     """Send a first Zenoh message; return a reason if the listener answers with TLS.
 
     Otherwise the phrase is empty.
     """
-    called.settimeout(_PATIENCE / 4)
+    connection.settimeout(_PATIENCE / 4)
     try:
-        called.sendall(b"\x04\0\x01\x08\0\0")
-        answer = called.recv(16)
+        connection.sendall(b"\x04\0\x01\x08\0\0")
+        response = connection.recv(16)
     except TimeoutError:
         return Phrase("")
     except OSError:
-        answer = b""
-    is_tls = answer[:1] == b"\x15"
+        response = b""
+    is_tls = response[:1] == b"\x15"
     if is_tls:
         return phrase("the process at {address} speaks TLS: write tls/ in place of tcp/", address=address)
     return Phrase("")
 
 
-def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[str, Any]) -> Phrase:
+def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mapping[str, Any]) -> Phrase:
     if any(
         tls.get(f"{setting}_base64")
         for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
@@ -122,14 +122,16 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
         tls.get(setting) or "" for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
     )
     for path in (authority, certificate, key):
-        problem = _unreadable(path)
+        problem = _read_problem(path)
         if problem:
             return problem
     try:
         if authority:
             context.load_verify_locations(authority)
     except ssl.SSLError:
-        return phrase("'{path}' does not contain the certificate of an authority in PEM format", path=authority)
+        return phrase(
+            ("'{path}' does not contain the certificate of a certificate authority in PEM format"), path=authority
+        )
     try:
         if certificate and key and tls.get("enable_mtls"):
             context.load_cert_chain(certificate, key)
@@ -139,34 +141,34 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
             certificate=certificate,
             key=key,
         )
-    called.settimeout(_PATIENCE)
-    is_agreed = False
+    connection.settimeout(_PATIENCE)
+    is_handshake_done = False
     try:
-        with context.wrap_socket(called, server_hostname=host) as secured:
-            is_agreed = True
-            secured.settimeout(_PATIENCE / 2)
-            secured.recv(1)  # With TLS 1.3, a client learns of a refusal only after the handshake.
+        with context.wrap_socket(connection, server_hostname=host) as tls_connection:
+            is_handshake_done = True
+            tls_connection.settimeout(_PATIENCE / 2)
+            tls_connection.recv(1)  # With TLS 1.3, a client learns of a refusal only after the handshake.
     except TimeoutError:
-        return Phrase("") if is_agreed else _no_tls(address)
+        return Phrase("") if is_handshake_done else _no_tls_problem(address)
     except ssl.SSLCertVerificationError as error:
         return phrase(
-            "the certificate of {address} is refused here: {reason}",
+            "the certificate of {address} is not accepted: {reason}",
             address=address,
             reason=foreign(error.verify_message.rstrip(".")),
         )
     except ssl.SSLError as error:
-        return _refused(address, certificate, str(error.reason or error))
+        return _tls_failure(address, certificate, str(error.reason or error))
     except OSError as error:
         return phrase("{address} closes the connection during TLS: {reason}", address=address, reason=_reason(error))
     return Phrase("")
 
 
-def _refused(address: str, certificate: str, reason: str) -> Phrase:
+def _tls_failure(address: str, certificate: str, reason: str) -> Phrase:
     if "WRONG_VERSION" in reason or "RECORD_LAYER" in reason:
-        return _no_tls(address)
+        return _no_tls_problem(address)
     if "CERTIFICATE_REQUIRED" in reason:
         return phrase(
-            "{address} requests a certificate: set enable_mtls, connect_certificate and "
+            "{address} requires a client certificate: set enable_mtls, connect_certificate and "
             "connect_private_key below transport/link/tls",
             address=address,
         )
@@ -180,11 +182,11 @@ def _refused(address: str, certificate: str, reason: str) -> Phrase:
     return phrase("TLS fails at {address}: {reason}", address=address, reason=foreign(reason.lower().replace("_", " ")))
 
 
-def _no_tls(address: str) -> Phrase:
+def _no_tls_problem(address: str) -> Phrase:
     return phrase("the process at {address} does not speak TLS: write tcp/ in place of tls/", address=address)
 
 
-def _unreadable(path: str) -> Phrase:
+def _read_problem(path: str) -> Phrase:
     try:
         if path:
             with Path(path).open("rb"):

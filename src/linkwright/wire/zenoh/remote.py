@@ -13,7 +13,7 @@ from linkwright.wire.outside import Outside
 from linkwright.wire.zenoh.tokens import Token
 
 _GONE_FOR = 0.5
-"""Seconds for which a token stays gone; links are tried again after one second."""
+"""Seconds for which a removed token is not added again. Zenoh retries broken links only after one second."""
 
 
 class RemoteGraph(Outside):
@@ -54,24 +54,26 @@ class RemoteGraph(Outside):
     def remove(self, key: str) -> Token | None:
         """Remove a token and return it; None if the token was not known."""
         now = time.monotonic()
-        for old in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
-            del self._gone[old]  # two per call at most, which suffices to keep few
+        for expired_key in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
+            del self._gone[expired_key]  # removing two per call keeps the table small
         self._gone.pop(key, None)
         self._gone[key] = now
         with self._lock:
             token = self._tokens.pop(key, None)
             if token is not None and token.kind is not None:
-                counted = (token.kind, token.data_key)
-                self._counts[counted] -= 1
-                if not self._counts[counted]:
-                    del self._counts[counted]
+                count_key = (token.kind, token.data_key)
+                self._counts[count_key] -= 1
+                if not self._counts[count_key]:
+                    del self._counts[count_key]
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
         """Remove the endpoints of a kind at a key, whose tokens are no longer subscribed to."""
         with self._lock:
-            gone = [key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)]
-            for key in gone:
+            removed_keys = [
+                key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)
+            ]
+            for key in removed_keys:
                 del self._tokens[key]
             self._counts.pop((kind, data_key), None)
 

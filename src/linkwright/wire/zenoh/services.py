@@ -20,11 +20,11 @@ from linkwright.wire.zenoh.tokens import Token
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.service import Client, Service
 
-_WAITS = 600.0
+_REPLY_TIMEOUT_S = 600.0
 """Seconds for which a request waits for its reply."""
 
 _RESULT = "/_action/get_result"
-_WAITS_FOR_RESULT = 30 * 24 * 3600.0
+_RESULT_TIMEOUT_S = 30 * 24 * 3600.0
 """The same for the result of an action, which may take any time."""
 
 
@@ -37,34 +37,34 @@ class OutsideServer:
         client: the client.
         token: the client's token.
         session: the session.
-        changed: called, from any thread, when a server appears or leaves.
+        on_change: called, from any thread, when a server appears or leaves.
     """
 
     def __init__(
-        self, client: Client[Any, Any], token: Token, session: zenoh.Session, changed: Callable[[], None]
+        self, client: Client[Any, Any], token: Token, session: zenoh.Session, on_change: Callable[[], None]
     ) -> None:
         self._client = client
         self.token = token
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
-        self._warned = False
+        self._has_warned = False
         client.gid = token.gid
         self._querier: Any = session.declare_querier(
             token.data_key,
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
-            timeout=_WAITS_FOR_RESULT if client.name.endswith(_RESULT) else _WAITS,
+            timeout=_RESULT_TIMEOUT_S if client.name.endswith(_RESULT) else _REPLY_TIMEOUT_S,
             allowed_destination=zenoh.Locality.REMOTE,
         )
-        listener: Any = Callback(lambda _: changed(), indirect=False)
+        listener: Any = Callback(lambda _: on_change(), indirect=False)
         self._listener = self._querier.declare_matching_listener(listener)
 
-    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
+    def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Send a request; return a function that cancels it."""
-        self._answers[number] = answer
+        self._answers[number] = on_response
         handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
-        about = attachment.write(number, time.time_ns(), self.token.gid)
-        self._querier.get(handler, payload=to_cdr(request), attachment=about)
+        metadata = attachment.write(number, time.time_ns(), self.token.gid)
+        self._querier.get(handler, payload=to_cdr(request), attachment=metadata)
         return partial(self._forget, number)
 
     def review(self, count: int) -> None:
@@ -94,17 +94,17 @@ class OutsideServer:
         sample = reply.ok
         if sample is None:
             return
-        answer = self._answers.pop(number, None)
-        if answer is not None:
-            forward_response(sample.payload.to_bytes(), self._client, answer)
+        on_response = self._answers.pop(number, None)
+        if on_response is not None:
+            forward_response(sample.payload.to_bytes(), self._client, on_response)
 
     def _end(self, number: int) -> None:
         """Handle the end of a request. A request without a reply is logged once per client.
 
         The future of such a request stays pending, as in rclpy.
         """
-        if self._answers.pop(number, None) is not None and not self._warned and not self._client.destroyed:
-            self._warned = True
+        if self._answers.pop(number, None) is not None and not self._has_warned and not self._client.destroyed:
+            self._has_warned = True
             self._client.node.logger.warning(
                 f"A request to service '{self._client.name}' was not answered: its server has left, failed, or took "
                 "too long"
@@ -132,8 +132,8 @@ class IncomingService:
             token.data_key, handler, complete=True, allowed_origin=zenoh.Locality.REMOTE
         )
         self._open: WeakSet[_PendingRequest] = WeakSet()
-        """The requests that wait for a reply. A request that will get none, because the queue was full or the callback
-        has failed, is not held: its client learns of it."""
+        """The requests that wait for a reply. A request that will receive none, because the queue was full or the
+        callback failed, is freed, which notifies its client."""
         self._closed = False
         self._lock = Lock()
 
@@ -142,35 +142,35 @@ class IncomingService:
         self._queryable.undeclare()
         with self._lock:
             self._closed = True  # A thread of Zenoh may be about to deliver a request.
-            questions = list(self._open)
+            requests = list(self._open)
             self._open.clear()
-        for question in questions:
-            question.drop()
+        for request in requests:
+            request.drop()
 
     def _receive(self, query: zenoh.Query) -> None:
         """Pass a request to the service. Called in a thread of Zenoh."""
-        about = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
+        metadata = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
         body = None if query.payload is None else query.payload.to_bytes()
-        if about is None or body is None:
+        if metadata is None or body is None:
             query.drop()
             return
-        question = _PendingRequest(query, about)
+        request = _PendingRequest(query, metadata)
         with self._lock:
-            closed = self._closed
-            if not closed:
-                self._open.add(question)
-        reply, request_id = partial(self._reply, question), RequestId(about.gid, about.number)
-        if closed or not forward_request(body, self._service, reply, request_id):
+            is_closed = self._closed
+            if not is_closed:
+                self._open.add(request)
+        reply, request_id = partial(self._reply, request), RequestId(metadata.gid, metadata.number)
+        if is_closed or not forward_request(body, self._service, reply, request_id):
             with self._lock:
-                self._open.discard(question)
-            question.drop()
+                self._open.discard(request)
+            request.drop()
 
-    def _reply(self, question: _PendingRequest, response: Any) -> None:
+    def _reply(self, request: _PendingRequest, response: Any) -> None:
         with self._lock:
-            if question not in self._open:  # already dropped or answered
+            if request not in self._open:  # already dropped or answered
                 return
-            self._open.discard(question)
-        question.answer(response, self.token.data_key)
+            self._open.discard(request)
+        request.answer(response, self.token.data_key)
 
 
 class _PendingRequest:
@@ -178,17 +178,17 @@ class _PendingRequest:
 
     Args:
         query: Zenoh's query; while it exists, the client waits.
-        about: the attachment of the query.
+        metadata: the attachment of the query.
     """
 
-    def __init__(self, query: zenoh.Query, about: attachment.Attachment) -> None:
+    def __init__(self, query: zenoh.Query, metadata: attachment.Attachment) -> None:
         self._query = query
-        self._about = about
+        self._metadata = metadata
 
     def answer(self, response: Any, key: str) -> None:
         """Send the response."""
-        enclosed = attachment.write(self._about.number, time.time_ns(), self._about.gid)
-        self._query.reply(key, to_cdr(response), attachment=enclosed)
+        encoded = attachment.write(self._metadata.number, time.time_ns(), self._metadata.gid)
+        self._query.reply(key, to_cdr(response), attachment=encoded)
         self._query.drop()
 
     def drop(self) -> None:

@@ -12,12 +12,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, fo
 from linkwright.wire.zenoh.reaching import obstacles
 from linkwright.wire.zenoh.settings import OVERRIDES, Settings
 
-_PLACE = re.compile(r"\s+at /\S+?:\d+\.?")
+_SOURCE_LOCATION = re.compile(r"\s+at /\S+?:\d+\.?")
 _NOT_CONNECTED = "Unable to connect"
-_TAKEN = "already in use"
+_ADDRESS_IN_USE = "already in use"
 _TLS_FILES = "new TLS listener"
 _CLOSING_LIMIT = 3.0
-"""Seconds."""
+"""The maximum time, in seconds, for which `close_session` waits."""
 
 
 def open_with(config: zenoh.Config) -> zenoh.Session:
@@ -35,27 +35,27 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
 def close_session(session: zenoh.Session) -> None:
     """Close a session, in the background if that takes long.
 
-    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSING_LIMIT` at
-    the latest, so that the process can end.
+    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSE_TIMEOUT_S`
+    at the latest, so that the process can end.
     """
-    closing = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
+    close_thread = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
     try:
-        closing.start()
+        close_thread.start()
     except RuntimeError:  # Python is shutting down and starts no more threads.
         session.close()
     else:
-        closing.join(_CLOSING_LIMIT)
+        close_thread.join(_CLOSING_LIMIT)
 
 
 def session_error(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
     """Return the error DDS112 for a session that cannot be opened."""
-    found = obstacles(config) if could_not_connect(error) else []
+    reasons = obstacles(config) if could_not_connect(error) else []
     return LinkwrightError(
         Diagnostic(
             "DDS112",
             phrase("a Zenoh session cannot be opened: {reason}", reason=foreign(_reason(error))),
-            notes=tuple(Note(phrase) for phrase in found),
-            hint=None if found else _advice(str(error)),
+            notes=tuple(Note(reason) for reason in reasons),
+            hint=None if reasons else _advice(str(error)),
         )
     )
 
@@ -124,7 +124,7 @@ def _override(config: zenoh.Config, key: str, value: str) -> None:
 
 def _reason(error: Exception) -> str:
     """Return the message of an error, without the locations in Zenoh's source."""
-    return _PLACE.sub("", str(error)).strip().rstrip(".")
+    return _SOURCE_LOCATION.sub("", str(error)).strip().rstrip(".")
 
 
 def _advice(reason: str) -> Phrase:
@@ -133,10 +133,10 @@ def _advice(reason: str) -> Phrase:
             "no router answers at the address of 'connect/endpoints': start one there first; with TLS, check "
             "that one authority signed the certificates"
         )
-    if _TAKEN in reason:
+    if _ADDRESS_IN_USE in reason:
         return phrase(
             "only one process can listen at an address of 'listen/endpoints': give the others port 0 for any "
-            "free port, or leave it out"
+            "free port, or leave the setting out"
         )
     if _TLS_FILES in reason:
         return phrase(
@@ -144,4 +144,6 @@ def _advice(reason: str) -> Phrase:
             "must be readable and belong together, and relative paths start at the folder where the command "
             "runs"
         )
-    return phrase("an address to listen at may be in use by another program, or not be one of this machine")
+    return phrase(
+        "check the addresses to listen at: one may be in use by another program, or not belong to this machine"
+    )

@@ -16,7 +16,7 @@ from linkwright.messages.distribution import ASSUMED
 from linkwright.wire.domain_id import read_domain_id
 
 ROUTER_PORT = 7447
-"""Where a router listens, and sessions look for one."""
+"""The TCP port at which a router listens, and at which sessions search for a router."""
 
 SESSION_FILE = "ZENOH_SESSION_CONFIG_URI"
 ROUTER_FILE = "ZENOH_ROUTER_CONFIG_URI"
@@ -26,14 +26,16 @@ ATTEMPTS = "ZENOH_ROUTER_CHECK_ATTEMPTS"
 _WITHOUT_HASHES = "humble"
 _QUERY_TIMEOUT_MS = 600_000
 _LEASE_MS = 60_000
-_WAITS_US = 50_000
-"""How long a publisher waits for room where it may drop, microseconds: Zenoh's 1 ms is shorter than a busy machine
-takes to give the other side its turn."""
+_MAX_WAIT_US = 50_000
+"""How long a publisher waits for room before it drops a message, in microseconds.
 
-_WAITS_AT_MOST_US = 200_000
-"""The same for a large message, whose parts each wait."""
+Zenoh's default of 1 ms is shorter than the time after which a busy machine runs the receiver.
+"""
 
-_DROPPING = "transport/link/tx/queue/congestion_control/drop"
+_MAX_FRAGMENTS_WAIT_US = 200_000
+"""The same for a large message, each fragment of which waits."""
+
+_DROP_KEY = "transport/link/tx/queue/congestion_control/drop"
 _LOOPBACK = {"linux": "lo", "darwin": "lo0"}
 
 Entries = tuple[tuple[str, str], ...]
@@ -62,8 +64,8 @@ class Settings:
 
     Attributes:
         domain_id: the ROS domain.
-        file: the configuration file that replaces our own configuration; empty for none.
-        own: our own configuration.
+        file: the configuration file that replaces Linkwright's configuration; empty for none.
+        own: Linkwright's configuration.
         overrides: entries that are applied last, to either configuration.
         attempts: the number of checks for a router, a second apart, before continuing without one; None for no limit.
         hashes: whether types have a hash on the wire; in Humble they have none.
@@ -127,8 +129,8 @@ def _session(domain_id: int) -> Entries:
         ("scouting/multicast/address", f'"239.255.74.{domain_id}:{ROUTER_PORT - 1}"'),
         ("scouting/multicast/ttl", "0"),
         ("scouting/gossip/enabled", "true"),
-        (f"{_DROPPING}/wait_before_drop", str(_WAITS_US)),
-        (f"{_DROPPING}/max_wait_before_drop_fragments", str(_WAITS_AT_MOST_US)),
+        (f"{_DROP_KEY}/wait_before_drop", str(_MAX_WAIT_US)),
+        (f"{_DROP_KEY}/max_wait_before_drop_fragments", str(_MAX_FRAGMENTS_WAIT_US)),
         *_SHARED,
     )
 

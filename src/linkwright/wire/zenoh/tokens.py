@@ -68,13 +68,13 @@ class Token:
     @cached_property
     def key(self) -> str:
         """The token's key expression."""
-        where: Iterable[str] = (ROOT, str(self.domain_id), self.session, self.node_id, self.entity_id)
+        session_chunks: Iterable[str] = (ROOT, str(self.domain_id), self.session, self.node_id, self.entity_id)
         mark = _NODE if self.kind is None else _MARKS[self.kind]
-        whose = (_chunk(self.node.enclave), _chunk(self.node.namespace), self.node.name)
+        node_chunks = (_chunk(self.node.enclave), _chunk(self.node.namespace), self.node.name)
         if self.kind is None:
-            return "/".join((*where, mark, *whose))
-        about = (_chunk(self.name), _chunk(self.type_name), _chunk(self.type_hash), self.qos)
-        return "/".join((*where, mark, *whose, *about))
+            return "/".join((*session_chunks, mark, *node_chunks))
+        endpoint_chunks = (_chunk(self.name), _chunk(self.type_name), _chunk(self.type_hash), self.qos)
+        return "/".join((*session_chunks, mark, *node_chunks, *endpoint_chunks))
 
     @cached_property
     def data_key(self) -> str:
@@ -121,12 +121,12 @@ def peer_token_pattern(token: Token, kind: EndpointKind) -> str:
 
     Matching endpoints have the same data key.
     """
-    about = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
-    return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *about, "**"))
+    topic_chunks = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
+    return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *topic_chunks, "**"))
 
 
 def read(key: str) -> Token | None:
-    """Parse a key expression into a token; return None if it is not that of a ROS token."""
+    """Parse a key expression into a token; return None if it is not the key of a ROS token."""
     chunks = key.split("/")
     if len(chunks) < _NODE_CHUNKS or chunks[0] != ROOT or not chunks[1].isdecimal():
         return None

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.subscription import Subscription
 
 _HEARTBEAT = 0.5
-"""Seconds after which a reliable publisher that keeps messages announces the number of its last one."""
+"""The interval, in seconds, at which a reliable publisher that stores messages announces its last number."""
 
-_MOST_KEPT = 1_000_000
-"""The history for late joiners of a publisher that is to keep everything."""
+_MAX_HISTORY = 1_000_000
+"""The maximum number of messages that a publisher with KEEP_ALL stores for late joiners."""
 
 
 class OutgoingTopic:
@@ -36,32 +36,34 @@ class OutgoingTopic:
         publisher: the publisher.
         token: the publisher's token.
         session: the session.
-        changed: called, from any thread, when the publisher gains its first subscription or loses its last one.
+        on_change: called, from any thread, when the publisher gains its first subscription or loses its last one.
     """
 
     def __init__(
-        self, publisher: Publisher[Any], token: Token, session: zenoh.Session, changed: Callable[[], None]
+        self, publisher: Publisher[Any], token: Token, session: zenoh.Session, on_change: Callable[[], None]
     ) -> None:
         self._publisher = publisher
         self.token = token
         profile = publisher.qos_profile
-        self._keeps = profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self._is_transient_local = profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._listener: Any = None
         publisher.gid = token.gid
-        reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
-        keeps_all = reliable and profile.history is HistoryPolicy.KEEP_ALL
+        is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
+        keeps_all = is_reliable and profile.history is HistoryPolicy.KEEP_ALL
         options: dict[str, Any] = {
             "congestion_control": zenoh.CongestionControl.BLOCK if keeps_all else zenoh.CongestionControl.DROP,
-            "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+            "reliability": zenoh.Reliability.RELIABLE if is_reliable else zenoh.Reliability.BEST_EFFORT,
             "allowed_destination": zenoh.Locality.REMOTE,
         }
-        if self._keeps:
-            misses = ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT) if reliable else None
+        if self._is_transient_local:
+            miss_detection = (
+                ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT) if is_reliable else None
+            )
             self._zenoh: Any = ext.declare_advanced_publisher(
                 session,
                 token.data_key,
                 cache=ext.CacheConfig(_depth(profile)),
-                sample_miss_detection=misses,
+                sample_miss_detection=miss_detection,
                 publisher_detection=True,
                 **options,
             )
@@ -69,7 +71,7 @@ class OutgoingTopic:
             self._zenoh = session.declare_publisher(token.data_key, **options)
             # A thread of Zenoh calls this directly. With Zenoh's own handlers, each listener would have a Python
             # thread.
-            self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: changed(), indirect=False))
+            self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: on_change(), indirect=False))
         self._send: Callable[[Any], None] | None = self._sender()
 
     def review(self, count: int) -> None:
@@ -78,9 +80,9 @@ class OutgoingTopic:
         Args:
             count: the number of known remote subscriptions.
         """
-        listened_to = self._keeps or self._zenoh.matching_status.matching
-        self._publisher.set_outside(self._send if listened_to else None, _sent)
-        self._publisher.set_outside_count(count if listened_to else 0)
+        is_needed = self._is_transient_local or self._zenoh.matching_status.matching
+        self._publisher.set_outside(self._send if is_needed else None, _is_acknowledged)
+        self._publisher.set_outside_count(count if is_needed else 0)
 
     def close(self) -> None:
         """Withdraw the publisher.
@@ -104,7 +106,7 @@ class OutgoingTopic:
         numbers, lock = itertools.count(1), Lock()
 
         def send(message: Any) -> None:
-            data = message if type(message) is bytes else _bytes_of(message)
+            data = message if type(message) is bytes else _to_bytes(message)
             with lock:  # Messages must be sent in the order of their numbers, because a gap counts as a loss.
                 put(data, attachment=write(next(numbers), now(), gid))
 
@@ -119,29 +121,34 @@ class IncomingTopic:
         token: the subscription's token.
         session: the session.
         key: the key to subscribe to: the token's data key, or an expression that includes it.
-        own: the gids of this session's publishers, which deliver to the subscription inside the process.
+        own_gids: the gids of this session's publishers, which deliver to the subscription inside the process.
     """
 
     def __init__(
-        self, subscription: Subscription[Any], token: Token, session: zenoh.Session, key: str, own: Collection[bytes]
+        self,
+        subscription: Subscription[Any],
+        token: Token,
+        session: zenoh.Session,
+        key: str,
+        own_gids: Collection[bytes],
     ) -> None:
         self._subscription = subscription
         self.token = token
-        self._own = own
-        self._last: dict[bytes, int] = {}
-        self._warned = False
+        self._own_gids = own_gids
+        self._last_numbers: dict[bytes, int] = {}
+        self._has_warned = False
         subscription.gid = token.gid
         profile = subscription.qos_profile
         handler: Any = Callback(self._receive, indirect=False)
         if profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
+            is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
             self._zenoh: Any = ext.declare_advanced_subscriber(
                 session,
                 key,
                 handler,
                 allowed_origin=zenoh.Locality.REMOTE,
                 history=ext.HistoryConfig(detect_late_publishers=True, max_samples=_depth(profile)),
-                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
+                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if is_reliable else None,
                 subscriber_detection=True,
             )
         else:
@@ -158,18 +165,18 @@ class IncomingTopic:
 
     def _receive(self, sample: zenoh.Sample) -> None:
         """Pass a sample to the subscription. Called in a thread of Zenoh."""
-        enclosed = sample.attachment
-        about = attachment.read(None if enclosed is None else enclosed.to_bytes())
-        if about is None:
+        encoded = sample.attachment
+        metadata = attachment.read(None if encoded is None else encoded.to_bytes())
+        if metadata is None:
             self._refuse()
             return
-        number, sent_ns, gid = about
-        if gid in self._own:
+        number, sent_ns, gid = metadata
+        if gid in self._own_gids:
             return
-        last = self._last.get(gid)
-        self._last[gid] = number
-        if last is not None and number > last + 1:
-            self._subscription.count_lost_outside(number - last - 1)
+        last_number = self._last_numbers.get(gid)
+        self._last_numbers[gid] = number
+        if last_number is not None and number > last_number + 1:
+            self._subscription.count_lost_outside(number - last_number - 1)
         info = MessageInfo(sent_ns, time.time_ns(), gid, True, number)
         try:
             self._subscription.receive(sample.payload.to_bytes(), info)
@@ -177,15 +184,15 @@ class IncomingTopic:
             self._subscription.report(error)
 
     def _refuse(self) -> None:
-        if not self._warned:
-            self._warned = True
+        if not self._has_warned:
+            self._has_warned = True
             self._subscription.node.logger.warning(
                 f"Dropped a message of topic '{self._subscription.name}': it does not name its sender and time, as "
                 "those of ROS 2 do over Zenoh"
             )
 
 
-def _sent(_seconds: float | None) -> bool:
+def _is_acknowledged(_seconds: float | None) -> bool:
     """Return True, because a message that was passed to Zenoh counts as sent.
 
     Zenoh has reliable connections and no acknowledgements.
@@ -194,8 +201,8 @@ def _sent(_seconds: float | None) -> bool:
 
 
 def _depth(profile: QoSProfile) -> int:
-    return _MOST_KEPT if profile.queue_length is None else profile.queue_length
+    return _MAX_HISTORY if profile.queue_length is None else profile.queue_length
 
 
-def _bytes_of(message: Any) -> bytes:
+def _to_bytes(message: Any) -> bytes:
     return bytes(message) if isinstance(message, bytearray) else serialize(message)

@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from linkwright.wire.zenoh.opening import SessionOpener
 
 SETTLED_AFTER = 0.4
-"""Seconds without news after which discovery counts as complete, where another session is linked to this one."""
+"""Seconds without changes after which discovery counts as complete, if another session is connected."""
 
 _ANSWERED_WITHIN = 2.0
-"""Seconds within which the router answers with the live tokens; the first query waits for that."""
+"""Seconds within which the router answers with the live tokens; the first query waits for the answer."""
 
 _QUIET = 0.1
-"""Seconds without news after which the answer counts as complete."""
+"""Seconds without new tokens after which the answer counts as complete."""
 
 _ALONE_AFTER = 1.4
-"""The same where there is no router. Other sessions are asked at once and again after a second."""
+"""The same, if there is no router. Other sessions are asked immediately, and again after a second."""
 
 
 class ZenohTransport(BackgroundTransport):
@@ -46,11 +46,11 @@ class ZenohTransport(BackgroundTransport):
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
         self._zenoh_engine: ZenohEngine | None = None
-        self._patience: SessionOpener | None = None
-        self._linked_at = 0.0
-        self._looks = False
-        self._looking = Lock()
-        self._looked = Event()
+        self._opener: SessionOpener | None = None
+        self._connected_at = 0.0
+        self._is_discovering = False
+        self._discovery_lock = Lock()
+        self._discovery_done = Event()
         super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def look_around(self) -> None:
@@ -59,25 +59,25 @@ class ZenohTransport(BackgroundTransport):
         Before this call, a client of a router receives only the tokens that its own endpoints need.
         """
         engine = self._zenoh_engine
-        waits = engine is not None and self._decided.is_set() and not engine.runs_this
-        with self._looking:
-            looks, self._looks = self._looks, True
-        if looks:
-            if waits and not self._looked.is_set():
-                self._looked.wait(_ANSWERED_WITHIN)
+        must_wait = engine is not None and self._join_ended.is_set() and not engine.is_current_thread
+        with self._discovery_lock:
+            was_discovering, self._is_discovering = self._is_discovering, True
+        if was_discovering:
+            if must_wait and not self._discovery_done.is_set():
+                self._discovery_done.wait(_ANSWERED_WITHIN)
             return
         answered = Event()
         self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, answered.set))
-        if waits:  # if not waiting, the remote graph arrives step by step
+        if must_wait:  # if not waiting, the remote graph arrives step by step
             self._wait_for_answer(answered)
-            self._do(self._note_news)
-            self._looked.wait(_ANSWERED_WITHIN)
-        self._looked.set()
+            self._do(self._process_tokens)
+            self._discovery_done.wait(_ANSWERED_WITHIN)
+        self._discovery_done.set()
 
     @property
     def waits(self) -> bool:
         """Whether opening the session waits for a router, because the settings require one."""
-        return self._patience is not None and self._patience.waits
+        return self._opener is not None and self._opener.waits
 
     def _wait_for_answer(self, answered: Event) -> None:
         """Wait for the answer to a request for tokens, and until no more tokens arrive.
@@ -85,21 +85,21 @@ class ZenohTransport(BackgroundTransport):
         Some tokens may arrive late.
         """
         answered.wait(_ANSWERED_WITHIN)
-        begin = time.monotonic()
-        while time.monotonic() < min(begin + _ANSWERED_WITHIN, max(self._remote.changed_at, begin) + _QUIET):
+        start = time.monotonic()
+        while time.monotonic() < min(start + _ANSWERED_WITHIN, max(self._remote.changed_at, start) + _QUIET):
             time.sleep(_QUIET / 10)
 
-    def _note_news(self, engine: Engine) -> None:
+    def _process_tokens(self, engine: Engine) -> None:
         cast("ZenohEngine", engine).process_tokens()
-        self._looked.set()
+        self._discovery_done.set()
 
     def _make_engine(self) -> Engine:
         from linkwright.wire.zenoh.engine import Engine as ZenohEngine
         from linkwright.wire.zenoh.opening import SessionOpener
 
-        patience = SessionOpener(self._logger, self._given_up)
-        self._patience = patience
-        engine = ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger, patience)
+        opener = SessionOpener(self._logger, self._given_up)
+        self._opener = opener
+        engine = ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger, opener)
         self._zenoh_engine = engine
         return engine
 
@@ -107,5 +107,5 @@ class ZenohTransport(BackgroundTransport):
         engine = self._zenoh_engine
         if engine is None or not engine.has_neighbours():
             return quiet >= _ALONE_AFTER
-        self._linked_at = self._linked_at or time.monotonic()
-        return min(quiet, time.monotonic() - self._linked_at) >= SETTLED_AFTER
+        self._connected_at = self._connected_at or time.monotonic()
+        return min(quiet, time.monotonic() - self._connected_at) >= SETTLED_AFTER

@@ -24,11 +24,11 @@ class RefusalError(Exception):
 
 _MAX_EQUAL_HASHES = 1_000
 """Python compares each of the keys that have one hash with each."""
-_MOST_COMPARED = 200_000_000
+_MAX_COMPARED = 200_000_000
 """Characters, in one call."""
-_MOST_NUMBERS = 1_000
+_MAX_NUMBERS = 1_000
 _QUICK_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "iso8859-15", "cp1252", "unicode-escape"})
-_MOST_CODED = 10_000
+_MAX_CODED = 10_000
 """Characters."""
 _SECONDS = 0.5
 """The time limit of a regular expression, as for those of other files (decision 0020)."""
@@ -72,7 +72,7 @@ def check_keys(items: Collection[Any]) -> None:
         ):
             raise RefusalError(
                 phrase(
-                    "more than {count:,} of the keys have the same hash, which real keys never do",
+                    "more than {count:,} keys have the same hash",
                     count=_MAX_EQUAL_HASHES,
                 )
             )
@@ -87,7 +87,7 @@ def _hash_of(item: Any) -> int:
 
 def _backwards(name: str) -> Callable[..., Any]:
     def search(text: Any, part: Any, *rest: Any) -> Any:
-        if isinstance(part, (str, bytes)) and len(part) * len(text) > _MOST_COMPARED:
+        if isinstance(part, (str, bytes)) and len(part) * len(text) > _MAX_COMPARED:
             raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(part, *rest)
 
@@ -102,7 +102,7 @@ def _bounded_strip(name: str) -> Callable[..., Any]:
     def strip(text: str, characters: str | None = None) -> Any:
         if isinstance(characters, str):
             characters = "".join(dict.fromkeys(characters))
-            if len(characters) * len(text) > _MOST_COMPARED:
+            if len(characters) * len(text) > _MAX_COMPARED:
                 raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(characters)
 
@@ -122,7 +122,7 @@ def check_codec(value: Any, encoding: str) -> None:
     if name in _QUICK_CODECS or not isinstance(value, (str, bytes)):
         return
     longest = max(map(len, value.split("."))) if name == "idna" and isinstance(value, str) else len(value)
-    if longest > _MOST_CODED:
+    if longest > _MAX_CODED:
         raise RefusalError(phrase("the string is too long for the encoding '{encoding}'", encoding=encoding))
 
 
@@ -148,8 +148,8 @@ def _bounded_function(name: str) -> Callable[..., Any]:
     function = getattr(math, name)
 
     def guarded(*numbers: Any) -> Any:
-        if len(numbers) > _MOST_NUMBERS:
-            raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name=name, count=_MOST_NUMBERS))
+        if len(numbers) > _MAX_NUMBERS:
+            raise RefusalError(phrase(("'{name}' receives more than {count:,} numbers"), name=name, count=_MAX_NUMBERS))
         return function(*numbers)
 
     return guarded
@@ -157,8 +157,10 @@ def _bounded_function(name: str) -> Callable[..., Any]:
 
 def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
     pairs = list(zip(left, right, strict=True))
-    if len(pairs) > _MOST_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
-        raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name="sumprod", count=_MOST_NUMBERS))
+    if len(pairs) > _MAX_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
+        raise RefusalError(
+            phrase(("'{name}' receives more than {count:,} numbers"), name="sumprod", count=_MAX_NUMBERS)
+        )
     return sum(one * other for one, other in pairs)
 
 
@@ -198,4 +200,4 @@ def split(pattern: str, text: str) -> list[str]:
     except regex.error as error:
         raise re.error(str(error)) from None
     except TimeoutError:
-        raise RefusalError(phrase("splitting at these characters takes too long")) from None
+        raise RefusalError(phrase("it takes too long to split the string at these characters")) from None

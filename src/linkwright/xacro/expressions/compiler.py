@@ -18,25 +18,25 @@ from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
-from linkwright.xacro.expressions.yamldata import COPIED, YamlDict, YamlMapping, wrapped
+from linkwright.xacro.expressions.yamldata import COPIED_TYPES, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault
 
 Closure = Callable[[Any], Any]
 _Binder = Callable[["Environment", Any], None]
 
-_CHANGING = frozenset(
+_MUTATING_METHODS = frozenset(
     {
         *("add", "append", "clear", "discard", "extend", "insert", "pop", "popitem", "remove", "reverse"),
         *("setdefault", "sort", "update"),
     }
 )
 
-_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here because few files need it
-_GENERATOR = 10
-"""Steps that making a generator costs, for its memory."""
-_LINES = r"[^\r\n]*(?:\r\n?|\n|\Z)"
-_DEEPEST = 500
-"""How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
+_NUMBER_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here because few files need it
+_GENERATOR_COST = 10
+"""The number of steps that a generator costs, because of its memory."""
+_LINE = r"[^\r\n]*(?:\r\n?|\n|\Z)"
+_MAX_DEPTH = 500
+"""The maximum nesting of the nodes of an expression; a sum with n terms has n levels."""
 
 FAILURES = (
     ArithmeticError,
@@ -48,7 +48,7 @@ FAILURES = (
     ValueError,
     RefusalError,
 )
-"""The exceptions that Python's operations raise if the values do not fit."""
+"""The exceptions that Python's operations raise for unsuitable values."""
 
 _UNARY: dict[str, Callable[[Any], Any]] = {
     "Not": operator.not_,
@@ -72,27 +72,27 @@ _COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
-    """Return the fault for a Python exception that was raised in a part of an expression."""
+    """Return the fault for a Python exception that a segment of an expression raised."""
     segment = " ".join(segment.split())
     if len(segment) > 60:
         segment = f"{segment[:57]}..."
     if isinstance(error, RefusalError):
         message = phrase("'{segment}' is refused: {error}", segment=segment, error=foreign(error))
-        bounds = phrase("expressions have limits, so that opening a robot from an unknown source is safe")
-        return Fault("XAC204", message, start, end, bounds)
-    words = str(error) or error.__class__.__name__
+        hint_on_limits = phrase("expressions have limits, so that opening a robot from an unknown source is safe")
+        return Fault("XAC204", message, start, end, hint_on_limits)
+    reason = str(error) or error.__class__.__name__
     hint = None
     if isinstance(error, KeyError):
-        words = phrase("there is no key {error}", error=foreign(error))
-    elif isinstance(error, TypeError) and "str" in words and ("concatenate" in words or "+:" in words):
+        reason = phrase("there is no key {error}", error=foreign(error))
+    elif isinstance(error, TypeError) and "str" in reason and ("concatenate" in reason or "+:" in reason):
         hint = phrase("convert the number to a string with str(...)")
     elif isinstance(error, RecursionError):
-        words = phrase("it is nested too deeply")
+        reason = phrase("it is nested too deeply")
     elif isinstance(error, ZeroDivisionError):
-        words = "division by zero"  # before Python 3.14, the message depends on the kind of number
+        reason = "division by zero"  # before Python 3.14, the message depends on the kind of number
     return Fault(
         "XAC202",
-        phrase("cannot evaluate '{segment}': {words}", segment=segment, words=foreign(words)),
+        phrase("cannot evaluate '{segment}': {words}", segment=segment, words=foreign(reason)),
         start,
         end,
         hint,
@@ -107,7 +107,7 @@ class Compiler:
         shift: the number of characters before the expression in the enclosing text.
 
     Attributes:
-        changes: whether a compiled node may change a value.
+        may_change_values: whether a compiled node may change a value.
     """
 
     def __init__(self, source: str, shift: int) -> None:
@@ -115,7 +115,7 @@ class Compiler:
         self._shift = shift
         self._is_plain = source.isascii() and "\n" not in source and "\r" not in source
         self._depth = 0
-        self.changes = False
+        self.may_change_values = False
 
     def compile(self, node: ast.AST) -> Closure:
         """Return the closure for a node.
@@ -125,9 +125,9 @@ class Compiler:
         """
         method = _METHODS.get(node.__class__)
         if method is None:
-            raise self._refused(node)
+            raise self._refusal(node)
         self._depth += 1
-        if self._depth > _DEEPEST:
+        if self._depth > _MAX_DEPTH:
             raise Fault("XAC102", phrase("the expression is nested too deeply"))
         closure = method(self, node)
         self._depth -= 1
@@ -138,7 +138,7 @@ class Compiler:
     def _place(self, node: Any) -> tuple[int, int]:
         start, end = node.col_offset, node.end_col_offset
         if not self._is_plain:
-            lines = re.findall(_LINES, self._source)  # the columns of ast nodes count UTF-8 bytes
+            lines = re.findall(_LINE, self._source)  # the columns of ast nodes count UTF-8 bytes
             start, end = (
                 sum(map(len, lines[: number - 1]))
                 + len(lines[number - 1].encode("utf-8", "replace")[:column].decode("utf-8", "replace"))
@@ -152,7 +152,7 @@ class Compiler:
     def _failure(self, error: Exception, start: int, end: int) -> Fault:
         return failure(error, self._segment(start, end), start, end)
 
-    def _refused(self, node: ast.AST) -> Fault:
+    def _refusal(self, node: ast.AST) -> Fault:
         start, end = self._place(node)
         message = phrase("'{segment}' is not allowed in an expression", segment=self._segment(start, end))
         return Fault("XAC204", message, start, end)
@@ -163,40 +163,42 @@ class Compiler:
         Such an operand is a zero, a text, or a number with a unit. Constants get no hint.
         """
         for node, value in operands:
-            written = self._segment(*self._place(node))
-            if isinstance(node, ast.Constant) or len(written) > 40:
+            operand_text = self._segment(*self._place(node))
+            if isinstance(node, ast.Constant) or len(operand_text) > 40:
                 continue
             if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
                 return phrase(
                     "'{written}' is {value} here; if that may happen, write 'A / {written} if {written} else B'",
-                    written=written,
+                    written=operand_text,
                     value=repr(value),
                 )
             if isinstance(error, TypeError) and isinstance(value, str) and len(value) <= 40:
-                united = re.fullmatch(_WITH_UNIT, value)
-                if united:
+                match = re.fullmatch(_NUMBER_WITH_UNIT, value)
+                if match:
                     return phrase(
                         "'{written}' is the string '{value}' here; write the number alone: '{united}'",
-                        written=written,
+                        written=operand_text,
                         value=value,
-                        united=united[1],
+                        united=match[1],
                     )
-                return phrase("'{written}' is the string '{value}' here, not a number", written=written, value=value)
+                return phrase(
+                    "'{written}' is the string '{value}' here, not a number", written=operand_text, value=value
+                )
         return None
 
     # names and constants
 
     def name(self, name: str, start: int) -> Closure:
         """Return the closure for a name at an offset in the source."""
-        place = (start + self._shift, start + self._shift + len(name))
+        text_range = (start + self._shift, start + self._shift + len(name))
         if name.startswith("__"):
-            raise Fault("XAC204", phrase("the name '{name}' is not allowed in an expression", name=name), *place)
+            raise Fault("XAC204", phrase("the name '{name}' is not allowed in an expression", name=name), *text_range)
 
         def look_up(env: Environment) -> Any:
             try:
                 return env.lookup(name)
             except KeyError:
-                raise env.session.undefined(name, env, *place) from None
+                raise env.session.undefined(name, env, *text_range) from None
 
         return look_up
 
@@ -210,11 +212,13 @@ class Compiler:
     def _joinedstr(self, node: ast.JoinedStr) -> Closure:
         from ast import copy_location, walk
 
-        for part in walk(node):  # before Python 3.12, nodes inside an f-string do not have their position in the text
-            if isinstance(part, ast.expr):
-                copy_location(part, node)
-        parts = [self.compile(part) for part in node.values]
-        return lambda env: sandbox.joined([part(env) for part in parts])
+        for descendant in walk(
+            node
+        ):  # before Python 3.12, nodes inside an f-string do not have their position in the text
+            if isinstance(descendant, ast.expr):
+                copy_location(descendant, node)
+        compiled_parts = [self.compile(part) for part in node.values]
+        return lambda env: sandbox.joined([part(env) for part in compiled_parts])
 
     def _formattedvalue(self, node: ast.FormattedValue) -> Closure:
         value, conversion = self.compile(node.value), node.conversion
@@ -233,7 +237,7 @@ class Compiler:
     def _namedexpr(self, node: ast.NamedExpr) -> Closure:
         name, value = node.target.id, self.compile(node.value)
         self.name(name, 0)
-        self.changes = True
+        self.may_change_values = True
 
         def assign(env: Environment) -> Any:
             result = value(env)
@@ -279,12 +283,12 @@ class Compiler:
 
     def _boolop(self, node: ast.BoolOp) -> Closure:
         first, *rest = [self.compile(value) for value in node.values]
-        stops_at = isinstance(node.op, ast.Or)
+        final_value = isinstance(node.op, ast.Or)
 
         def boolean(env: Environment) -> Any:
             value = first(env)
             for operand in rest:
-                if bool(value) is stops_at:
+                if bool(value) is final_value:
                     break
                 value = operand(env)
             return value
@@ -342,7 +346,7 @@ class Compiler:
                 raise Fault("XAC205", foreign(error), start_of_name, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if result.__class__ in COPIED and (steps := cost(result)):
+            if result.__class__ in COPIED_TYPES and (steps := cost(result)):
                 env.session.budget.charge_steps(steps)
             return result
 
@@ -357,16 +361,16 @@ class Compiler:
             try:
                 result = sandbox.subscript(owner, index)
             except (AttributeError, KeyError) as error:
-                words = (
+                message = (
                     phrase("there is no key {error}", error=foreign(error))
                     if isinstance(error, KeyError)
                     else foreign(error)
                 )
                 hint = env.session.nearest_attribute(owner, str(index))
-                raise Fault("XAC205", words, start, end, hint) from None
+                raise Fault("XAC205", message, start, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if (index.__class__ is slice or result.__class__ in COPIED) and (steps := cost(result)):
+            if (index.__class__ is slice or result.__class__ in COPIED_TYPES) and (steps := cost(result)):
                 env.session.budget.charge_steps(steps)
             return result
 
@@ -381,22 +385,22 @@ class Compiler:
     def _call(self, node: ast.Call) -> Closure:
         function = self.compile(node.func)
         positional = [self._argument(argument) for argument in node.args]
-        named = [(keyword.arg, self.compile(keyword.value)) for keyword in node.keywords]
-        plain = not named and not any(starred for starred, _ in positional)
-        simple = [closure for _, closure in positional]
+        keyword_closures = [(keyword.arg, self.compile(keyword.value)) for keyword in node.keywords]
+        is_simple = not keyword_closures and not any(is_starred for is_starred, _ in positional)
+        argument_closures = [closure for _, closure in positional]
         start, end = self._place(node)
-        if isinstance(node.func, ast.Attribute) and node.func.attr in _CHANGING:
-            self.changes = True
+        if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING_METHODS:
+            self.may_change_values = True
 
         def call_function(env: Environment) -> Any:
-            called = function(env)
-            if plain:
-                arguments = [closure(env) for closure in simple]
+            callee = function(env)
+            if is_simple:
+                arguments = [closure(env) for closure in argument_closures]
                 keywords: dict[str, Any] = {}
             else:
-                arguments, keywords = _arguments(env, positional, named)
+                arguments, keywords = _arguments(env, positional, keyword_closures)
             try:
-                return call(env.session.budget, called, arguments, keywords)
+                return call(env.session.budget, callee, arguments, keywords)
             except Fault as fault:
                 if fault.span is None and fault.start is None:
                     fault.start, fault.end = start, end
@@ -460,27 +464,27 @@ class Compiler:
     # comprehensions
 
     def _listcomp(self, node: ast.ListComp) -> Closure:
-        return self._collected(node, node.elt, list)
+        return self._collect_items(node, node.elt, list)
 
     def _setcomp(self, node: ast.SetComp) -> Closure:
-        return self._collected(node, node.elt, set)
+        return self._collect_items(node, node.elt, set)
 
-    def _collected(
+    def _collect_items(
         self, node: ast.ListComp | ast.SetComp, element: ast.expr, kind: Callable[[Iterator[Any]], Any]
     ) -> Closure:
-        item, turns = self.compile(element), self._turns(node.generators)
+        element_value, iterations = self.compile(element), self._iterations(node.generators)
         start, end = self._place(node)
 
         def comprehension(env: Environment) -> Any:
             try:
-                return charge_value(env.session.budget, kind(item(inner) for inner in turns(env)))
+                return charge_value(env.session.budget, kind(element_value(inner) for inner in iterations(env)))
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
         return comprehension
 
     def _dictcomp(self, node: ast.DictComp) -> Closure:
-        key, value, turns = self.compile(node.key), self.compile(node.value), self._turns(node.generators)
+        key, value, turns = self.compile(node.key), self.compile(node.value), self._iterations(node.generators)
         start, end = self._place(node)
 
         def comprehension(env: Environment) -> Any:
@@ -492,16 +496,16 @@ class Compiler:
         return comprehension
 
     def _generatorexp(self, node: ast.GeneratorExp) -> Closure:
-        item, turns = self.compile(node.elt), self._turns(node.generators)
+        item, turns = self.compile(node.elt), self._iterations(node.generators)
 
         def generator(env: Environment) -> Iterator[Any]:
-            env.session.budget.charge_steps(_GENERATOR)
+            env.session.budget.charge_steps(_GENERATOR_COST)
             return (item(inner) for inner in turns(env))
 
         return generator
 
-    def _turns(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
-        """Return a function that yields the environment of each iteration of a comprehension."""
+    def _iterations(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
+        """Return a function that yields the environment for each iteration of a comprehension."""
         loops = []
         for generator in generators:
             if generator.is_async:
@@ -512,7 +516,7 @@ class Compiler:
         def run(env: Environment, depth: int) -> Iterator[Environment]:
             bind, items, conditions = loops[depth]
             for item in items(env):
-                env.session.budget.charge_steps(2 + cost(item) if item.__class__ in COPIED else 2)
+                env.session.budget.charge_steps(2 + cost(item) if item.__class__ in COPIED_TYPES else 2)
                 bind(env, item)
                 if all(condition(env) for condition in conditions):
                     if depth + 1 < len(loops):
@@ -535,7 +539,7 @@ class Compiler:
                 if len(values) != len(binders):
                     raise ValueError(
                         phrase(
-                            "{count} values are expected, but {other_count} are given",
+                            "the target expects {count} values, but receives {other_count}",
                             count=len(binders),
                             other_count=len(values),
                         )
@@ -544,7 +548,7 @@ class Compiler:
                     bind(env, item)
 
             return unpack
-        raise self._refused(node)
+        raise self._refusal(node)
 
 
 def _warn_of_plain_mapping(env: Environment, name: str) -> None:

@@ -17,12 +17,12 @@ from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, f
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
 
-_LONGEST = 20_000
-_ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
-"""Iterators, which become lists at once: nested thousands deep, they would overflow the stack."""
-_WARNS = r"\\|\d\.?[^\W\d]"  # not compiled here because few files need it
-_CLOSING = {"(": ")", "[": "]"}
-_HINTS = (
+_MAX_LENGTH = 20_000
+_ITERATOR_TYPES = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
+"""Types of iterators, which are exhausted immediately: thousands of nested ones would overflow the stack."""
+_WARNING_TRIGGERS = r"\\|\d\.?[^\W\d]"  # not compiled here because few files need it
+_CLOSING_BRACKETS = {"(": ")", "[": "]"}
+_SYNTAX_HINTS = (
     ("{", phrase("'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML")),
     ("&&", phrase("write 'and'")),
     ("||", phrase("write 'or'")),
@@ -52,7 +52,7 @@ class Expression:
             self.evaluate: Closure = compiler.name(stripped, 0)
         else:
             self.evaluate = _exhaust_iterator(compiler.compile(_parse(source, stripped).body), source)
-        self.changes = compiler.changes
+        self.changes = compiler.may_change_values
 
 
 _KEYWORDS = frozenset(
@@ -66,7 +66,7 @@ _KEYWORDS = frozenset(
 
 _compiler = TextCompiler(Expression)
 expressions = _compiler.forms
-"""The expressions compiled so far, by their sources; those inside of templates are the templates' own."""
+"""The expressions compiled so far, by source; the expressions inside templates are not included."""
 
 
 def compile_expression(source: str) -> Expression:
@@ -84,7 +84,7 @@ def _exhaust_iterator(closure: Closure, source: str) -> Closure:
     def evaluate(scope: Scope) -> Any:
         try:
             value = closure(scope)
-            return iter(list(value)) if value.__class__ in _ITERATORS else value
+            return iter(list(value)) if value.__class__ in _ITERATOR_TYPES else value
         except FAILURES as error:  # an error during the iteration, such as in a generator
             raise failure(error, source.strip(), 0, len(source)) from None
 
@@ -109,10 +109,10 @@ def _parse(source: str, stripped: str) -> ast.Expression:
         raise Fault(
             "XAC102", phrase("the expression is empty"), hint=phrase("write a property or a value between the braces")
         )
-    if len(stripped) > _LONGEST:
-        raise Fault("XAC102", phrase("the expression is longer than {longest:,} characters", longest=_LONGEST))
+    if len(stripped) > _MAX_LENGTH:
+        raise Fault("XAC102", phrase("the expression is longer than {longest:,} characters", longest=_MAX_LENGTH))
     try:
-        if re.search(_WARNS, stripped):
+        if re.search(_WARNING_TRIGGERS, stripped):
             import warnings
 
             with warnings.catch_warnings():
@@ -126,7 +126,7 @@ def _parse(source: str, stripped: str) -> ast.Expression:
             "XAC102",
             phrase(
                 "'{shortened}' is not an expression: {error}",
-                shortened=_shortened(stripped),
+                shortened=_shorten(stripped),
                 error=foreign(str(error) or phrase("it is nested too deeply")),
             ),
         ) from None
@@ -139,25 +139,23 @@ def _syntax_tree(source: str) -> ast.Expression:
 
 
 def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
-    words = error.msg.removeprefix("f-string: ")
-    message = phrase(
-        "'{shortened}' is not an expression: {words}", shortened=_shortened(stripped), words=foreign(words)
-    )
-    hint = next((hint for sign, hint in _HINTS if sign in stripped), None)
+    reason = error.msg.removeprefix("f-string: ")
+    message = phrase("'{shortened}' is not an expression: {words}", shortened=_shorten(stripped), words=foreign(reason))
+    hint = next((hint for sign, hint in _SYNTAX_HINTS if sign in stripped), None)
     if "!=" in stripped and hint == "write 'not'":
         hint = None
-    if hint is None and "was never closed" in words:
-        hint = phrase("close it with '{closing}'", closing=_CLOSING.get(words[1:2], ")"))
+    if hint is None and "was never closed" in reason:
+        hint = phrase("close it with '{closing}'", closing=_CLOSING_BRACKETS.get(reason[1:2], ")"))
     fault = Fault("XAC102", message, hint=hint)
     lines = stripped.split("\n")
     if error.lineno and error.offset and error.lineno <= len(lines):
-        shift = len(source) - len(source.lstrip())
-        before = sum(len(line) + 1 for line in lines[: error.lineno - 1])
-        at = min(before + error.offset - 1, max(0, len(stripped) - 1))
-        fault.start, fault.end = shift + at, shift + at + 1
+        leading_blanks = len(source) - len(source.lstrip())
+        line_start = sum(len(line) + 1 for line in lines[: error.lineno - 1])
+        offset = min(line_start + error.offset - 1, max(0, len(stripped) - 1))
+        fault.start, fault.end = leading_blanks + offset, leading_blanks + offset + 1
     return fault
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     text = " ".join(text.split())
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -40,15 +40,15 @@ class Parameters(NamedTuple):
     keywords: str | None
     defaults: dict[str, Any]
 
-    def bound(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
+    def bound(self, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any]:
         """Return the values of the parameters in a call, by name.
 
         Raises:
             TypeError: if the arguments do not match the parameters.
         """
         values: dict[str, Any] = dict(zip(self.positional, arguments, strict=False))
-        further = arguments[len(self.positional) :]
-        if further and self.rest is None:
+        extra_arguments = arguments[len(self.positional) :]
+        if extra_arguments and self.rest is None:
             raise TypeError(
                 phrase(
                     "the lambda takes {count} arguments, but {other_count} are given",
@@ -57,24 +57,24 @@ class Parameters(NamedTuple):
                 )
             )
         if self.rest is not None:
-            values[self.rest] = further
-        others: dict[str, Any] = {}
-        for name, value in named.items():
-            known = name in self.positional[self.positional_only :] or name in self.keyword_only
-            if known and name in values:
-                raise TypeError(phrase("the lambda is given '{name}' twice", name=name))
-            if known:
+            values[self.rest] = extra_arguments
+        extra_keywords: dict[str, Any] = {}
+        for name, value in keywords.items():
+            is_parameter = name in self.positional[self.positional_only :] or name in self.keyword_only
+            if is_parameter and name in values:
+                raise TypeError(phrase("the lambda receives two values for its parameter '{name}'", name=name))
+            if is_parameter:
                 values[name] = value
             elif self.keywords is not None:
-                others[name] = value
+                extra_keywords[name] = value
             else:
                 raise TypeError(phrase("the lambda has no parameter '{name}'", name=name))
         if self.keywords is not None:
-            values[self.keywords] = others
+            values[self.keywords] = extra_keywords
         for name in (*self.positional, *self.keyword_only):
             if name not in values:
                 if name not in self.defaults:
-                    raise TypeError(phrase("the lambda is not given its parameter '{name}'", name=name))
+                    raise TypeError(phrase("the call of the lambda lacks its parameter '{name}'", name=name))
                 values[name] = self.defaults[name]
         return values
 
@@ -84,20 +84,20 @@ class Function:
 
     __slots__ = ("_around", "_body", "_parameters")
 
-    def __init__(self, parameters: Parameters, body: _Closure, around: Environment) -> None:
+    def __init__(self, parameters: Parameters, body: _Closure, environment: Environment) -> None:
         self._parameters = parameters
         self._body = body
-        self._around = around
+        self._around = environment
 
     def __repr__(self) -> str:
         return "<lambda>"
 
-    def __call__(self, *arguments: Any, **named: Any) -> Any:
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
         """Return the value of the body for the given arguments."""
         budget = self._around.session.budget
         budget.enter_lambda()
         try:
-            return self._body(Local(self._around, self._parameters.bound(arguments, named)))
+            return self._body(Local(self._around, self._parameters.bound(arguments, keywords)))
         finally:
             budget.leave_lambda()
 
@@ -132,18 +132,22 @@ def bind_parameters(
     return bind
 
 
-_CALL = 2
-_ITEMS_A_STEP = 2
-_CHARACTERS_A_STEP = 32
-_LONG_ITEMS = (list, tuple, dict, set, frozenset, range, YamlList, YamlDict, YamlMapping)
-_SHARES = {**dict.fromkeys(_LONG_ITEMS, _ITEMS_A_STEP), str: _CHARACTERS_A_STEP, bytes: _CHARACTERS_A_STEP}
-_QUICK = frozenset(
+_CALL_STEPS = 2
+_ITEMS_PER_STEP = 2
+_CHARACTERS_PER_STEP = 32
+_COLLECTION_TYPES = (list, tuple, dict, set, frozenset, range, YamlList, YamlDict, YamlMapping)
+_UNITS_PER_STEP = {
+    **dict.fromkeys(_COLLECTION_TYPES, _ITEMS_PER_STEP),
+    str: _CHARACTERS_PER_STEP,
+    bytes: _CHARACTERS_PER_STEP,
+}
+_CONSTANT_TIME_FUNCTIONS = frozenset(
     {
         *("append", "bool", "get", "isinstance", "items", "keys", "len", "pop", "popitem", "setdefault", "type"),
         *("values",),
     }
 )
-"""Functions that take no longer for a long value than for a short one."""
+"""Functions whose running time does not depend on the length of the value."""
 
 
 def cost(value: Any) -> int:
@@ -151,26 +155,26 @@ def cost(value: Any) -> int:
 
     The contents of the items do not count.
     """
-    share = _SHARES.get(value.__class__)
-    return len(value) // share if share else 0
+    units_per_step = _UNITS_PER_STEP.get(value.__class__)
+    return len(value) // units_per_step if units_per_step else 0
 
 
 def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str, Any]) -> Any:
-    """Call a function with some arguments, charge the budget, and return the value.
+    """Call a function, charge the budget for the call, and return the result.
 
     Raises:
-        RefusalError: if the function must not be called, or if its value is too large.
+        RefusalError: if expressions must not call the function, or if the result is too large.
         Fault: XAC603 if there were too many steps.
     """
     sandbox.check_call(function)
-    steps = _CALL
+    steps = _CALL_STEPS
     name = getattr(function, "__name__", None)
     if name in HASHING:
         arguments = [checked_keys(argument) for argument in arguments]
     elif function is str and (len(arguments) > 1 or keywords):
         value = arguments[0] if arguments else keywords.get("object")
         check_codec(value, arguments[1] if len(arguments) > 1 else keywords.get("encoding", "utf-8"))
-    if name not in _QUICK:
+    if name not in _CONSTANT_TIME_FUNCTIONS:
         for argument in arguments:
             steps += cost(argument)
         owner = getattr(function, "__self__", None)
@@ -193,7 +197,7 @@ def charge_value(budget: Budget, value: Any) -> Any:
     """
     weight = sandbox.weight(value)
     if weight:
-        budget.charge_steps(weight // (_CHARACTERS_A_STEP if isinstance(value, (str, bytes)) else _ITEMS_A_STEP))
+        budget.charge_steps(weight // (_CHARACTERS_PER_STEP if isinstance(value, (str, bytes)) else _ITEMS_PER_STEP))
     return value
 
 

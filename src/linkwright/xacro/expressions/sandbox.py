@@ -19,11 +19,11 @@ from linkwright.xacro.expressions.scope import Namespace
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
 
 MAX_LENGTH = 1_000_000
-"""How many characters a string, or items a list, may have."""
+"""The maximum number of characters in a string or of items in a list."""
 MAX_BITS = 20_000
-"""How many bits an integer may have."""
+"""The maximum number of bits in an integer."""
 MAX_DIGITS = 1_000
-"""How wide or precise a formatted number may be."""
+"""The maximum width or precision of a formatted number."""
 
 
 class Module:
@@ -71,8 +71,8 @@ _ATTRIBUTES: dict[type, set[str]] = {
     slice: {"start", "step", "stop"},
 }
 
-_DATES = {"day", "hour", "isoformat", "microsecond", "minute", "month", "second", "weekday", "year"}
-"""For the dates that YAML files hold."""
+_DATE_ATTRIBUTES = {"day", "hour", "isoformat", "microsecond", "minute", "month", "second", "weekday", "year"}
+"""The accessible attributes of dates, which YAML files may contain."""
 
 CALLABLE_TYPES = frozenset(
     {bool, complex, dict, enumerate, filter, float, frozenset, int, list, map, reversed, set, slice, str, tuple, zip}
@@ -99,12 +99,12 @@ def attribute(value: Any, name: str) -> Any:
             raise AttributeError(phrase("the namespace has no property '{name}'", name=name)) from None
     if name in _ATTRIBUTES.get(kind, ()):
         return getattr(value, name)
-    grown = _GROWING.get((kind, name))
-    if grown is not None:
-        return _Bound(grown, value)
+    guarded_method = _GROWING.get((kind, name))
+    if guarded_method is not None:
+        return _BoundMethod(guarded_method, value)
     if kind is YamlDict:
         return value[name]
-    if kind.__module__ == "datetime" and name in _DATES:
+    if kind.__module__ == "datetime" and name in _DATE_ATTRIBUTES:
         return getattr(value, name)
     if kind is type and value in _ATTRIBUTES:
         if name in _ATTRIBUTES[value]:
@@ -135,7 +135,7 @@ def contains(container: Any, item: Any) -> bool:
 
 
 def check_call(function: Any) -> None:
-    """Check that a function is not a type that expressions must not call.
+    """Raise if a function is a type that expressions must not call.
 
     Raises:
         RefusalError: if expressions must not create values of this type.
@@ -157,7 +157,7 @@ def check_size(value: Any) -> Any:
 def weight(value: Any) -> int:
     """Return the number of items or characters in a value, including nested ones.
 
-    For a number, the result is the number of machine words.
+    The weight of an integer is the number of full 64-bit words. Other numbers have the weight 0.
 
     Raises:
         RefusalError: if a string, list or number exceeds the limits.
@@ -174,7 +174,7 @@ def weight(value: Any) -> int:
         _check_length(len(value))
         return len(value)
     if isinstance(value, (list, tuple, dict, set, frozenset)):
-        return _weigh(value)
+        return _collection_weight(value)
     return 0
 
 
@@ -206,16 +206,16 @@ def _check_length(length: int) -> None:
         raise RefusalError(phrase("the value has more than {max_length:,} characters or items", max_length=MAX_LENGTH))
 
 
-_WEIGHTLESS: frozenset[type] = frozenset({int, float, bool})
+_WEIGHTLESS_TYPES: frozenset[type] = frozenset({int, float, bool})
 """The types of most items that are not texts."""
 
 
-def _weigh(value: Any) -> int:
+def _collection_weight(value: Any) -> int:
     total = 0
     pending: list[Any] = [value]
     while pending:
         item = pending.pop()
-        if item.__class__ in _WEIGHTLESS:
+        if item.__class__ in _WEIGHTLESS_TYPES:
             continue
         if isinstance(item, (str, bytes)):
             total += len(item)
@@ -247,9 +247,9 @@ def multiply(left: Any, right: Any) -> Any:
     """Return ``left * right``."""
     if left.__class__ is float or right.__class__ is float:
         return left * right
-    for sequence, times in ((left, right), (right, left)):
-        if isinstance(sequence, (str, list, tuple, bytes)) and isinstance(times, int):
-            _check_length(len(sequence) * times)
+    for sequence, count in ((left, right), (right, left)):
+        if isinstance(sequence, (str, list, tuple, bytes)) and isinstance(count, int):
+            _check_length(len(sequence) * count)
     return check_size(left * right)
 
 
@@ -265,25 +265,25 @@ def power(base: Any, exponent: Any) -> Any:
     return base**exponent
 
 
-def shift_left(value: Any, by: Any) -> Any:
+def shift_left(value: Any, bits: Any) -> Any:
     """Return ``value << by``."""
-    if isinstance(value, int) and isinstance(by, int) and value.bit_length() + by > MAX_BITS:
+    if isinstance(value, int) and isinstance(bits, int) and value.bit_length() + bits > MAX_BITS:
         raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
-    return value << by
+    return value << bits
 
 
-_FORMAT = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled here because few files need it
+_FORMAT_FIELD = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled here because few files need it
 
 
 def modulo(left: Any, right: Any) -> Any:
-    """Return ``left % right``, which formats a string."""
+    """Return ``left % right``: a remainder, or a formatted text if `left` is a string."""
     if isinstance(left, (str, bytes)):
         pattern = left if isinstance(left, str) else left.decode("latin-1")
-        for digits in (part for found in re.findall(_FORMAT, pattern) for part in found):
+        for digits in (group for groups in re.findall(_FORMAT_FIELD, pattern) for group in groups):
             if digits == "*" or len(digits) > len(str(MAX_DIGITS)) or int(digits or 0) > MAX_DIGITS:
                 raise RefusalError(
                     phrase(
-                        "a width or precision of '{digits}' may be more than {max_digits:,}",
+                        "the width or precision '{digits}' can exceed the limit of {max_digits:,}",
                         digits=digits,
                         max_digits=MAX_DIGITS,
                     )
@@ -293,7 +293,7 @@ def modulo(left: Any, right: Any) -> Any:
 
 
 _CONVERSIONS: dict[int, Callable[[Any], str]] = {ord("s"): str, ord("r"): repr, ord("a"): ascii}
-_PLAIN: frozenset[type] = frozenset({bool, complex, float, int, str})
+_FORMATTABLE_TYPES: frozenset[type] = frozenset({bool, complex, float, int, str})
 
 
 def formatted(value: Any, conversion: int, specification: str) -> str:
@@ -315,11 +315,11 @@ def formatted(value: Any, conversion: int, specification: str) -> str:
         return as_text(value)
     for digits in (specification, *re.findall(r"\d+", specification)):
         if len(digits) > MAX_DIGITS or (digits.isdecimal() and int(digits) > MAX_DIGITS):
-            raise RefusalError(
-                phrase("the width or precision may be no more than {max_digits:,}", max_digits=MAX_DIGITS)
-            )
-    if value.__class__ not in _PLAIN and value.__class__.__module__ != "datetime":
-        raise TypeError(phrase("'{kind}' has no form with ':'", kind=value.__class__.__name__))
+            raise RefusalError(phrase("the width or precision is larger than {max_digits:,}", max_digits=MAX_DIGITS))
+    if value.__class__ not in _FORMATTABLE_TYPES and value.__class__.__module__ != "datetime":
+        raise TypeError(
+            phrase(("a value of type '{kind}' cannot be formatted with ':'"), kind=value.__class__.__name__)
+        )
     return format(value, specification)
 
 
@@ -343,8 +343,8 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 # methods whose results can be much larger than their arguments
 
 
-class _Bound:
-    """A method of a value that is replaced by a guarded function."""
+class _BoundMethod:
+    """A bound method whose calls go to a guarded function."""
 
     __slots__ = ("__self__", "_method")
 
@@ -377,15 +377,17 @@ def _join(text: str, items: Any) -> str:
 
 def _replace(text: str, old: str, new: str, count: int = -1) -> str:
     if isinstance(old, str) and isinstance(new, str):
-        times = text.count(old)
-        _check_length(len(text) + (times if count < 0 else min(count, times)) * max(0, len(new) - len(old)))
+        count_in_text = text.count(old)
+        _check_length(
+            len(text) + (count_in_text if count < 0 else min(count, count_in_text)) * max(0, len(new) - len(old))
+        )
     return text.replace(old, new, count)
 
 
-def _extend(items: list[Any], more: Any) -> None:
-    added = list(more)
-    _check_length(len(items) + len(added))
-    items.extend(added)
+def _extend(items: list[Any], new_items: Any) -> None:
+    additions = list(new_items)
+    _check_length(len(items) + len(additions))
+    items.extend(additions)
 
 
 _GROWING: dict[tuple[type, str], Callable[..., Any]] = {

@@ -20,7 +20,7 @@ from linkwright.xacro.limits import Budget, Limits
 from linkwright.xmltree import Element, Text
 
 _NEVER_A_LITERAL = frozenset('ABCDEGHJKLMOPQRSUVWXYZabcdeghjklmopqrsuvwxyz$/<>(["')
-"""Characters that begin neither a number nor a boolean."""
+"""The characters with which neither a number nor a boolean begins."""
 _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
@@ -62,8 +62,8 @@ def truth(value: Any) -> bool:
     """
     if not isinstance(value, str):
         return bool(value)
-    known = _BOOLEANS.get(value)
-    return bool(int(value)) if known is None else known
+    boolean = _BOOLEANS.get(value)
+    return bool(int(value)) if boolean is None else boolean
 
 
 class Context(Protocol):
@@ -74,18 +74,18 @@ class Context(Protocol):
         limits: the limits of the expansion.
         budget: the remaining budget.
         file: the file being processed.
-        place: the element or text being processed.
-        attribute: the attribute of `place` that is being evaluated, or None.
-        resolving: the names of the nested properties being evaluated, outermost first.
+        current_node: the element or text being processed.
+        current_attribute: the attribute of `current_node` that is being evaluated, or None.
+        property_stack: the names of the nested properties being evaluated, outermost first.
     """
 
     arguments: dict[str, str]
     limits: Limits
     budget: Budget
     file: str
-    place: Element | Text | None
-    attribute: str | None
-    resolving: list[str]
+    current_node: Element | Text | None
+    current_attribute: str | None
+    property_stack: list[str]
 
     @property
     def working_directory(self) -> str:
@@ -178,13 +178,13 @@ class Scope:
             element: the element that contains the text, for messages.
             attribute: the attribute of the element that contains the text.
         """
-        plain = literal(value)
-        if lazy and isinstance(plain, str):
-            if "$" in plain:
-                plain = Lazy(plain, element, attribute)
-            elif plain is not value:  # the string was quoted
-                plain = literal(plain)
-        self.values[name] = plain
+        literal_value = literal(value)
+        if lazy and isinstance(literal_value, str):
+            if "$" in literal_value:
+                literal_value = Lazy(literal_value, element, attribute)
+            elif literal_value is not value:  # the string was quoted
+                literal_value = literal(literal_value)
+        self.values[name] = literal_value
 
     def assign(self, name: str, value: Any) -> None:
         """Define a property in this scope, for ``name := value`` in an expression."""
@@ -227,34 +227,36 @@ class Scope:
             scope = scope.parent
 
     def _resolve(self, name: str, lazy: Lazy) -> Any:
-        chain = self.session.resolving
+        property_stack = self.session.property_stack
         if lazy.resolving:
-            circle = " -> ".join([*chain[chain.index(name) :], name])
+            cycle = " -> ".join([*property_stack[property_stack.index(name) :], name])
             hint = phrase('write lazy_eval="false" in the definition of one of them')
             raise Fault(
                 "XAC203",
-                phrase("the property '{name}' depends on itself: {circle}", name=name, circle=circle),
+                phrase("the property '{name}' depends on itself: {circle}", name=name, circle=cycle),
                 hint=hint,
             )
-        if len(chain) >= self.session.limits.depth:
-            raise Fault("XAC601", phrase("more than {count} properties depend on one another", count=len(chain)))
+        if len(property_stack) >= self.session.limits.depth:
+            raise Fault(
+                "XAC601", phrase("more than {count} properties depend on one another", count=len(property_stack))
+            )
         session = self.session
-        around = session.place, session.attribute
+        outer_location = session.current_node, session.current_attribute
         if lazy.element is not None:
-            session.place, session.attribute = lazy.element, lazy.attribute
+            session.current_node, session.current_attribute = lazy.element, lazy.attribute
         lazy.resolving = True
-        chain.append(name)
+        property_stack.append(name)
         try:
             value = literal(self.session.evaluate(lazy.text, self))
         except Fault as fault:
             if lazy.element is not None:
                 fault.place_in_attribute(lazy.element, lazy.attribute)
-            fault.passing = phrase("the property '{name}' is used here", name=name)
+            fault.next_note = phrase("the property '{name}' is used here", name=name)
             raise
         finally:
             lazy.resolving = False
-            session.place, session.attribute = around
-            chain.pop()
+            session.current_node, session.current_attribute = outer_location
+            property_stack.pop()
         self.values[name] = value
         return value
 

@@ -26,8 +26,8 @@ _PYTHON = (
     *("issubclass", "ord", "range", "repr", "reversed", "set", "slice", "sorted", "sum", "tuple", "type"),
     *("vars", "zip"),
 )
-_LARGEST_FACTORIAL = 2_000
-_MOST_LISTS = 1_000
+_MAX_FACTORIAL = 2_000
+_MAX_LISTS = 1_000
 
 
 def _range(*arguments: Any) -> range:
@@ -51,8 +51,8 @@ def _sum(items: Any, start: Any = 0) -> Any:
     summands = list(items)
     if isinstance(start, (int, float, complex)):
         return sum(summands, start)
-    if len(summands) > _MOST_LISTS:
-        raise RefusalError(phrase("it adds more than {most_lists:,} lists", most_lists=_MOST_LISTS))
+    if len(summands) > _MAX_LISTS:
+        raise RefusalError(phrase("it adds more than {most_lists:,} lists", most_lists=_MAX_LISTS))
     total = start
     for summand in summands:
         total = sandbox.add(total, summand)
@@ -76,9 +76,12 @@ _GUARDED: dict[str, Any] = {"range": _range, "round": _round, "sum": _sum, "type
 
 
 def _factorial(n: Any) -> int:
-    if isinstance(n, int) and n > _LARGEST_FACTORIAL:
+    if isinstance(n, int) and n > _MAX_FACTORIAL:
         raise RefusalError(
-            phrase("the factorial of more than {largest_factorial:,}", largest_factorial=_LARGEST_FACTORIAL)
+            phrase(
+                ("the factorial of a number above {largest_factorial:,} is too large"),
+                largest_factorial=_MAX_FACTORIAL,
+            )
         )
     return math.factorial(n)
 
@@ -87,9 +90,13 @@ def _of_two(name: str) -> Callable[..., int]:
     function = getattr(math, name)
 
     def guarded(n: Any, *k: Any) -> int:
-        if isinstance(n, int) and n > _LARGEST_FACTORIAL:
+        if isinstance(n, int) and n > _MAX_FACTORIAL:
             raise RefusalError(
-                phrase("'{name}' of more than {largest_factorial:,}", name=name, largest_factorial=_LARGEST_FACTORIAL)
+                phrase(
+                    ("'{name}' receives a number above {largest_factorial:,}"),
+                    name=name,
+                    largest_factorial=_MAX_FACTORIAL,
+                )
             )
         result: int = function(n, *k)
         return result

@@ -6,7 +6,7 @@ tokens are joined to a string. The result is not evaluated again.
 The lexer splits a text into ``${expressions}``, ``$(substitutions)`` and literal text. It tries the rules of
 ros/xacro in this order at each position:
 
-- Two or more dollars before a brace or parenthesis lose one of them and make the bracket literal.
+- If two or more dollars precede a brace or parenthesis, one dollar is removed and the bracket is literal.
 - ``${`` extends to the first ``}``.
 - ``$(`` extends to the first ``)``.
 - Anything else is literal text, which may contain single dollars.
@@ -36,58 +36,60 @@ from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
-_KNOWN = phrase("the commands are {commands}", commands=joined(_COMMANDS))
-_NO_DIRECTORY = phrase("ros/xacro knows the command 'dirname', but it always fails")
-_INSTEAD_OF_DIRECTORY = phrase(
-    "write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one"
-)
-_REFERENCE = r"\$\(([^()$]+)\)"  # not compiled here because few files need it
+_COMMANDS_HINT = phrase("the commands are {commands}", commands=joined(_COMMANDS))
+_DIRNAME_WARNING = phrase("ros/xacro knows the command 'dirname', but it always fails")
+_DIRNAME_HINT = phrase("write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one")
+_SUBSTITUTION = r"\$\(([^()$]+)\)"  # not compiled here because few files need it
 
 
 def substitute(body: str, session: Context) -> str:
     """Return the value of ``$(body)``.
 
     Raises:
-        Fault: if the command is unknown, lacks arguments, or finds nothing. The offsets are relative to the body.
+        Fault: if the command does not exist, lacks arguments, or fails. The offsets are relative to the body.
     """
     if not body:
         return "$()"
     if body == "cwd":
         return session.working_directory
     if body.startswith("eval "):
-        return _evaluated(body[len("eval ") :], session)
+        return _eval_text(body[len("eval ") :], session)
     _check_characters(body)
-    value = _command(body, session, only_find=False)
+    value = _run_command(body, session, only_find=False)
     if "$(" not in value:
         return value
-    return re.sub(_REFERENCE, lambda match: _found_again(match[0], match[1], session), value)
+    return re.sub(_SUBSTITUTION, lambda match: _evaluate_find(match[0], match[1], session), value)
 
 
 def _check_characters(body: str) -> None:
     for sign in "$(":
-        at = body.find(sign)
-        if at >= 0:
-            raise Fault("XAC213", phrase("'{sign}' is not allowed inside '$(...)'", sign=sign), at, at + 1)
+        offset = body.find(sign)
+        if offset >= 0:
+            raise Fault("XAC213", phrase("'{sign}' is not allowed inside '$(...)'", sign=sign), offset, offset + 1)
 
 
-def _found_again(text: str, body: str, session: Context) -> str:
+def _evaluate_find(text: str, body: str, session: Context) -> str:
     words = body.split()
     if words and words[0] in _COMMANDS and words[0] != "find":
         return text
-    return _command(body, session, only_find=True)
+    return _run_command(body, session, only_find=True)
 
 
-def _command(body: str, session: Context, *, only_find: bool) -> str:
+def _run_command(body: str, session: Context, *, only_find: bool) -> str:
     words = [word for word in body.split(" ") if word]
     if not words:
-        raise Fault("XAC213", phrase("there is no command between the parentheses"), hint=_KNOWN)
+        raise Fault("XAC213", phrase("there is no command between the parentheses"), hint=_COMMANDS_HINT)
     command = words[0]
-    evaluate = _EVALUATE.get(command)
+    evaluate = _COMMAND_FUNCTIONS.get(command)
     if evaluate is None:
-        hint = did_you_mean(command, _COMMANDS) or _KNOWN
-        at = body.find(command)
+        hint = did_you_mean(command, _COMMANDS) or _COMMANDS_HINT
+        offset = body.find(command)
         raise Fault(
-            "XAC212", phrase("unknown substitution command '{command}'", command=command), at, at + len(command), hint
+            "XAC212",
+            phrase("there is no substitution command '{command}'", command=command),
+            offset,
+            offset + len(command),
+            hint,
         )
     try:
         return evaluate(words[1:], session)
@@ -98,47 +100,49 @@ def _command(body: str, session: Context, *, only_find: bool) -> str:
         raise
 
 
-def _one(command: str, what: str, words: list[str]) -> str:
+def _single_argument(command: str, argument_kind: str, words: list[str]) -> str:
     if len(words) != 1:
         raise Fault(
             "XAC213",
             phrase(
                 "'$({command} ...)' takes one {what}, but {count} are given",
                 command=command,
-                what=term(what),
+                what=term(argument_kind),
                 count=len(words),
             )
             if words
-            else phrase("'$({command} ...)' takes one {what}, but none is given", command=command, what=term(what)),
+            else phrase(
+                "'$({command} ...)' takes one {what}, but none is given", command=command, what=term(argument_kind)
+            ),
         )
     return words[0]
 
 
-def _argument(words: list[str], session: Context) -> str:
-    return session.argument(_one("arg", "name", words))
+def _arg_value(words: list[str], session: Context) -> str:
+    return session.argument(_single_argument("arg", "name", words))
 
 
-def _package(words: list[str], session: Context) -> str:
-    return session.package(_one("find", "package", words))
+def _package_folder(words: list[str], session: Context) -> str:
+    return session.package(_single_argument("find", "package", words))
 
 
-def _variable(words: list[str], _session: Context) -> str:
-    name = _one("env", "name", words)
-    value = _environment(name)
+def _env_value(words: list[str], _session: Context) -> str:
+    name = _single_argument("env", "name", words)
+    value = _environment_value(name)
     if value is None:
         hint = phrase("write $(optenv {name} DEFAULT) if it may be unset", name=name)
         raise Fault("XAC214", phrase("the environment variable '{name}' is not set", name=name), hint=hint)
     return value
 
 
-def _optional_variable(words: list[str], _session: Context) -> str:
+def _optenv_value(words: list[str], _session: Context) -> str:
     if not words:
         raise Fault("XAC213", phrase("'$(optenv ...)' takes a name and a default, but neither is given"))
-    value = _environment(words[0])
+    value = _environment_value(words[0])
     return " ".join(words[1:]) if value is None else value
 
 
-def _environment(name: str) -> str | None:
+def _environment_value(name: str) -> str | None:
     """Return the value of an environment variable, or None if it is not set.
 
     Variables that every ROS installation sets have a default value.
@@ -151,21 +155,21 @@ def _environment(name: str) -> str | None:
     return ROS_VARIABLES.get(name)
 
 
-def _directory(_words: list[str], session: Context) -> str:
-    session.warn("XAC904", _NO_DIRECTORY, hint=_INSTEAD_OF_DIRECTORY)
+def _dirname_value(_words: list[str], session: Context) -> str:
+    session.warn("XAC904", _DIRNAME_WARNING, hint=_DIRNAME_HINT)
     return os.path.dirname(os.path.realpath(session.file))  # noqa: PTH120 - pathlib takes long to import
 
 
-_EVALUATE: dict[str, Callable[[list[str], Context], str]] = {
-    "arg": _argument,
-    "find": _package,
-    "env": _variable,
-    "optenv": _optional_variable,
-    "dirname": _directory,
+_COMMAND_FUNCTIONS: dict[str, Callable[[list[str], Context], str]] = {
+    "arg": _arg_value,
+    "find": _package_folder,
+    "env": _env_value,
+    "optenv": _optenv_value,
+    "dirname": _dirname_value,
 }
 
 
-def _evaluated(source: str, session: Context) -> str:
+def _eval_text(source: str, session: Context) -> str:
     scope = Scope(None, session, _names_for_eval(session))
     try:
         return as_text(compile_expression(source).evaluate(scope))
@@ -178,18 +182,18 @@ def _evaluated(source: str, session: Context) -> str:
 
 
 def _names_for_eval(session: Context) -> dict[str, Any]:
-    names: dict[str, Any] = {name: _typed(value) for name, value in session.arguments.items()}
+    names: dict[str, Any] = {name: _typed_value(value) for name, value in session.arguments.items()}
     names.update(MATHEMATICS)
     names.update({"list": list, "dict": dict, "map": map, "str": str, "float": float, "int": int})
     names.update({"true": True, "false": False})
-    names["arg"] = lambda name: _typed(session.argument(name))
-    names["env"] = lambda name: _variable([name], session)
-    names["optenv"] = lambda name, default="": default if (value := _environment(name)) is None else value
+    names["arg"] = lambda name: _typed_value(session.argument(name))
+    names["env"] = lambda name: _env_value([name], session)
+    names["optenv"] = lambda name, default="": default if (value := _environment_value(name)) is None else value
     names["find"] = session.package
     return names
 
 
-def _typed(value: str) -> Any:
+def _typed_value(value: str) -> Any:
     try:
         return float(value) if "." in value else int(value)
     except ValueError:
@@ -197,7 +201,7 @@ def _typed(value: str) -> Any:
 
 
 def package_fault(error: LinkwrightError) -> Fault:
-    """Return the fault for a package that is not found, with the message of the package finder."""
+    """Convert the package finder's error for a missing package to a fault with the same message."""
     diagnostic = error.diagnostics[0]
     fault = Fault(diagnostic.code, diagnostic.message, hint=diagnostic.hint)
     fault.notes.extend(diagnostic.notes)
@@ -253,36 +257,36 @@ def tokenize(text: str) -> list[Token]:
         return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # the usual form of a text with a dollar
     pattern = re.compile(_PIECE)
     tokens: list[Token] = []
-    at = 0
-    while at < len(text):
-        match = pattern.match(text, at)
+    offset = 0
+    while offset < len(text):
+        match = pattern.match(text, offset)
         if match is None:
-            raise _not_a_token(text, at)
+            raise _token_fault(text, offset)
         name = match.lastgroup
         assert name is not None, "every alternative of the pattern is named"
-        tokens.append(Token(_KINDS[name], match[name], at, match.end()))
-        at = match.end()
+        tokens.append(Token(_KINDS[name], match[name], offset, match.end()))
+        offset = match.end()
     return tokens
 
 
-def _not_a_token(text: str, at: int) -> Fault:
+def _token_fault(text: str, offset: int) -> Fault:
     for opening, closing in (("${", "}"), ("$(", ")")):
-        if text.startswith(opening, at):
+        if text.startswith(opening, offset):
             message = phrase(
-                "'{opening}' is never closed: '{shortened}'", opening=opening, shortened=_shortened(text[at:])
+                "'{opening}' is never closed: '{shortened}'", opening=opening, shortened=_shorten(text[offset:])
             )
-            return Fault("XAC101", message, at, len(text), phrase("close it with '{closing}'", closing=closing))
-    message = phrase("'$$' means nothing here: '{shortened}'", shortened=_shortened(text[at:]))
+            return Fault("XAC101", message, offset, len(text), phrase("close it with '{closing}'", closing=closing))
+    message = phrase("'$$' has no meaning here: '{shortened}'", shortened=_shorten(text[offset:]))
     hint = phrase("'$$' is only for a literal '${' or '$('; write one '$' for a dollar sign")
-    return Fault("XAC101", message, at, at + 2, hint)
+    return Fault("XAC101", message, offset, offset + 2, hint)
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 _Part = Callable[["Scope"], Any]
-_BRACKET = len("${")
+_BRACKET_LENGTH = len("${")
 
 
 class Template:
@@ -300,40 +304,40 @@ class Template:
         self.changes = False
         tokens = tokenize(text)
         parts = [None if token.kind is TokenKind.TEXT else self._part(token) for token in tokens]
-        only = parts[0] if len(parts) == 1 else None
-        self.evaluate: _Part = only or _joined([token.text for token in tokens], parts)
+        single_part = parts[0] if len(parts) == 1 else None
+        self.evaluate: _Part = single_part or _joined_parts([token.text for token in tokens], parts)
 
     def _part(self, token: Token) -> _Part:
         kind, text, start, end = token
         if "$" in text:
             return self._nested(token)
         if kind is TokenKind.SUBSTITUTION:
-            return _placed(lambda scope: substitute(text, scope.session), start, end)
+            return _with_offsets(lambda scope: substitute(text, scope.session), start, end)
         try:
             expression = Expression(text)
         except Fault as fault:
-            fault.within(start, end, start + _BRACKET)
+            fault.within(start, end, start + _BRACKET_LENGTH)
             raise
         self.changes = self.changes or expression.changes
-        return _placed(expression.evaluate, start, end)
+        return _with_offsets(expression.evaluate, start, end)
 
     def _nested(self, token: Token) -> _Part:
-        """Return the part for a token whose content contains other tokens.
+        """Return the evaluator for a token that contains other tokens.
 
-        The content is evaluated first, and its value is the source of the token.
+        The inner tokens are evaluated first; their value is the source of the outer token.
         """
         kind, text, start, end = token
-        inner = _placed(compile_template(text).evaluate, start, end)
+        inner = _with_offsets(compile_template(text).evaluate, start, end)
         self.changes = True  # the source, and so its effects, are not known before the evaluation
 
         def part(scope: Scope) -> Any:
-            source = _as_text(inner(scope))
+            source = _checked_text(inner(scope))
             try:
                 if kind is TokenKind.SUBSTITUTION:
                     return substitute(source, scope.session)
                 return compile_expression(source).evaluate(scope)
             except Fault as fault:
-                fault.within(start, end, start + _BRACKET if source == text else None)
+                fault.within(start, end, start + _BRACKET_LENGTH if source == text else None)
                 raise
 
         return part
@@ -341,7 +345,7 @@ class Template:
 
 _compiler = TextCompiler(Template)
 templates = _compiler.forms
-"""The templates compiled so far, by their texts."""
+"""The templates compiled so far, by text."""
 
 
 def compile_template(text: str) -> Template:
@@ -353,29 +357,29 @@ def compile_template(text: str) -> Template:
     return templates.get(text) or _compiler.make(text)
 
 
-def _placed(evaluate: _Part, start: int, end: int) -> _Part:
+def _with_offsets(evaluate: _Part, start: int, end: int) -> _Part:
     def part(scope: Scope) -> Any:
         try:
             return evaluate(scope)
         except Fault as fault:
-            fault.within(start, end, start + _BRACKET)
+            fault.within(start, end, start + _BRACKET_LENGTH)
             raise
 
     return part
 
 
-def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
+def _joined_parts(texts: list[str], parts: list[_Part | None]) -> _Part:
     """Return a function that evaluates the parts of a text and joins their values to a string.
 
-    Where a part is None, the text at the same index is used.
+    If a part is None, the text at the same index is used instead.
     """
-    evaluated = [(place, part) for place, part in enumerate(parts) if part is not None]
+    indexed_parts = [(index, part) for index, part in enumerate(parts) if part is not None]
 
     def join(scope: Scope) -> str:
         pieces = texts.copy()
-        for place, part in evaluated:
+        for place, part in indexed_parts:
             value = part(scope)
-            pieces[place] = value if value.__class__ is str else _as_text(value)
+            pieces[place] = value if value.__class__ is str else _checked_text(value)
         try:
             return sandbox.joined(pieces)
         except RefusalError as error:
@@ -384,7 +388,7 @@ def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
     return join
 
 
-def _as_text(value: Any) -> str:
+def _checked_text(value: Any) -> str:
     if value.__class__ is str:
         return value
     try:

@@ -22,7 +22,7 @@ UNITS = {
     "!foot": 0.3048,
     "!inches": 0.0254,
 }
-"""One of each unit in metres or radians."""
+"""The size of each unit in metres or radians, by YAML tag."""
 
 
 class YamlMapping(dict[Any, Any]):
@@ -45,7 +45,7 @@ class YamlDict(dict[Any, Any]):
             value = dict.__getitem__(self, key)
         except KeyError:
             raise AttributeError(phrase("the YAML mapping has no key '{key}'", key=key)) from None
-        return value if value.__class__ in _SCALARS else wrapped(value)
+        return value if value.__class__ in _SCALAR_TYPES else wrapped(value)
 
 
 class YamlList(list[Any]):
@@ -60,11 +60,11 @@ class YamlList(list[Any]):
         return map(wrapped, super().__iter__())
 
 
-_SCALARS: frozenset[type] = frozenset({str, int, float, bool})
-"""The types of most leaves of data; they have no items."""
+_SCALAR_TYPES: frozenset[type] = frozenset({str, int, float, bool})
+"""The types of most values without items."""
 
-COPIED: frozenset[type] = frozenset({YamlDict, YamlList})
-"""The types that are copied at every access."""
+COPIED_TYPES: frozenset[type] = frozenset({YamlDict, YamlList})
+"""The types whose values are copied at every access."""
 
 
 def wrapped(value: Any) -> Any:
@@ -108,7 +108,7 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
 
 
 cache: BoundedCache[str, Any] = BoundedCache(200, lambda *_: 1)
-"""Text -> its value, for texts without tags, whose values never differ; a caller gets a copy."""
+"""The values of YAML texts without tags, by text; a caller receives a copy."""
 
 
 def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
@@ -123,8 +123,8 @@ def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
         return None if node is None else construct(loader, node)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
-        words = error.problem or error.context or "not valid YAML"
-        raise YamlError(words, mark.line + 1 if mark else 0, mark.column + 1 if mark else 0) from None
+        problem = error.problem or error.context or "not valid YAML"
+        raise YamlError(problem, mark.line + 1 if mark else 0, mark.column + 1 if mark else 0) from None
     except (yaml.YAMLError, ValueError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise YamlError(str(error).partition("\n")[0] or "not valid YAML") from None
     finally:
@@ -133,25 +133,25 @@ def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
 
 def dotted(value: Any) -> Any:
     """Return a deep copy of a value whose mappings are accessible with a dot."""
-    return wrapped(_copied(value, {}))
+    return wrapped(_deep_copy(value, {}))
 
 
-def _copied(value: Any, seen: dict[int, Any]) -> Any:
+def _deep_copy(value: Any, copies: dict[int, Any]) -> Any:
     if not isinstance(value, (dict, list)):
         return value
-    known = seen.get(id(value))
-    if known is not None:
-        return known
+    existing_copy = copies.get(id(value))
+    if existing_copy is not None:
+        return existing_copy
     if isinstance(value, dict):
-        mapping = seen[id(value)] = YamlMapping(value)
+        mapping = copies[id(value)] = YamlMapping(value)
         for key, item in value.items():
-            if item.__class__ not in _SCALARS and isinstance(item, (dict, list)):
-                mapping[key] = _copied(item, seen)
+            if item.__class__ not in _SCALAR_TYPES and isinstance(item, (dict, list)):
+                mapping[key] = _deep_copy(item, copies)
         return mapping
-    sequence = seen[id(value)] = value.copy()
-    for at, item in enumerate(value):
-        if item.__class__ not in _SCALARS and isinstance(item, (dict, list)):
-            sequence[at] = _copied(item, seen)
+    sequence = copies[id(value)] = value.copy()
+    for index, item in enumerate(value):
+        if item.__class__ not in _SCALAR_TYPES and isinstance(item, (dict, list)):
+            sequence[index] = _deep_copy(item, copies)
     return sequence
 
 
@@ -167,18 +167,25 @@ def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
     def with_unit(loader: Any, tag: str, node: Any) -> float:
         return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]
 
-    UnitLoader.add_multi_constructor("!", _only_units(with_unit))
+    UnitLoader.add_multi_constructor("!", _reject_other_tags(with_unit))
     return UnitLoader
 
 
-def _only_units(construct: Callable[[Any, str, Any], float]) -> Callable[[Any, str, Any], float]:
+def _reject_other_tags(construct: Callable[[Any, str, Any], float]) -> Callable[[Any, str, Any], float]:
     def constructor(loader: Any, tag: str, node: Any) -> float:
         if f"!{tag}" not in UNITS:
             from yaml.constructor import ConstructorError
 
-            known = ", ".join(UNITS)
+            supported_tags = ", ".join(UNITS)
             raise ConstructorError(
-                None, None, phrase("unknown tag '!{tag}' (known are {known})", tag=tag, known=known), node.start_mark
+                None,
+                None,
+                phrase(
+                    ("the YAML tag '!{tag}' is not supported; the supported tags are {known}"),
+                    tag=tag,
+                    known=supported_tags,
+                ),
+                node.start_mark,
             )
         return construct(loader, tag, node)
 

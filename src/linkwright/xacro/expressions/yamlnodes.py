@@ -12,19 +12,19 @@ import yaml
 
 from linkwright.loading.lean_typing import Any
 
-_PREFIX = "tag:yaml.org,2002:"
-_MOST_REMEMBERED = 10_000
-_DEEPEST = 200
-_MOST_PAIRS = 100_000
-_LONGEST_NUMBER = 4_000
-_MOST_LARGE_NUMBERS = 1_000
+_TAG_PREFIX = "tag:yaml.org,2002:"
+_MAX_CACHED_TAGS = 10_000
+_MAX_DEPTH = 200
+_MAX_MERGED_PAIRS = 100_000
+_MAX_NUMBER_LENGTH = 4_000
+_MAX_LARGE_NUMBERS = 1_000
 
 tags: dict[str, str] = {}
-"""Plain scalar -> its tag, which does not depend on the place of the scalar."""
+"""The tags of plain scalars, by text; a tag does not depend on the location of the scalar."""
 
 
 class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """The safe loader with limits, which also records the tags of plain scalars.
+    """PyYAML's safe loader with limits and a cache of the tags of plain scalars.
 
     Without the limits, a file of a few lines could exhaust the memory, or overflow the stack of libyaml's composer.
     """
@@ -39,7 +39,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
             return super().resolve(kind, value, implicit)
         tag = tags.get(value)
         if tag is None:
-            if len(tags) >= _MOST_REMEMBERED:
+            if len(tags) >= _MAX_CACHED_TAGS:
                 tags.clear()
             tag = tags[value] = super().resolve(kind, value, implicit)
         return tag
@@ -47,8 +47,8 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
     def descend_resolver(self, node: Any, _index: Any) -> None:
         """Check the nesting depth of a node; the path to a node does not affect its tag."""
         self.depth += 1
-        if self.depth > _DEEPEST:
-            message = f"the values are nested more than {_DEEPEST} deep"
+        if self.depth > _MAX_DEPTH:
+            message = f"the values are nested more than {_MAX_DEPTH} deep"
             raise yaml.composer.ComposerError(None, None, message, node.start_mark)
 
     def ascend_resolver(self) -> None:
@@ -60,14 +60,14 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
 
         Keys with colliding hashes make a mapping slow.
         """
-        if len(node.value) > _LONGEST_NUMBER:
-            message = f"the number has more than {_LONGEST_NUMBER:,} characters"
+        if len(node.value) > _MAX_NUMBER_LENGTH:
+            message = f"the number has more than {_MAX_NUMBER_LENGTH:,} characters"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         number = super().construct_yaml_int(node)
         if abs(number) >= sys.hash_info.modulus:
             self.large += 1
-            if self.large > _MOST_LARGE_NUMBERS:
-                message = f"more than {_MOST_LARGE_NUMBERS:,} numbers have more than 60 bits"
+            if self.large > _MAX_LARGE_NUMBERS:
+                message = f"more than {_MAX_LARGE_NUMBERS:,} numbers have more than 60 bits"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return number
 
@@ -75,12 +75,12 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         """Add the pairs of merged mappings to a mapping, unless there are too many."""
         super().flatten_mapping(node)
         self.merged += len(node.value)
-        if self.merged > _MOST_PAIRS:
-            message = f"the merged mappings have more than {_MOST_PAIRS:,} keys"
+        if self.merged > _MAX_MERGED_PAIRS:
+            message = f"the merged mappings have more than {_MAX_MERGED_PAIRS:,} keys"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
 
 
-NodeLoader.add_constructor(f"{_PREFIX}int", NodeLoader.construct_yaml_int)
+NodeLoader.add_constructor(f"{_TAG_PREFIX}int", NodeLoader.construct_yaml_int)
 
 
 class _UnusualError(Exception):
@@ -102,13 +102,13 @@ def construct(loader: Any, node: Any) -> Any:
 class _Construction:
     def __init__(self, loader: Any) -> None:
         self._scalars = {
-            f"{_PREFIX}int": loader.construct_yaml_int,
-            f"{_PREFIX}float": loader.construct_yaml_float,
-            f"{_PREFIX}bool": loader.construct_yaml_bool,
-            f"{_PREFIX}null": loader.construct_yaml_null,
+            f"{_TAG_PREFIX}int": loader.construct_yaml_int,
+            f"{_TAG_PREFIX}float": loader.construct_yaml_float,
+            f"{_TAG_PREFIX}bool": loader.construct_yaml_bool,
+            f"{_TAG_PREFIX}null": loader.construct_yaml_null,
         }
         self._begun: set[int] = set()
-        self._done: dict[int, Any] = {}  # the value of each node, which aliases share
+        self._values_by_id: dict[int, Any] = {}  # the value of each node, which aliases share
 
     def value(self, node: Any) -> Any:
         tag = node.tag
@@ -120,8 +120,8 @@ class _Construction:
                 raise _UnusualError
             return convert(node)
         key = id(node)
-        if key in self._done:
-            return self._done[key]
+        if key in self._values_by_id:
+            return self._values_by_id[key]
         if key in self._begun:
             raise _UnusualError
         self._begun.add(key)
@@ -131,7 +131,7 @@ class _Construction:
             value = [self.value(item) for item in node.value]
         else:
             raise _UnusualError
-        self._done[key] = value
+        self._values_by_id[key] = value
         return value
 
     def _mapping(self, node: Any) -> dict[Any, Any]:

@@ -16,35 +16,35 @@ from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
 from linkwright.xmltree import Document, Element
 
-_MISSING = "XML101"
-_OF_PATTERNS = ("*", "[", "?")
+_MISSING_FILE_CODE = "XML101"
+_PATTERN_CHARACTERS = ("*", "[", "?")
 
 
 def include(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:include>``: insert the content of one file, or of all matching files."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("filename",), ("ns", "optional"))
-    scope, macros = _tables(expander, site)
+    scope, macros = _target_tables(expander, site)
     optional = _is_optional(expander, node)
     child = next(node.elements(), None)
     if child is not None:
         session.warn("XAC503", phrase("'{tag}' inside an include has no effect", tag=child.tag), child.span())
     contents: list[Element] = []
-    for path in _paths(expander, site):
+    for path in _included_paths(expander, site):
         session.depends_on(path)
-        container = _content(expander, site, path, scope, macros, optional=optional)
+        container = _expand_file(expander, site, path, scope, macros, optional=optional)
         if container is not None:
             expander.lift_namespaces(container, site)
             contents.append(container)
     output = site.parent.children
-    mark = expander.sweeper.sweep(output, followed=site.followed)
+    needs_mark = expander.sweeper.sweep(output, followed=site.has_followers)
     for container in contents:
         expander.splice(container, site)
-    if mark:
+    if needs_mark:
         expander.sweeper.mark(output)
 
 
-def _tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
+def _target_tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
     if not site.node.attributes.get("ns"):
         return site.scope, site.macros
     name = expander.text_value(site.node, "ns", site.scope)
@@ -57,21 +57,21 @@ def _tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
 
 
 def _is_optional(expander: Expander, node: Element) -> bool:
-    written = node.attributes.get("optional")
-    if written is None:
+    text = node.attributes.get("optional")
+    if text is None:
         return False
     try:
-        return truth(written)
+        return truth(text)
     except ValueError:
-        message = phrase("'optional' is '{written}', which is neither true nor false", written=written)
+        message = phrase("'optional' is '{written}', which is neither true nor false", written=text)
         hint = phrase("write true or false; it is not evaluated")
         expander.fail_at("XAC305", message, node, node.attribute_span("optional"), hint)
 
 
-def _paths(expander: Expander, site: Site) -> list[str]:
+def _included_paths(expander: Expander, site: Site) -> list[str]:
     name = expander.text_value(site.node, "filename", site.scope)
     path = expander.session.absolute(name)
-    if not any(sign in path for sign in _OF_PATTERNS):
+    if not any(character in path for character in _PATTERN_CHARACTERS):
         return [path]
     from glob import glob
 
@@ -83,31 +83,31 @@ def _paths(expander: Expander, site: Site) -> list[str]:
     return paths
 
 
-def _content(
+def _expand_file(
     expander: Expander, site: Site, path: str, scope: Scope, macros: MacroTable, *, optional: bool
 ) -> Element | None:
     session = expander.session
-    around, file = session.frame, session.file
+    outer_frame, outer_file = session.frame, session.file
     try:
-        document = _document(expander, site, path)
+        document = _read_document(expander, site, path)
     except LinkwrightError as error:
-        if optional and error.diagnostics[0].code == _MISSING:
+        if optional and error.diagnostics[0].code == _MISSING_FILE_CODE:
             return None
         raise
-    expander.enter(Frame(None, site.node, around))
+    expander.enter(Frame(None, site.node, outer_frame))
     session.file = path
     try:
         root = document.root
         attributes = expander.attributes(root, scope)
-        declared = {name: value for name, value in attributes.items() if name.startswith("xmlns:")}
-        container = Container(site.node.tag, declared)
+        namespaces = {name: value for name, value in attributes.items() if name.startswith("xmlns:")}
+        container = Container(site.node.tag, namespaces)
         expander.children(root, container, scope, macros)
     finally:
-        session.frame, session.file = around, file
+        session.frame, session.file = outer_frame, outer_file
     return container
 
 
-def _document(expander: Expander, site: Site, path: str) -> Document:
+def _read_document(expander: Expander, site: Site, path: str) -> Document:
     try:
         return expander.session.read(path)
     except LinkwrightError as error:
@@ -139,25 +139,25 @@ def _nearest_file(path: str) -> Phrase | None:
         return phrase("there is no folder '{folder}'", folder=display_path(folder))
 
 
-_OPTIONAL = ("value", "default", "remove", "scope", "lazy_eval")
+_OPTIONAL_ATTRIBUTES = ("value", "default", "remove", "scope", "lazy_eval")
 
 
 def define_property(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:property>``: define or remove a property."""
     node, scope = site.node, site.scope
     expander.sweep(site)
-    check_attributes(expander, node, ("name",), _OPTIONAL)
+    check_attributes(expander, node, ("name",), _OPTIONAL_ATTRIBUTES)
     name = _name(expander, node, scope)
     attributes = node.attributes
     if len(attributes) == 2 and "value" in attributes:  # the usual case, without further attributes
         warn_of_global(expander, node, name, "name")
         scope.define(name, attributes["value"], lazy=True, element=node)
         return
-    remove = _flag(expander, node, "remove", scope, default=False)
-    if ("value" in attributes) + ("default" in attributes) + remove > 1:
+    is_removal = _boolean_attribute(expander, node, "remove", scope, default=False)
+    if ("value" in attributes) + ("default" in attributes) + is_removal > 1:
         message = phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
         expander.fail_at("XAC304", message, node, node.span(), phrase("keep one of them"))
-    if remove and _remove(expander, node, name, scope):
+    if is_removal and _remove(expander, node, name, scope):
         return
     if "default" in attributes:
         if "scope" in attributes:
@@ -169,13 +169,13 @@ def define_property(expander: Expander, site: Site) -> None:
             return
     attribute = next((key for key in ("value", "default") if key in attributes), None)
     if attribute is None:
-        target, _ = _target(expander, node, name, scope)
+        target, _ = _target_scope(expander, node, name, scope)
         target.bind(f"**{name}", node)
         return
-    lazy = _flag(expander, node, "lazy_eval", scope, default=True)
-    target, local = _target(expander, node, name, scope)
+    is_lazy = _boolean_attribute(expander, node, "lazy_eval", scope, default=True)
+    target, is_local = _target_scope(expander, node, name, scope)
     warn_of_global(expander, node, name, "name")
-    if lazy and local:
+    if is_lazy and is_local:
         target.define(name, attributes[attribute], lazy=True, element=node, attribute=attribute)
     else:
         target.define(name, expander.value(node, attribute, scope))
@@ -195,7 +195,7 @@ def _name(expander: Expander, node: Element, scope: Scope) -> str:
     return name
 
 
-def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, default: bool) -> bool:
+def _boolean_attribute(expander: Expander, node: Element, attribute: str, scope: Scope, *, default: bool) -> bool:
     if not node.attributes.get(attribute):
         return default
     value = expander.value(node, attribute, scope)
@@ -225,12 +225,12 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
     return True
 
 
-def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
-    """Return the scope in which a property is defined, and whether this is the scope of its tag."""
-    where = node.attributes.get("scope")
-    if where == "global":
+def _target_scope(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
+    """Return the scope in which to define a property, and whether that scope is the scope of the tag."""
+    scope_name = node.attributes.get("scope")
+    if scope_name == "global":
         return scope.document_scope(), False
-    if where != "parent":
+    if scope_name != "parent":
         return scope, True
     target = scope.parent
     if not isinstance(scope, Namespace):
@@ -244,11 +244,11 @@ def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple
 
 
 _NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here because few files need it
-"""A name in XML, nearly."""
+"""An approximation of the pattern for names in XML."""
 
 
 def declare_argument(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:arg name default/>``: give an argument its default unless it has a value."""
+    """Expand ``<xacro:arg name default/>``: set an argument to its default unless it has a value."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("name", "default"), ())
     name = node.attributes["name"]
@@ -262,28 +262,28 @@ def expand_condition(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:if value>`` or ``<xacro:unless value>``: insert or omit the content."""
     node, scope, session = site.node, site.scope, expander.session
     output = site.parent.children
-    waiting: list[Any] = []  # the marker stays below the tag, unless a tag inside moves it
-    if expander.sweeper.sweep(output, followed=site.followed):
-        expander.sweeper.mark(waiting)
+    marker_holder: list[Any] = []  # holds the marker until the end of the tag, unless a tag inside moves it
+    if expander.sweeper.sweep(output, followed=site.has_followers):
+        expander.sweeper.mark(marker_holder)
     check_attributes(expander, node, ("value",), ())
     value = expander.value(node, "value", scope)
     try:
-        keep = truth(value)
+        condition = truth(value)
     except ValueError:
         message = phrase(
             "the condition '{value}' gives '{other_value}', which is neither true nor false",
             value=node.attributes["value"],
             other_value=value,
         )
-        hint = phrase("it must be true, false or an integer")
+        hint = phrase("write a condition that gives true, false or an integer")
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
-    if keep is (node.tag == "xacro:if"):
+    if condition is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
             expander.attributes(node, scope)  # ros/xacro evaluates the attributes of inserted elements a second time
         container = Container(node.tag)
         expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
-    if waiting:
+    if marker_holder:
         expander.sweeper.mark(output)
 
 
@@ -300,8 +300,8 @@ def insert_block(expander: Expander, site: Site) -> None:
     elif f"*{name}" in scope:
         expander.element(scope.lookup(f"*{name}"), site.parent.children, scope, site.macros)
     else:
-        known = [block.lstrip("*") for block in scope.blocks()]
-        hint = did_you_mean(name, known)
+        block_names = [block.lstrip("*") for block in scope.blocks()]
+        hint = did_you_mean(name, block_names)
         if hint is None and name in scope:
             hint = phrase("'{name}' is a property with a value: write ${{{name}}}", name=name)
         expander.fail_at(
@@ -310,7 +310,7 @@ def insert_block(expander: Expander, site: Site) -> None:
 
 
 def expand_element(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:element xacro:name>``: create an element whose tag is evaluated.
+    """Expand ``<xacro:element xacro:name>``: create an element with an evaluated tag.
 
     The value of ``xacro:name`` may be any tag.
     """
@@ -320,12 +320,12 @@ def expand_element(expander: Expander, site: Site) -> None:
     tag = expander.text_value(node, "xacro:name", site.scope)
     _check_name(expander, node, "xacro:name", "element", tag)
     attributes = {name: value for name, value in node.attributes.items() if name != "xacro:name"}
-    renamed = Element(tag, attributes, node.source, node.offset)
-    renamed.children = node.children
+    element = Element(tag, attributes, node.source, node.offset)
+    element.children = node.children
     if tag.startswith("xacro:"):
-        expander.directive(site._replace(node=renamed))
+        expander.directive(site._replace(node=element))
     else:
-        expander.element(renamed, site.parent.children, site.scope, site.macros)
+        expander.element(element, site.parent.children, site.scope, site.macros)
 
 
 def set_attribute(expander: Expander, site: Site) -> None:
@@ -335,9 +335,9 @@ def set_attribute(expander: Expander, site: Site) -> None:
     name = expander.text_value(node, "name", site.scope)
     _check_name(expander, node, "name", "attribute", name)
     value = expander.value(node, "value", site.scope)
-    before = expander.unwritable.pop((id(site.parent), name), None)
-    if before is not None:  # the previous value is not written
-        expander.session.withdraw(before[1])
+    previous_warning = expander.unwritable.pop((id(site.parent), name), None)
+    if previous_warning is not None:  # the previous value is not written
+        expander.session.withdraw(previous_warning[1])
     if isinstance(site.parent, Container) and not name.startswith("xmlns:"):
         message = phrase(
             "ros/xacro drops the attribute '{name}': it is inside <{tag}>, not directly in its element",
@@ -345,48 +345,48 @@ def set_attribute(expander: Expander, site: Site) -> None:
             tag=site.parent.tag,
         )
         hint = phrase(
-            "write it directly in the element, with an expression that chooses its value,"
-            " or choose between whole elements"
+            "write it directly in the element, with an expression for its value, or put each variant of the "
+            "element in a condition"
         )
         expander.session.warn("XAC901", message, node.span(), hint)
     elif not isinstance(value, str):
-        _warn_of_value(expander, site, name, value)
+        _warn_of_non_text(expander, site, name, value)
     site.parent.attributes[name] = expander.written(node, "value", value)
 
 
-def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> None:
+def _warn_of_non_text(expander: Expander, site: Site, name: str, value: object) -> None:
     """Warn about a value that is not text.
 
     The warning is withdrawn if another value replaces this one.
     """
     node = site.node
-    kind = type(value).__name__
+    type_name = type(value).__name__
     message = (
         phrase(
             "ros/xacro fails to write the attribute '{name}': its value has the type {kind} and is not text",
             name=name,
-            kind=kind,
+            kind=type_name,
         )
         if value
         else phrase(
             "ros/xacro writes the attribute '{name}' empty: its value has the type {kind} and is not text",
             name=name,
-            kind=kind,
+            kind=type_name,
         )
     )
-    written = node.attributes["value"].strip()
-    hint = phrase("convert it to a string: {written}", written="${str(" + written[2:-1].strip() + ")}")
+    expression = node.attributes["value"].strip()
+    hint = phrase("convert it to a string: {written}", written="${str(" + expression[2:-1].strip() + ")}")
     diagnostic = expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
     if diagnostic is not None:
         expander.unwritable[id(site.parent), name] = (site.parent, diagnostic)
 
 
-def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:
+def _check_name(expander: Expander, node: Element, attribute: str, kind: str, name: str) -> None:
     if not re.fullmatch(_NAME, name):
         message = (
-            phrase("'{name}' cannot be the name of an {what}", name=name, what=term(what))
+            phrase("'{name}' cannot be the name of an {what}", name=name, what=term(kind))
             if name
-            else phrase("the name of this {what} is empty", what=term(what))
+            else phrase("this {what} has an empty name", what=term(kind))
         )
         expander.fail_at("XAC309", message, node, node.attribute_span(attribute))
 

@@ -6,7 +6,7 @@ from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, 
 from linkwright.loading.lean_typing import Any, NoReturn
 from linkwright.xacro.expander import Container, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, Frame, attribute_name, definition_elsewhere
+from linkwright.xacro.faults import Fault, Frame, attribute_name, inactive_definition
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
 from linkwright.xacro.plan import PREFIX
 from linkwright.xmltree import Element
@@ -21,7 +21,11 @@ def define_macro(expander: Expander, site: Site) -> None:
     if name == "call":
         span = node.attribute_span("name")
         expander.fail_at(
-            "XAC407", phrase("a macro cannot be named 'call'"), node, span, phrase("'xacro:call' has another meaning")
+            "XAC407",
+            phrase("a macro cannot be named 'call'"),
+            node,
+            span,
+            phrase("choose another name: 'xacro:call' is a tag of xacro"),
         )
     if "." in name:
         span = node.attribute_span("name")
@@ -29,7 +33,9 @@ def define_macro(expander: Expander, site: Site) -> None:
         expander.fail_at("XAC407", phrase("the name of the macro '{name}' has a dot", name=name), node, span, hint)
     if name.startswith(PREFIX):
         name = name[len(PREFIX) :]
-        message = phrase("the macro '{name}' is named with the prefix 'xacro:', which only its calls have", name=name)
+        message = phrase(
+            ("the definition of the macro '{name}' has the prefix 'xacro:', which only its calls must have"), name=name
+        )
         expander.session.warn("XAC411", message, node.attribute_span("name"), phrase('write name="{name}"', name=name))
     try:
         parameters = parse_parameters(node.attributes.get("params", ""))
@@ -39,8 +45,8 @@ def define_macro(expander: Expander, site: Site) -> None:
     macro = Macro(name, parameters, node)
     if len(macro.known) < len(parameters):
         names = [parameter.name for parameter in parameters]
-        twice = next(given for given in names if names.count(given) > 1)
-        message = phrase("the macro '{name}' declares its parameter '{twice}' twice", name=name, twice=twice)
+        duplicate = next(candidate for candidate in names if names.count(candidate) > 1)
+        message = phrase("the macro '{name}' declares its parameter '{twice}' twice", name=name, twice=duplicate)
         expander.session.warn("XAC413", message, node.attribute_span("params"))
     site.macros.define(name, macro)
 
@@ -54,40 +60,40 @@ def call_dynamically(expander: Expander, site: Site) -> None:
     attributes = {attribute: value for attribute, value in node.attributes.items() if attribute != "macro"}
     call = Element(PREFIX + name, attributes, node.source, node.offset)
     call.children = node.children
-    _Call(expander, site._replace(node=call), name, written_in="macro").run()
+    _Call(expander, site._replace(node=call), name, name_attribute="macro").run()
 
 
 def call_macro(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:NAME ...>``: call a macro."""
-    _Call(expander, site, site.node.tag[len(PREFIX) :], written_in=None).run()
+    _Call(expander, site, site.node.tag[len(PREFIX) :], name_attribute=None).run()
 
 
 class _Call:
     """One call of a macro.
 
-    First, the arguments and then the blocks are evaluated in the caller's scope. Then, missing arguments receive their
-    defaults. Finally, the body is expanded in a new scope.
+    The arguments and then the blocks are evaluated in the caller's scope. Missing arguments receive their defaults.
+    Finally, the body is expanded in a new scope.
     """
 
-    def __init__(self, expander: Expander, site: Site, name: str, written_in: str | None) -> None:
+    def __init__(self, expander: Expander, site: Site, name: str, name_attribute: str | None) -> None:
         self._expander = expander
         self._site = site
         self._node = site.node
         self._name = name
-        self._written_in = written_in
+        self._name_attribute = name_attribute
 
     def run(self) -> None:
         expander, site = self._expander, self._site
-        macro, around, macros = self._resolve()
-        scope = Scope(around, expander.session)
+        macro, enclosing_scope, macros = self._resolve()
+        scope = Scope(enclosing_scope, expander.session)
         missing = self._bind_arguments(macro, scope)
         missing = self._bind_blocks(macro, missing, scope)
         missing = self._bind_defaults(macro, missing, scope)
         if missing:
-            self._report_missing(macro, missing)
+            self._report_missing_parameters(macro, missing)
         container = self._expand_body(macro, scope, MacroTable(macros))
         output = site.parent.children
-        mark = expander.sweeper.sweep(output, followed=site.followed)
+        mark = expander.sweeper.sweep(output, followed=site.has_followers)
         expander.lift_namespaces(container, site)
         expander.splice(container, site)
         if mark:
@@ -97,37 +103,41 @@ class _Call:
 
     def _resolve(self) -> tuple[Macro, Scope, MacroTable]:
         site, name = self._site, self._name
-        found = site.macros.find(name)
-        if isinstance(found, Macro):
-            return found, site.scope, site.macros
-        *namespaces, last = name.split(".")
+        definition = site.macros.find(name)
+        if isinstance(definition, Macro):
+            return definition, site.scope, site.macros
+        *namespaces, macro_name = name.split(".")
         scope, macros = site.scope, site.macros
         for namespace in namespaces:
-            inner = macros.find(namespace)
-            if not isinstance(inner, MacroTable) or namespace not in scope:
-                self._report_unknown()
-            macros = inner
+            entry = macros.find(namespace)
+            if not isinstance(entry, MacroTable) or namespace not in scope:
+                self._report_missing_macro()
+            macros = entry
             scope = scope.lookup(namespace)
             if not isinstance(scope, Scope):
-                self._report_unknown()
-        found = macros.find(last) if namespaces else found
-        if not isinstance(found, Macro):
-            self._report_unknown()
-        return found, scope, macros
+                self._report_missing_macro()
+        definition = macros.find(macro_name) if namespaces else definition
+        if not isinstance(definition, Macro):
+            self._report_missing_macro()
+        return definition, scope, macros
 
-    def _report_unknown(self) -> NoReturn:
+    def _report_missing_macro(self) -> NoReturn:
         node, name = self._node, self._name
-        known = list(self._site.macros.names())
-        hint = phrase("write xacro:{tag}", tag=_TAGS[name]) if name in _TAGS else did_you_mean(name, known)
-        if hint is None and known:
-            hint = phrase("the macros defined so far are {names}", names=joined(sorted(set(known))[:10]))
+        macro_names = list(self._site.macros.names())
+        hint = (
+            phrase("write xacro:{tag}", tag=_INTENDED_TAGS[name])
+            if name in _INTENDED_TAGS
+            else did_you_mean(name, macro_names)
+        )
+        if hint is None and macro_names:
+            hint = phrase("the macros defined so far are {names}", names=joined(sorted(set(macro_names))[:10]))
         elif hint is None:
             hint = phrase("no macro is defined before this; is an include missing?")
-        span = node.span() if self._written_in is None else node.attribute_span(self._written_in)
-        elsewhere = definition_elsewhere(node.source, "macro", name, used_at=node.offset) if node.source else None
-        notes = () if elsewhere is None else (elsewhere.note,)
-        if elsewhere is not None and not known:
-            hint = elsewhere.hint or phrase("move its definition above this call")
+        span = node.span() if self._name_attribute is None else node.attribute_span(self._name_attribute)
+        other_definition = inactive_definition(node.source, "macro", name, used_at=node.offset) if node.source else None
+        notes = () if other_definition is None else (other_definition.note,)
+        if other_definition is not None and not macro_names:
+            hint = other_definition.hint or phrase("move its definition above this call")
         self._expander.fail_at("XAC401", phrase("there is no macro '{name}'", name=name), node, span, hint, *notes)
 
     # binding the parameters
@@ -142,21 +152,21 @@ class _Call:
             value = expander.value(node, name, caller) if "$" in text else text
             warn_of_global(expander, node, name, name)
             scope.define(name, value)
-        left = [parameter for parameter in macro.parameters if parameter.name not in attributes]
+        unbound = [parameter for parameter in macro.parameters if parameter.name not in attributes]
         if len(macro.known) < len(macro.parameters):  # of two parameters with one name, only the first is bound
-            seen: set[str] = set()
+            seen_names: set[str] = set()
             for parameter in macro.parameters:
-                if parameter.name in seen and parameter.name in attributes:
-                    left.append(parameter)
-                seen.add(parameter.name)
-        return left
+                if parameter.name in seen_names and parameter.name in attributes:
+                    unbound.append(parameter)
+                seen_names.add(parameter.name)
+        return unbound
 
-    def _bind_blocks(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
-        if not left and not self._node.children:
-            return left
+    def _bind_blocks(self, macro: Macro, unbound: list[Parameter], scope: Scope) -> list[Parameter]:
+        if not unbound and not self._node.children:
+            return unbound
         blocks = self._expander.blocks(self._node, self._site.scope, self._site.macros).elements()
         remaining = []
-        for parameter in left:
+        for parameter in unbound:
             if not parameter.is_block:
                 remaining.append(parameter)
                 continue
@@ -164,14 +174,14 @@ class _Call:
             if block is None:
                 self._report_missing_block(macro, parameter)
             scope.bind(parameter.name, block)
-        unused = next(blocks, None)
-        if unused is not None:
-            self._report_unused_block(macro, unused)
+        surplus_block = next(blocks, None)
+        if surplus_block is not None:
+            self._report_unused_block(macro, surplus_block)
         return remaining
 
-    def _bind_defaults(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
+    def _bind_defaults(self, macro: Macro, unbound: list[Parameter], scope: Scope) -> list[Parameter]:
         remaining = []
-        for parameter in left:
+        for parameter in unbound:
             if parameter.forward or parameter.default is not None:
                 scope.define(parameter.name, self._default(macro, parameter))
             else:
@@ -181,7 +191,7 @@ class _Call:
     def _default(self, macro: Macro, parameter: Parameter) -> Any:
         caller, node = self._site.scope, self._node
         session = self._expander.session
-        session.place, session.attribute = macro.body, "params"
+        session.current_node, session.current_attribute = macro.body, "params"
         try:
             if parameter.forward and parameter.name in caller:
                 return caller.lookup(parameter.name)
@@ -204,7 +214,7 @@ class _Call:
                 if fault.start is None and parameter.default is not None:
                     fault.start, fault.end = 0, len(parameter.default)
                 fault.place_in_attribute(macro.body, "params", parameter.default_start)
-                fault.passing = phrase("the default of '{name}' is used by this call", name=parameter.name)
+                fault.next_note = phrase("the default of '{name}' is used by this call", name=parameter.name)
                 fault.place_at(node)
             self._expander.fail(fault)
 
@@ -212,8 +222,8 @@ class _Call:
 
     def _expand_body(self, macro: Macro, scope: Scope, macros: MacroTable) -> Element:
         expander, session = self._expander, self._expander.session
-        around = session.frame
-        expander.enter(Frame(macro.name, self._node, around))
+        outer_frame = session.frame
+        expander.enter(Frame(macro.name, self._node, outer_frame))
         try:
             body = macro.body
             container = Container(body.tag)
@@ -221,38 +231,40 @@ class _Call:
                 if name == "xmlns:xacro" or ("$" not in value and not name.startswith("xmlns:")):
                     continue
                 if name.startswith("xmlns:") or session.changes(value):
-                    evaluated = expander.text_value(body, name, scope)
+                    evaluated_value = expander.text_value(body, name, scope)
                     if name.startswith("xmlns:"):
-                        container.attributes[name] = evaluated
+                        container.attributes[name] = evaluated_value
             expander.children(body, container, scope, macros)
         finally:
-            session.frame = around
+            session.frame = outer_frame
         return container
 
     # mistakes
 
     def _report_unknown_parameter(self, macro: Macro, name: str) -> NoReturn:
         node = self._node
-        known = [parameter.name for parameter in macro.parameters if not parameter.is_block]
-        hint = did_you_mean(name, [candidate for candidate in known if candidate not in node.attributes])
-        if f"{name}," in known:
+        parameter_names = [parameter.name for parameter in macro.parameters if not parameter.is_block]
+        hint = did_you_mean(name, [candidate for candidate in parameter_names if candidate not in node.attributes])
+        if f"{name}," in parameter_names:
             hint = phrase("separate the parameters of the macro with spaces, not commas")
         if hint is None and f"*{name}" in {parameter.name.replace("**", "*") for parameter in macro.parameters}:
             hint = phrase("'{name}' is a block: write it as an element inside the call", name=name)
         if hint is None:
             hint = (
-                phrase("its parameters are {known}", known=joined(known)) if known else phrase("it has no parameters")
+                phrase("its parameters are {known}", known=joined(parameter_names))
+                if parameter_names
+                else phrase("it has no parameters")
             )
         message = phrase("the macro '{name}' has no parameter '{other_name}'", name=macro.name, other_name=name)
         span = attribute_name(node, name)
         self._expander.fail_at("XAC402", message, node, span, hint, self._definition(macro))
 
-    def _report_missing(self, macro: Macro, missing: list[Parameter]) -> None:
+    def _report_missing_parameters(self, macro: Macro, missing: list[Parameter]) -> None:
         node = self._node
-        twice = [parameter.name for parameter in missing if parameter.name in node.attributes]
-        if twice:
+        duplicate_names = [parameter.name for parameter in missing if parameter.name in node.attributes]
+        if duplicate_names:
             message = phrase(
-                "the macro '{name}' declares its parameter '{twice}' twice", name=macro.name, twice=twice[0]
+                "the macro '{name}' declares its parameter '{twice}' twice", name=macro.name, twice=duplicate_names[0]
             )
             span = node.span()
             self._expander.fail_at("XAC408", message, node, span, None, self._definition(macro, missing[0]))
@@ -283,7 +295,9 @@ class _Call:
 
     def _report_unused_block(self, macro: Macro, block: Element) -> None:
         count = sum(parameter.is_block for parameter in macro.parameters)
-        message = phrase("the block <{tag}> is one too many for the macro '{name}'", tag=block.tag, name=macro.name)
+        message = phrase(
+            ("the macro '{name}' has no block parameter for the element <{tag}>"), tag=block.tag, name=macro.name
+        )
         hint = counted("it takes one block", "it takes {count} blocks", count) if count else phrase("it takes no block")
         note = self._definition(macro)
         self._expander.fail_at("XAC405", message, block, block.span(), hint, note)
@@ -297,4 +311,4 @@ class _Call:
         return Note(phrase("the macro '{name}' is defined here", name=macro.name), body.span())
 
 
-_TAGS = {"insert": "insert_block", "block": "insert_block", "prop": "property", "else": "unless", "elif": "if"}
+_INTENDED_TAGS = {"insert": "insert_block", "block": "insert_block", "prop": "property", "else": "unless", "elif": "if"}

@@ -17,14 +17,16 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, attribute_part, text_part
+from linkwright.xacro.faults import Fault, attribute_span, text_part
 from linkwright.xacro.session import Inputs, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Document, Element, Text
 
-_MOST_FILES = 1_000
-_USE = lazy_pattern(r"\$\(\s*arg\s+(?P<plain>[^\s()$]+)\s*\)|\bxacro\.arg\(\s*(['\"])(?P<called>[^'\"]*)\2\s*\)")
+_MAX_FILES = 1_000
+_ARGUMENT_USE = lazy_pattern(
+    r"\$\(\s*arg\s+(?P<plain>[^\s()$]+)\s*\)|\bxacro\.arg\(\s*(['\"])(?P<called>[^'\"]*)\2\s*\)"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +58,7 @@ class Arguments:
     """The arguments of a description, as found by `examine_arguments`.
 
     Attributes:
-        arguments: the arguments, in the order of their first use.
+        arguments: the arguments: first those that are declared, then the others.
         unused: a warning for each passed argument that no file declares or uses.
         problems: the errors that stopped the expansion. If there are any, `arguments` may be incomplete.
     """
@@ -94,7 +96,7 @@ class _Session(TracedSession):
         documents: the document of every file that was read, by path.
         declared: the first element that declares each argument, by name.
         missing: the names of arguments that were used before they had a value.
-        asked: the names of arguments that were used.
+        used_names: the names of arguments that were used.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -102,7 +104,7 @@ class _Session(TracedSession):
         self.documents: dict[str, Document] = {}
         self.declared: dict[str, Element] = {}
         self.missing: dict[str, None] = {}
-        self.asked: dict[str, None] = {}
+        self.used_names: dict[str, None] = {}
         self._defaults: dict[str, str] = {}
 
     def read(self, path: str) -> Document:
@@ -122,7 +124,7 @@ class _Session(TracedSession):
 
     def argument(self, name: str) -> str:
         """Return the value of an argument, or a substitute if it is missing."""
-        self.asked[name] = None
+        self.used_names[name] = None
         if name not in self.arguments:
             self.missing[name] = None
             return self._defaults.get(name, "")
@@ -136,10 +138,10 @@ class _Session(TracedSession):
 
 @dataclass
 class _Findings:
-    """The data collected about arguments, by name.
+    """The uses and declarations of arguments in all files that were read.
 
     Attributes:
-        complete: whether the expansion finished, so that every required argument was used.
+        complete: whether the expansion finished, so that each required argument was used.
     """
 
     inputs: Inputs
@@ -159,23 +161,23 @@ class _Findings:
     def arguments(self) -> tuple[Argument, ...]:
         """Return all arguments, starting with those that are declared."""
         session = self.session
-        declared = {**session.declared, **self.elsewhere, **session.declared}
-        needed = dict(session.missing)
+        declarations = {**session.declared, **self.elsewhere, **session.declared}
+        missing_names = dict(session.missing)
         if not self.complete:
-            needed.update(dict.fromkeys(name for name in self.uses if name not in declared))
-        listed = [self._declared(name, element, needed) for name, element in declared.items()]
-        listed += [self._undeclared(name) for name in needed if name not in declared]
-        given = self.inputs.arguments
-        listed += [
-            replace(self._undeclared(name), required=False)
+            missing_names.update(dict.fromkeys(name for name in self.uses if name not in declarations))
+        results = [self._declared(name, element, missing_names) for name, element in declarations.items()]
+        results += [self._undeclared_argument(name) for name in missing_names if name not in declarations]
+        passed_arguments = self.inputs.arguments
+        results += [
+            replace(self._undeclared_argument(name), required=False)
             for name in self.uses
-            if name in given and name not in declared and name not in needed
+            if name in passed_arguments and name not in declarations and name not in missing_names
         ]
-        return tuple(listed)
+        return tuple(results)
 
     def unused(self) -> tuple[Diagnostic, ...]:
         """Return a warning for each passed argument that no file declares or uses."""
-        known = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.asked}
+        known_names = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.used_names}
         return tuple(
             Diagnostic(
                 "XAC215",
@@ -185,15 +187,15 @@ class _Findings:
                     inputs_name=self.inputs.name,
                 ),
                 severity=Severity.WARNING,
-                hint=did_you_mean(name, known),
+                hint=did_you_mean(name, known_names),
             )
             for name in self.inputs.arguments
-            if name not in known
+            if name not in known_names
         )
 
-    def _declared(self, name: str, element: Element, needed: Mapping[str, None]) -> Argument:
+    def _declared(self, name: str, element: Element, missing_names: Mapping[str, None]) -> Argument:
         default = element.attributes.get("default")
-        given = name in self.inputs.arguments
+        is_passed = name in self.inputs.arguments
         value = self.session.arguments.get(name)
         if value is None and default is not None and "$" not in default:
             value = default
@@ -201,24 +203,24 @@ class _Findings:
             name=name,
             default=default,
             span=element.attribute_span("name"),
-            required=not given and (name in needed or default is None),
-            used=name in self.uses or name in self.session.asked,
-            value=None if name in needed else value,
-            given=given,
+            required=not is_passed and (name in missing_names or default is None),
+            used=name in self.uses or name in self.session.used_names,
+            value=None if name in missing_names else value,
+            given=is_passed,
         )
 
-    def _undeclared(self, name: str) -> Argument:
-        given = name in self.inputs.arguments
+    def _undeclared_argument(self, name: str) -> Argument:
+        is_passed = name in self.inputs.arguments
         value = self.inputs.arguments.get(name)
-        return Argument(name, None, self.uses.get(name), not given, True, value, given)
+        return Argument(name, None, self.uses.get(name), not is_passed, True, value, is_passed)
 
 
 def _follow_includes(session: _Session) -> None:
     """Read the files of includes that an expansion did not reach, if their names are known."""
     scope = Scope(session.globals, session)
     pending = list(session.documents.items())
-    seen = set(session.documents)
-    while pending and len(seen) < _MOST_FILES:
+    read_paths = set(session.documents)
+    while pending and len(read_paths) < _MAX_FILES:
         file, document = pending.pop()
         session.file = file
         for element in document.root.walk():
@@ -226,8 +228,8 @@ def _follow_includes(session: _Session) -> None:
                 continue
             try:
                 path = session.absolute(session.evaluate_text(element.attributes.get("filename", ""), scope))
-                if path not in seen:
-                    seen.add(path)
+                if path not in read_paths:
+                    read_paths.add(path)
                     pending.append((path, session.read(path)))
             except (Fault, LinkwrightError):
                 continue  # the name of the included file depends on properties of the files
@@ -238,7 +240,7 @@ def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
     for attribute, value in element.attributes.items():
         for match in _found(value):
             name = match["plain"] or match["called"]
-            yield name, attribute_part(element, attribute, *match.span())
+            yield name, attribute_span(element, attribute, *match.span())
     for child in element.children:
         if isinstance(child, Text) and not child.cdata:
             for match in _found(child.data):
@@ -246,7 +248,7 @@ def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
 
 
 def _found(text: str) -> Iterator[re.Match[str]]:
-    return _USE.finditer(text) if "arg" in text else iter(())
+    return _ARGUMENT_USE.finditer(text) if "arg" in text else iter(())
 
 
 def arguments_data(arguments: tuple[Argument, ...]) -> list[dict[str, Any]]:

@@ -14,30 +14,38 @@ def arguments_text(arguments: tuple[Argument, ...]) -> str:
     """Return a line for each argument: name, default, location, and remarks."""
     if not arguments:
         return "the file takes no arguments\n"
-    names = max(len(argument.name) for argument in arguments)
-    defaults = min(max(len(_default(argument)) for argument in arguments), 40)
+    name_width = max(len(argument.name) for argument in arguments)
+    default_width = min(max(len(_default_text(argument)) for argument in arguments), 40)
     lines = []
     for argument in arguments:
         remarks = "".join(f"  {remark}" for remark in _remarks(argument))
-        lines.append(f"{argument.name:{names}}  {_default(argument):{defaults}}  {place(argument.span)}{remarks}")
+        lines.append(
+            f"{argument.name:{name_width}}  {_default_text(argument):{default_width}}  {place(argument.span)}{remarks}"
+        )
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 
-def incomplete(examined: Arguments) -> list[Diagnostic]:
-    """Return a remark that the list may be incomplete; empty if the expansion finished."""
-    if not examined.problems:
+def incompleteness_remarks(findings: Arguments) -> list[Diagnostic]:
+    """Return a warning that the list of arguments may be incomplete, or an empty list if the expansion finished."""
+    if not findings.problems:
         return []
-    first = examined.problems[0]
-    message = phrase("the file cannot be expanded with the arguments given, so some may be missing from the list")
-    blamed = _arguments_causing(examined.arguments, first.message)
-    required = [f"{argument.name}:=..." for argument in blamed or examined.arguments if blamed or argument.required]
+    first_problem = findings.problems[0]
+    message = phrase(
+        "the list of arguments may be incomplete because the file cannot be expanded with the arguments given"
+    )
+    suspected_arguments = _arguments_causing(findings.arguments, first_problem.message)
+    required = [
+        f"{argument.name}:=..."
+        for argument in suspected_arguments or findings.arguments
+        if suspected_arguments or argument.required
+    ]
     hint = phrase("give {required}", required=" ".join(required)) if required else None
-    notes = (Note(first.message), *first.notes)
-    return [Diagnostic("XAC803", message, first.span, Severity.WARNING, notes, hint, first.source)]
+    notes = (Note(first_problem.message), *first_problem.notes)
+    return [Diagnostic("XAC803", message, first_problem.span, Severity.WARNING, notes, hint, first_problem.source)]
 
 
 def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argument]:
-    """Return the arguments whose defaults occur in a message, such as about a missing file."""
+    """Return the arguments whose default values occur in an error message, such as in the name of a missing file."""
     return [
         argument
         for argument in arguments
@@ -48,7 +56,7 @@ def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argu
     ]
 
 
-def _default(argument: Argument) -> str:
+def _default_text(argument: Argument) -> str:
     if argument.required:
         return "required"
     return "no default" if argument.default is None else f'"{argument.default}"'

@@ -16,7 +16,7 @@ from linkwright.xmltree import Element
 
 
 def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
-    """Expand a file to log its properties; errors only end the log.
+    """Expand a file and log its properties; an error ends the log but is not raised.
 
     Args:
         inputs: the inputs of the expansion.
@@ -31,7 +31,7 @@ def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bo
 
 
 class _Log:
-    """The logger, which installs a `_Table` in each scope at the scope's first probe."""
+    """A logger that replaces the names of a scope with a `_Table` at the first probe in the scope."""
 
     def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
         self._put = put
@@ -39,16 +39,16 @@ class _Log:
 
     def probe(self, expander: Expander, site: Site) -> None:
         """Start logging the scope of a probe, unless it is logged already."""
-        scope, about = site.scope, site.node.origin
+        scope, target = site.scope, site.node.origin
         depth = _depth(scope)
         if scope.values.__class__ is dict and (depth == 1 or self._everywhere):
             session = expander.session
-            known, scope.values = scope.values, _Table(session, self._put, depth - 1)
+            existing_values, scope.values = scope.values, _Table(session, self._put, depth - 1)
             if session.frame is not None:
-                session.place = session.frame.site  # the location in the log of parameters that already exist
-            for name, value in known.items():
+                session.current_node = session.frame.site  # the location in the log of parameters that already exist
+            for name, value in existing_values.items():
                 scope.values[name] = value
-        if not (isinstance(about, Element) and about.tag == "xacro:macro"):
+        if not (isinstance(target, Element) and target.tag == "xacro:macro"):
             site.parent.children.append(recorded_probe(None))
 
 
@@ -84,18 +84,18 @@ class _Table(dict[str, Any]):
         """Return the value of a name, or `default` if there is none, and log the use."""
         return self[name] if name in self else default  # noqa: SIM401 - it is `get` itself
 
-    def _log(self, what: str, name: str, value: Any) -> None:
+    def _log(self, action: str, name: str, value: Any) -> None:
         if isinstance(value, Scope):
             return
         if isinstance(value, Element):
             text = f"<{value.tag}>"
         else:
             text = value.text if isinstance(value, Lazy) else shown(value)
-        place = self._session.place
-        span = place.span() if isinstance(place, Element) else None
-        if span is None and place is not None and place.source is not None:
-            span = place.source.span(place.offset)
-        self._put(f"{self._indent}{what} {name}: {text} ({span or self._session.file})")
+        node = self._session.current_node
+        span = node.span() if isinstance(node, Element) else None
+        if span is None and node is not None and node.source is not None:
+            span = node.source.span(node.offset)
+        self._put(f"{self._indent}{action} {name}: {text} ({span or self._session.file})")
 
 
 def _depth(scope: Scope) -> int:

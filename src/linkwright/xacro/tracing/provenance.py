@@ -104,7 +104,7 @@ def provenance_of(inputs: Inputs, root: Element, element: Element) -> Provenance
 
 
 class Tracer:
-    """The tracer, which finds the provenance of elements by expanding the inputs again.
+    """A tracer that finds the provenance of elements in a second expansion of the same inputs.
 
     Args:
         inputs: the inputs of the expansion.
@@ -115,12 +115,12 @@ class Tracer:
         self._inputs = inputs
         self._recorder = Recorder(inputs.arguments)
         session = TracedSession(inputs)
-        self._again = expand_traced(inputs, session, self._recorder.directives, self._recorder.call)
-        self._twins: dict[int, Element] = {}
-        for ours, theirs in zip(root.walk(), self._again.root.walk(), strict=False):
-            if ours.tag != theirs.tag or ours.attributes != theirs.attributes:
+        self._second_document = expand_traced(inputs, session, self._recorder.directives, self._recorder.call)
+        self._counterparts: dict[int, Element] = {}
+        for first_element, second_element in zip(root.walk(), self._second_document.root.walk(), strict=False):
+            if first_element.tag != second_element.tag or first_element.attributes != second_element.attributes:
                 break
-            self._twins[id(ours)] = theirs
+            self._counterparts[id(first_element)] = second_element
 
     def trace(self, element: Element) -> Provenance:
         """Return the provenance of an element of the first result.
@@ -132,21 +132,21 @@ class Tracer:
             return self._trace(element)
 
     def _trace(self, element: Element) -> Provenance:
-        twin = self._twins.get(id(element))
-        if twin is None:
+        counterpart = self._counterparts.get(id(element))
+        if counterpart is None:
             message = phrase(
-                "the element '{tag}' is not what '{name}' expands to", tag=element.tag, name=self._inputs.name
+                "the element '{tag}' does not match the expansion of '{name}'", tag=element.tag, name=self._inputs.name
             )
             hint = phrase("the file has changed; expand it again")
             raise LinkwrightError(Diagnostic("XAC802", message, element.span(), hint=hint, source=element.source))
-        moment = self._recorder.moment(twin) or Moment(element, None)
+        moment = self._recorder.moment(counterpart) or Moment(element, None)
         calls = self._calls(moment.frame)
         return Provenance(
             element=element,
             span=element.span(),
             calls=calls,
-            attributes=tuple(self._attribute(twin, name, moment, calls) for name in element.attributes),
-            texts=tuple(_texts(element, moment)),
+            attributes=tuple(self._attribute(counterpart, name, moment, calls) for name in element.attributes),
+            texts=tuple(_text_provenances(element, moment)),
             children=tuple(self._trace(child) for child in element.elements()),
         )
 
@@ -168,15 +168,15 @@ class Tracer:
         return tuple(Call(call.macro, call.site.span(), self._recorder.parameters(call)) for call in frames(frame))
 
 
-def _texts(element: Element, moment: Moment) -> Iterator[TextProvenance]:
-    evaluated = {_where(text): (text, values) for text, values in moment.texts}
+def _text_provenances(element: Element, moment: Moment) -> Iterator[TextProvenance]:
+    texts_by_position = {_source_position(text): (text, values) for text, values in moment.texts}
     for child in element.children:
         if isinstance(child, Text) and not child.data.isspace() and child.data:
-            text, values = evaluated.get(_where(child), (child, ()))
+            text, values = texts_by_position.get(_source_position(child), (child, ()))
             start = text.offset + len(text.data) - len(text.data.lstrip())
             span = text.source.span(start, start + len(text.data.strip())) if text.source else None
             yield TextProvenance(child.data.strip(), text.data.strip(), span, values)
 
 
-def _where(text: Text) -> tuple[str, int]:
+def _source_position(text: Text) -> tuple[str, int]:
     return (text.source.name if text.source else "", text.offset)

@@ -10,12 +10,12 @@ from linkwright.xacro.tracing.provenance import AttributeProvenance, Call, Prove
 from linkwright.xacro.tracing.references import Value
 from linkwright.xmltree import Element, write_element
 
-_OUTSIDE = {
+_EXTERNAL_ORIGINS = {
     "argument": "given on the command line",
     "package": "where the package is",
     "variable": "from the environment",
 }
-"""Descriptions of values that no file gives."""
+"""The origins of values that are not written in a file, by kind of value."""
 
 
 def provenance_text(provenance: Provenance) -> str:
@@ -27,9 +27,9 @@ def provenance_lines(provenance: Provenance) -> list[str]:
     """Return the lines of `provenance_text` that follow the element itself."""
     lines = [f"written at {place(provenance.span)}"]
     lines += [f"  {line}" for call in provenance.calls for line in _call_lines(call)]
-    evaluated = [line for part in provenance.walk() for line in _element_lines(part, provenance)]
-    if evaluated:
-        lines += ["", *evaluated]
+    evaluated_lines = [line for descendant in provenance.walk() for line in _element_lines(descendant, provenance)]
+    if evaluated_lines:
+        lines += ["", *evaluated_lines]
     return lines
 
 
@@ -68,20 +68,22 @@ def _call_lines(call: Call) -> Iterator[str]:
     yield from (f"    {line}" for line in _table([_value_row(value) for value in call.parameters]))
 
 
-def _element_lines(provenance: Provenance, around: Provenance) -> Iterator[str]:
+def _element_lines(provenance: Provenance, root: Provenance) -> Iterator[str]:
     attributes = [attribute for attribute in provenance.attributes if _is_shown(attribute, provenance)]
     texts = [text for text in provenance.texts if text.written != text.value]
-    other = provenance is not around and provenance.calls != around.calls
-    if not attributes and not texts and not other:
+    has_other_calls = provenance is not root and provenance.calls != root.calls
+    if not attributes and not texts and not has_other_calls:
         return
     yield f"<{provenance.element.tag}> at {place(provenance.span)}"
-    if other:
+    if has_other_calls:
         yield from (f"  {line}" for call in provenance.calls for line in _call_lines(call))
     for attribute in attributes:
-        what = f"  {attribute.name}={_quoted(attribute.value)}"
+        description = f"  {attribute.name}={_quoted(attribute.value)}"
         if attribute.calls != provenance.calls or not _is_inside(attribute, provenance):
-            what += f" set by <xacro:attribute> at {place(attribute.span)}"
-        yield what if attribute.written == attribute.value else f"{what} from {_quoted(attribute.written)}"
+            description += f" set by <xacro:attribute> at {place(attribute.span)}"
+        yield (
+            description if attribute.written == attribute.value else f"{description} from {_quoted(attribute.written)}"
+        )
         yield from (f"    {line}" for line in _table([_value_row(value) for value in attribute.values]))
     for text in texts:
         yield f"  text {_quoted(text.value)} from {_quoted(text.written)}"
@@ -94,16 +96,16 @@ def _value_row(value: Value) -> tuple[str, str, str]:
         source += f" {place(value.span)}"
         if value.written is not None and "$" in value.written:
             source += f" {_quoted(value.written)}"
-    elif value.kind in _OUTSIDE:
-        source += f", {_OUTSIDE[value.kind]}"
+    elif value.kind in _EXTERNAL_ORIGINS:
+        source += f", {_EXTERNAL_ORIGINS[value.kind]}"
     return value.name, value.value, source
 
 
 def _table(rows: list[tuple[str, str, str]]) -> Iterator[str]:
-    first = max((len(name) for name, _, _ in rows), default=0)
-    second = min(max((len(value) for _, value, _ in rows), default=0), 30)
+    name_width = max((len(name) for name, _, _ in rows), default=0)
+    value_width = min(max((len(value) for _, value, _ in rows), default=0), 30)
     for name, value, source in rows:
-        yield f"{name:{first}} = {value:{second}}  ({source})"
+        yield f"{name:{name_width}} = {value:{value_width}}  ({source})"
 
 
 def _is_shown(attribute: AttributeProvenance, provenance: Provenance) -> bool:

@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Lazy, Scope, literal
-from linkwright.xacro.faults import Fault, Frame, attribute_part
+from linkwright.xacro.faults import Fault, Frame, attribute_span
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
@@ -50,32 +50,32 @@ class Recorder:
     """An observer that records one expansion.
 
     Args:
-        given: the names of the arguments that were passed.
+        passed_names: the names of the arguments that were passed.
 
     Attributes:
         directives: the functions that expand and record xacro's own tags, by tag.
     """
 
-    def __init__(self, given: Collection[str] = ()) -> None:
-        self._given = given
+    def __init__(self, passed_names: Collection[str] = ()) -> None:
+        self._passed_names = passed_names
         self.directives: Mapping[str, Directive] = {
-            **{tag: self._watched(directive) for tag, directive in DIRECTIVES.items()},
+            **{tag: self._recording_directive(directive) for tag, directive in DIRECTIVES.items()},
             "xacro:property": self._define_property,
             "xacro:attribute": self._set_attribute,
-            PROBE: self._probe,
+            PROBE: self._record_probe,
         }
         self._moments: dict[int, tuple[Element, Moment]] = {}
         self._settings: list[Setting] = []
-        self._set: dict[tuple[int, str], Setting] = {}
+        self._settings_by_attribute: dict[tuple[int, str], Setting] = {}
         self._properties: dict[tuple[int, str], Element] = {}
         self._parameters: dict[int, dict[str, Value]] = {}
-        self._of_frame: dict[int, tuple[Value, ...]] = {}
+        self._frame_parameters: dict[int, tuple[Value, ...]] = {}
         self._arguments: dict[str, Element] = {}
-        self._kept: list[Any] = []  # objects that must stay alive because their `id` is a key
+        self._keepalive: list[Any] = []  # objects that must stay alive because their `id` is a key
 
     def call(self, expander: Expander, site: Site) -> None:
         """Expand a macro call, and record the attributes that it sets."""
-        self._watched(call_macro)(expander, site)
+        self._recording_directive(call_macro)(expander, site)
 
     # the recorded moments
 
@@ -86,26 +86,26 @@ class Recorder:
 
     def setting(self, element: Element, name: str) -> Setting | None:
         """Return the ``<xacro:attribute>`` that set an attribute of an element, or None."""
-        return self._set.get((id(element), name))
+        return self._settings_by_attribute.get((id(element), name))
 
     def parameters(self, frame: Frame) -> tuple[Value, ...]:
         """Return the parameters of a macro call with their values; empty if none are recorded."""
-        return self._of_frame.get(id(frame), ())
+        return self._frame_parameters.get(id(frame), ())
 
     # watching
 
-    def _watched(self, directive: Directive) -> Directive:
-        """Return a directive that also records uses of ``<xacro:attribute>`` in its expansion.
+    def _recording_directive(self, directive: Directive) -> Directive:
+        """Return a directive that also records argument declarations and uses of ``<xacro:attribute>``.
 
-        Declarations of arguments are recorded, too.
+        A use inside the directive is recorded for the parent element if the element has the attribute with that value.
         """
 
         def expand(expander: Expander, site: Site) -> None:
-            before = len(self._settings)
+            setting_count = len(self._settings)
             directive(expander, site)
-            for setting in self._settings[before:]:
+            for setting in self._settings[setting_count:]:
                 if site.parent.attributes.get(setting.name) == setting.value:
-                    self._set[id(site.parent), setting.name] = setting
+                    self._settings_by_attribute[id(site.parent), setting.name] = setting
             if site.node.tag == "xacro:arg" and site.node.attributes.get("name"):
                 self._arguments.setdefault(site.node.attributes["name"], site.node)
 
@@ -120,52 +120,52 @@ class Recorder:
         values = self._values(expander, node.attributes["value"], site.scope)
         setting = Setting(node, name, site.parent.attributes[name], session.frame, values)
         self._settings.append(setting)
-        self._kept.append(site.parent)
-        self._set[id(site.parent), name] = setting
+        self._keepalive.append(site.parent)
+        self._settings_by_attribute[id(site.parent), name] = setting
 
     def _define_property(self, expander: Expander, site: Site) -> None:
         DIRECTIVES["xacro:property"](expander, site)
         name = _evaluate_again(expander, site.node, "name", site.scope)
-        where = site.node.attributes.get("scope")
+        scope_kind = site.node.attributes.get("scope")
         if name is None:
             return
         if "remove" in site.node.attributes and name not in site.scope:
-            self._forget(name, site.scope)
+            self._forget_property(name, site.scope)
             return
-        scope: Scope | None = site.scope if where is None else site.scope.parent
-        if where == "global":
+        scope: Scope | None = site.scope if scope_kind is None else site.scope.parent
+        if scope_kind == "global":
             scope = site.scope.document_scope()
         while scope is not None and name not in scope.values:
             scope = scope.parent
         if scope is not None and ("default" not in site.node.attributes or (id(scope), name) not in self._properties):
-            self._kept.append(scope)
+            self._keepalive.append(scope)
             self._properties[id(scope), name] = site.node
 
-    def _forget(self, name: str, scope: Scope | None) -> None:
+    def _forget_property(self, name: str, scope: Scope | None) -> None:
         while scope is not None:
             self._properties.pop((id(scope), name), None)
             scope = scope.parent
 
-    def _probe(self, expander: Expander, site: Site) -> None:
-        element, about = site.parent, site.node.origin
-        if isinstance(about, Moment):  # the second expansion of a block, whose elements already have a record
-            self._remember(element, about)
-        elif isinstance(about, Text):
-            known = self.moment(element)
-            if known is not None:
-                known.texts.append((about, self._values(expander, about.data, site.scope)))
+    def _record_probe(self, expander: Expander, site: Site) -> None:
+        element, target = site.parent, site.node.origin
+        if isinstance(target, Moment):  # the second expansion of a block, whose elements already have a record
+            self._remember(element, target)
+        elif isinstance(target, Text):
+            record = self.moment(element)
+            if record is not None:
+                record.texts.append((target, self._values(expander, target.data, site.scope)))
             return
-        elif isinstance(about, Element) and about.tag == "xacro:macro":
-            self._begin_macro(expander, about, site.scope)
+        elif isinstance(target, Element) and target.tag == "xacro:macro":
+            self._begin_macro(expander, target, site.scope)
             return
-        elif isinstance(about, Element):
-            moment = Moment(about, expander.session.frame)
-            for name, text in about.attributes.items():
+        elif isinstance(target, Element):
+            moment = Moment(target, expander.session.frame)
+            for name, text in target.attributes.items():
                 if "$" in text:
                     moment.values[name] = self._values(expander, text, site.scope)
-            about = moment
+            target = moment
             self._remember(element, moment)
-        element.children.append(recorded_probe(about))
+        element.children.append(recorded_probe(target))
 
     def _remember(self, element: Element, moment: Moment) -> None:
         self._moments[id(element)] = (element, moment)
@@ -174,75 +174,75 @@ class Recorder:
         frame = expander.session.frame
         if frame is None:
             return
-        found = {}
+        values = {}
         for parameter in parse_parameters(macro.attributes.get("params", "")):
             if not parameter.is_block and parameter.name in scope.values:
-                found[parameter.name] = _parameter(parameter, scope.values[parameter.name], frame.site, macro)
-        self._kept += [scope, frame]
-        self._parameters[id(scope)] = found
-        self._of_frame[id(frame)] = tuple(found.values())
+                values[parameter.name] = _parameter_value(parameter, scope.values[parameter.name], frame.site, macro)
+        self._keepalive += [scope, frame]
+        self._parameters[id(scope)] = values
+        self._frame_parameters[id(frame)] = tuple(values.values())
 
     # values
 
     def _values(self, expander: Expander, text: str, scope: Scope) -> tuple[Value, ...]:
         if "$" not in text:
             return ()
-        found = (self._value(expander, reference, scope) for reference in references(text))
-        return tuple(value for value in found if value is not None)
+        values = (self._value(expander, reference, scope) for reference in references(text))
+        return tuple(value for value in values if value is not None)
 
     def _value(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
         if reference.command is not None:
-            return self._substituted(expander, reference, scope)
-        holder = _holder(scope, reference.name)
-        if holder is None or holder.parent is None:
+            return self._substitution_value(expander, reference, scope)
+        owner = _defining_scope(scope, reference.name)
+        if owner is None or owner.parent is None:
             return None  # the language provides this name
-        value = _evaluated(expander, f"${{{reference.path}}}", scope)
-        if value is _UNKNOWN or callable(value) or isinstance(value, Scope):
+        value = _try_evaluate(expander, f"${{{reference.path}}}", scope)
+        if value is _UNEVALUATED or callable(value) or isinstance(value, Scope):
             return None
-        node = self._properties.get((id(holder), reference.name))
+        node = self._properties.get((id(owner), reference.name))
         if node is not None:
             attribute = "value" if "value" in node.attributes else "default"
-            place, written = node.attribute_span(attribute), written_attribute(node, attribute)
-            return Value(reference.path, "property", shown(value), place, written)
-        parameter = self._parameters.get(id(holder), {}).get(reference.name)
+            span, written = node.attribute_span(attribute), written_attribute(node, attribute)
+            return Value(reference.path, "property", shown(value), span, written)
+        parameter = self._parameters.get(id(owner), {}).get(reference.name)
         if parameter is not None:
             return Value(reference.path, "parameter", shown(value), parameter.span, parameter.written)
-        inside = self._member(holder.values.get(reference.name), reference.path)
-        place, written = inside or (None, None)
-        return Value(reference.path, "property", shown(value), place, written)
+        member = self._member_source(owner.values.get(reference.name), reference.path)
+        span, written = member or (None, None)
+        return Value(reference.path, "property", shown(value), span, written)
 
-    def _member(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
+    def _member_source(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
         """Return the location and text of a namespace's property, such as ``A.B.radius``."""
         *_, name = parts = path.split(".")
-        for part in parts[1:-1]:
-            namespace = namespace.values.get(part) if isinstance(namespace, Scope) else None
+        for segment in parts[1:-1]:
+            namespace = namespace.values.get(segment) if isinstance(namespace, Scope) else None
         node = self._properties.get((id(namespace), name))
         if node is None:
             return None
         attribute = "value" if "value" in node.attributes else "default"
         return node.attribute_span(attribute), written_attribute(node, attribute)
 
-    def _substituted(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
-        value = _evaluated(expander, reference.path, scope)
-        if value is _UNKNOWN:
+    def _substitution_value(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
+        value = _try_evaluate(expander, reference.path, scope)
+        if value is _UNEVALUATED:
             return None
         if reference.command == "arg":
             node = self._arguments.get(reference.name)
-            if node is None or reference.name in self._given:
+            if node is None or reference.name in self._passed_names:
                 return Value(reference.path, "argument", shown(value))
-            place, written = node.attribute_span("default"), written_attribute(node, "default")
-            return Value(reference.path, "argument", shown(value), place, written)
+            span, written = node.attribute_span("default"), written_attribute(node, "default")
+            return Value(reference.path, "argument", shown(value), span, written)
         return Value(reference.path, "package" if reference.command == "find" else "variable", shown(value))
 
 
-_UNKNOWN = object()
+_UNEVALUATED = object()
 
 
-def _evaluated(expander: Expander, text: str, scope: Scope) -> Any:
+def _try_evaluate(expander: Expander, text: str, scope: Scope) -> Any:
     try:
         return expander.session.evaluate(text, scope)
     except (Fault, LinkwrightError, KeyError):
-        return _UNKNOWN
+        return _UNEVALUATED
 
 
 def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
@@ -253,23 +253,23 @@ def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Sc
     return expander.text_value(node, attribute, scope)
 
 
-def _holder(scope: Scope, name: str) -> Scope | None:
-    """Return the scope in a chain that defines a name, or None."""
+def _defining_scope(scope: Scope, name: str) -> Scope | None:
+    """Return the innermost enclosing scope that defines a name, or None if none does."""
     holder: Scope | None = scope
     while holder is not None and name not in holder.values:
         holder = holder.parent
     return holder
 
 
-def _parameter(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
-    """Return the record of a call's parameter, with its argument or its default."""
+def _parameter_value(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
+    """Return the value of a parameter in a call, with the location of the argument or of the default."""
     text = shown(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
-        place, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
-        return Value(parameter.name, "parameter", text, place, written)
+        span, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
+        return Value(parameter.name, "parameter", text, span, written)
     default = parameter.default
     if default is None:
-        place = attribute_part(macro, "params", parameter.start, parameter.start + len(parameter.name))
-        return Value(parameter.name, "parameter", text, place, None)
-    place = attribute_part(macro, "params", parameter.default_start, parameter.default_start + len(default))
-    return Value(parameter.name, "parameter", text, place, default)
+        span = attribute_span(macro, "params", parameter.start, parameter.start + len(parameter.name))
+        return Value(parameter.name, "parameter", text, span, None)
+    span = attribute_span(macro, "params", parameter.default_start, parameter.default_start + len(default))
+    return Value(parameter.name, "parameter", text, span, default)

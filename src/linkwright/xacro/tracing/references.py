@@ -13,7 +13,7 @@ from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.positions import attribute_value_range
 
-_LONGEST = 100
+_MAX_SHOWN_LENGTH = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Reference(NamedTuple):
     """A name in a text.
 
     Attributes:
-        path: the name with the keys by which its parts are accessed, as an expression.
+        path: the expression that starts with the name, such as ``arm.length``, or the whole substitution.
         name: the name alone.
         command: ``arg``, ``find``, ``env`` or ``optenv`` for a substitution, else None.
     """
@@ -51,8 +51,8 @@ class Reference(NamedTuple):
 
 def references(text: str) -> list[Reference]:
     """Return the references in a text without repeated paths, in the order of the text."""
-    found = dict.fromkeys(_references(text))
-    return list(found)
+    unique_references = dict.fromkeys(_references(text))
+    return list(unique_references)
 
 
 def shown(value: Any) -> str:
@@ -64,7 +64,7 @@ def shown(value: Any) -> str:
         text = repr(value) if isinstance(value, str) else sandbox.as_text(value)
     except (RefusalError, ValueError):
         text = f"a {type(value).__name__}"
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+    return text if len(text) <= _MAX_SHOWN_LENGTH else f"{text[: _MAX_SHOWN_LENGTH - 3]}..."
 
 
 def written_attribute(element: Any, name: str) -> str | None:
@@ -72,8 +72,8 @@ def written_attribute(element: Any, name: str) -> str | None:
     source = element.source
     if source is None:
         return None
-    place = attribute_value_range(source.text, element.offset, name)
-    return source.text[place[0] : place[1]] if place else None
+    value_range = attribute_value_range(source.text, element.offset, name)
+    return source.text[value_range[0] : value_range[1]] if value_range else None
 
 
 def _references(text: str) -> Iterator[Reference]:
@@ -81,36 +81,36 @@ def _references(text: str) -> Iterator[Reference]:
         tokens = tokenize(text)
     except Fault:
         return
-    for kind, inside, _, _ in tokens:
+    for kind, content, _, _ in tokens:
         if kind is TokenKind.TEXT:
             continue
-        if "$" in inside:
-            yield from _references(inside)
+        if "$" in content:
+            yield from _references(content)
         if kind is TokenKind.SUBSTITUTION:
-            yield from _substituted(inside)
+            yield from _substitution_references(content)
         else:
-            yield from _in_expression(inside)
+            yield from _expression_references(content)
 
 
-def _substituted(inside: str) -> Iterator[Reference]:
-    words = inside.split()
+def _substitution_references(content: str) -> Iterator[Reference]:
+    words = content.split()
     if len(words) >= 2 and words[0] in ("arg", "find", "env", "optenv"):
-        yield Reference(f"$({inside})", words[1], words[0])
+        yield Reference(f"$({content})", words[1], words[0])
 
 
-def _in_expression(inside: str) -> Iterator[Reference]:
-    paths = _Paths()
+def _expression_references(content: str) -> Iterator[Reference]:
+    paths = _PathCollector()
     try:
-        paths.visit(ast.parse(inside.strip(), mode="eval"))
+        paths.visit(ast.parse(content.strip(), mode="eval"))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return
     yield from (reference for reference in paths.found if reference.name not in paths.bound)
 
 
-class _Paths(ast.NodeVisitor):
-    """The visitor that collects names, each with the keys by which its parts are accessed.
+class _PathCollector(ast.NodeVisitor):
+    """A visitor that collects names with their attributes and keys, such as ``arm.joints[0]``.
 
-    The variables of lambdas and comprehensions are in `bound`.
+    Variables of lambdas and comprehensions are collected in `bound_names`.
     """
 
     def __init__(self) -> None:
@@ -121,21 +121,25 @@ class _Paths(ast.NodeVisitor):
         if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)):
             self.bound.add(node.arg if isinstance(node, ast.arg) else node.id)
             return
-        name = _root(node)
+        name = _root_name(node)
         if name is not None:
             self.found.append(Reference(ast.unparse(node), name))
-            for part in ast.walk(node):
-                if isinstance(part, ast.Subscript):
-                    self.visit(part.slice)
+            for descendant in ast.walk(node):
+                if isinstance(descendant, ast.Subscript):
+                    self.visit(descendant.slice)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            for part in (node.func.value, *node.args, *node.keywords):  # show the object and arguments, not the method
-                self.visit(part)
+            for descendant in (
+                node.func.value,
+                *node.args,
+                *node.keywords,
+            ):  # show the object and arguments, not the method
+                self.visit(descendant)
         else:
             self.generic_visit(node)
 
 
-def _root(node: ast.AST) -> str | None:
-    """Return the name at the beginning of a path of keys, or None for other nodes."""
+def _root_name(node: ast.AST) -> str | None:
+    """Return the first name of an expression such as ``arm.joints[0]``, or None for other expressions."""
     while True:
         if isinstance(node, ast.Name):
             return node.id

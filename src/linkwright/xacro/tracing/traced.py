@@ -82,9 +82,9 @@ def with_probes(document: Document) -> Document:
             copy.children.append(_probe(original))
         for child in original.children:
             if isinstance(child, Element):
-                twin = Element(child.tag, child.attributes, child.source, child.offset)
-                pending.append((child, twin))
-                copy.children.append(twin)
+                child_copy = Element(child.tag, child.attributes, child.source, child.offset)
+                pending.append((child, child_copy))
+                copy.children.append(child_copy)
                 continue
             if isinstance(child, Text) and "$" in child.data and not child.cdata:
                 copy.children.append(_probe(child))
@@ -97,23 +97,23 @@ def without_probes(document: Document) -> Document:
     pending = [document.root]
     while pending:
         element = pending.pop()
-        kept: list[Node] = []
+        remaining_nodes: list[Node] = []
         for child in element.children:
             if isinstance(child, Element):
                 if child.tag == PROBE:
                     continue
                 pending.append(child)
-            kept.append(child)
-        element.children = kept
+            remaining_nodes.append(child)
+        element.children = remaining_nodes
     return document
 
 
-def recorded_probe(memory: object) -> Element:
+def recorded_probe(record: object) -> Element:
     """Return a probe that stays in the result.
 
     The `origin` of the probe is the record of the enclosing element.
     """
-    return Element(PROBE, origin=memory)
+    return Element(PROBE, origin=record)
 
 
 def _probe(original: Element | Text) -> Element:

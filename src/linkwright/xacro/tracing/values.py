@@ -98,7 +98,7 @@ class _RecordingSession(Session):
         return value
 
     def _record(self, text: str, scope: Scope) -> None:
-        place = self.place
+        place = self.current_node
         if "$" not in text or place is None or place.source is None or self.changes(text):
             return
         start = self._start(text)
@@ -117,13 +117,13 @@ class _RecordingSession(Session):
 
     def _start(self, text: str) -> int | None:
         """Return the offset in the file of a text that is being evaluated, or None if it is not found there."""
-        place = self.place
+        place = self.current_node
         assert place is not None
         assert place.source is not None
         source = place.source.text
         begin, end = place.offset, place.offset
         if isinstance(place, Element):
-            found = attribute_value_range(source, place.offset, self.attribute or "")
+            found = attribute_value_range(source, place.offset, self.current_attribute or "")
             if found is None:
                 return None
             begin, end = found

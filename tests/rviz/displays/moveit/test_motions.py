@@ -69,7 +69,7 @@ def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():
 def test_motions_that_cannot_be_shown_are_refused():
     with pytest.raises(UnusableStateError, match="no states"):
         read_motion(robot(), trajectory())
-    with pytest.raises(UnusableStateError, match="position of joint 'shoulder' is nan"):
+    with pytest.raises(UnusableStateError, match="position of joint 'shoulder' must be finite, but is nan"):
         read_motion(robot(), trajectory(math.nan))
     short = trajectory(1.0)
     short.trajectory[0].joint_trajectory.points[0].positions = []
@@ -164,7 +164,10 @@ async def test_a_new_motion_waits_unless_it_is_to_interrupt():
 async def test_bad_motions_are_said():
     async with moving(", Interrupt Display: true") as (w, say):
         await say(trajectory(math.inf))
-        assert w.status("Trajectory")["State"] == ("error", "The position of joint 'shoulder' is inf")
+        assert w.status("Trajectory")["State"] == (
+            "error",
+            "The position of joint 'shoulder' must be finite, but is inf",
+        )
         strange = trajectory(0.1)
         strange.trajectory[0].joint_trajectory.joint_names = ["elbow"]
         await say(strange)
@@ -192,7 +195,10 @@ async def test_a_state_with_links_in_colours_of_their_own():
         assert list(shown_markers(display)) == ["Robot State holds/cup"]
         assert await say(DisplayRobotState(hide=True)) == {}
         await say(DisplayRobotState(state=state(shoulder=math.nan)))
-        assert w.status("RobotState")["State"] == ("error", "The position of joint 'shoulder' is nan")
+        assert w.status("RobotState")["State"] == (
+            "error",
+            "The position of joint 'shoulder' must be finite, but is nan",
+        )
 
 
 async def test_motion_planning_shows_the_scene_the_motion_and_its_ends():

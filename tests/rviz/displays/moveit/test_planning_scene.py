@@ -147,7 +147,10 @@ async def test_objects_come_move_grow_and_go():
         left = await talker.say(scene(thing("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
         await talker.say(scene(thing("nobody", operation=MOVE), diff=True))
-        assert w.status("PlanningScene")["nobody"] == ("error", "Object 'nobody' cannot be moved: it does not exist")
+        assert w.status("PlanningScene")["nobody"] == (
+            "error",
+            "Object 'nobody' cannot be moved, because it does not exist",
+        )
         assert await talker.say(scene(thing("", operation=REMOVE), diff=True)) == {}
         assert list(await talker.say(scene(thing("c")))) == ["Scene Geometry/c"]
         assert "nobody" not in w.status("PlanningScene")
@@ -280,16 +283,19 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         status = w.status("PlanningScene")
         assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
         assert status["short"] == ("error", "A primitive of type 1 needs 3 dimensions, but has 2")
-        assert status["kind"] == ("error", "Unknown type of primitive: 9")
-        assert status["poses"] == ("error", "1 shapes of kind primitive have 2 poses")
-        assert status["mesh"] == ("error", "A triangle of a mesh refers to vertex 7, but there are 0")
-        assert status["plane"] == ("error", "A plane has no normal")
+        assert status["kind"] == ("error", "Primitives of type 9 are not supported")
+        assert status["poses"] == (
+            "error",
+            "The numbers of shapes and poses of kind primitive differ: 1 shapes, but 2 poses",
+        )
+        assert status["mesh"] == ("error", "A triangle of a mesh refers to vertex 7, but the mesh has only 0 vertices")
+        assert status["plane"] == ("error", "The normal of a plane is zero or not finite")
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")
         assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
         await talker.say(scene(thing("good", frame="nowhere"), robot=state(shoulder=math.inf)))
         status = w.status("PlanningScene")
-        assert status["State"] == ("error", "The position of joint 'shoulder' is inf")
+        assert status["State"] == ("error", "The position of joint 'shoulder' must be finite, but is inf")
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
         uneven = state(shoulder=0.0)
         uneven.joint_state.position = []
@@ -303,7 +309,10 @@ async def test_without_a_description_objects_are_drawn_and_the_robot_once_it_com
     async with scened(text="") as (w, talker):
         shown = await talker.say(scene(thing("a"), robot=state(shoulder=1.0)))
         assert list(shown) == ["Scene Geometry/a"]
-        assert w.status("PlanningScene")["URDF"] == ("warn", "No description on topic 'robot_description' yet")
+        assert w.status("PlanningScene")["URDF"] == (
+            "warn",
+            "No description was received on topic 'robot_description' yet",
+        )
         w.describe("<robot>")
         await w.settle()
         assert w.status("PlanningScene")["URDF"] == ("error", "URDF failed Model parse")

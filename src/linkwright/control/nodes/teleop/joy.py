@@ -1,9 +1,8 @@
 """joy_node of joy and joy_linux_node of joy_linux, which publish the state of a joystick on ``joy``.
 
 Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes;
-a directional pad is represented by two axes after the others. Two things differ on purpose: when a joystick is
-unplugged, a last message is sent in which nothing is pressed, so that subscribers stop the robot; and rumble is not
-supported.
+a directional pad is represented by two axes after the others. Deliberate differences: when a joystick is unplugged, the
+node publishes a last message in which nothing is pressed, so that subscribers stop the robot; rumble is not supported.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from linkwright.control.nodes.teleop.joystick_device import FULL, JoystickDevice, JoystickEvent, find_device
+from linkwright.control.nodes.teleop.joystick_device import MAX_VALUE, JoystickDevice, JoystickEvent, find_device
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Graph, Node, ParameterType
@@ -22,7 +21,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 
 _DEPTH = 10
 _RETRY_SECONDS = 1.0
-_FASTEST = 1000.0
+_MAX_RATE = 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +33,8 @@ class _Settings:
         name: a part of the device's name; empty to use the number or path.
         path: the path of the device; None to use the number or name.
         deadzone: the fraction of an axis around its centre that counts as 0.
-        repeat_rate: messages per second while nothing changes; 0 for none.
-        coalesce: the time in s for which changes of axes are collected.
+        repeat_rate: the rate of messages while nothing changes, in Hz; 0 for none.
+        coalesce: the time for which changes of axes are collected, in seconds.
         sticky: whether a button stays pressed until it is pressed again.
     """
 
@@ -75,7 +74,7 @@ class JoyNode(SingleNode):
         self._device: JoystickDevice | None = None
         self._axes: list[float] = []
         self._buttons: list[int] = []
-        self._missing: str | None = None
+        self._logged_reason: str | None = None
         with starting(self._node):
             self._settings = self._read_settings(self._node)
             self._start()
@@ -90,45 +89,48 @@ class JoyNode(SingleNode):
         number: int = node.declare_parameter("device_id", 0).value
         name: str = node.declare_parameter("device_name", "").value
         node.declare_parameter("autocenter", 0)
-        milliseconds = _within(node, "coalesce_interval_ms", 1, 0, None)
+        milliseconds = _number_in_range(node, "coalesce_interval_ms", 1, 0, None)
         seconds: float | None = node.declare_parameter("coalesce_interval", ParameterType.DOUBLE).value
         return _settings(node, number, name, None, milliseconds / 1000.0 if seconds is None else seconds)
 
     def _start(self) -> None:
         settings, node = self._settings, self._node
-        self._type = get_message("sensor_msgs/msg/Joy")
-        self._publisher = node.create_publisher(self._type, "joy", _DEPTH)
+        self._message_type = get_message("sensor_msgs/msg/Joy")
+        self._publisher = node.create_publisher(self._message_type, "joy", _DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._soon = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
-        repeated = settings.repeat_rate > 0.0
+        is_repeated = settings.repeat_rate > 0.0
         self._repeat = node.create_timer(
-            1.0 / settings.repeat_rate if repeated else 1.0, self._publish, clock=clock, autostart=False
+            1.0 / settings.repeat_rate if is_repeated else 1.0, self._publish, clock=clock, autostart=False
         )
-        self._retry = node.create_timer(_RETRY_SECONDS, self._open, clock=clock)
+        self._retry_timer = node.create_timer(_RETRY_SECONDS, self._open, clock=clock)
         self._open()
 
     def _open(self) -> None:
         path = self._settings.device()
         if path is None:
-            wanted = self._settings.wanted()
-            self._wait(localized(phrase("there is no joystick {wanted}; waiting for it", wanted=wanted)))
+            device_label = self._settings.wanted()
+            self._wait(
+                localized(phrase(("the joystick {wanted} is not connected; waiting for it"), wanted=device_label))
+            )
             return
         try:
-            self._device = JoystickDevice(path, self._changed, self._gone)
+            self._device = JoystickDevice(path, self._on_events, self._gone)
         except OSError as error:
             reason = foreign(error.strerror or error)
             self._wait(
                 localized(
                     phrase(
-                        "joystick {path} cannot be read: {reason}; trying again (its group is often 'input')",
+                        "the joystick {path} cannot be read: {reason}; trying again (add your user to the "
+                        "device's group, often 'input')",
                         path=str(path),
                         reason=reason,
                     )
                 )
             )
             return
-        self._missing = None
-        self._retry.cancel()
+        self._logged_reason = None
+        self._retry_timer.cancel()
         self._axes, self._buttons = [], []
         self._node.get_logger().info(
             f"Opened joystick: {self._device.name or path}.  deadzone: {self._settings.deadzone:f}"
@@ -137,9 +139,9 @@ class JoyNode(SingleNode):
             self._repeat.reset()
 
     def _wait(self, text: str) -> None:
-        """Log the reason why there is no joystick, unless it was the last one logged."""
-        if text != self._missing:
-            self._missing = text
+        """Log the reason why there is no joystick, unless it was logged last."""
+        if text != self._logged_reason:
+            self._logged_reason = text
             self._node.get_logger().warning(text)
 
     def _gone(self) -> None:
@@ -149,37 +151,37 @@ class JoyNode(SingleNode):
         self._axes, self._buttons = [0.0] * len(self._axes), [0] * len(self._buttons)
         self._send()
         self._node.get_logger().warning(localized(phrase("the joystick was disconnected; waiting for it")))
-        self._missing = None
-        self._retry.reset()
+        self._logged_reason = None
+        self._retry_timer.reset()
 
-    def _changed(self, events: list[JoystickEvent]) -> None:
-        now, soon = False, False
+    def _on_events(self, events: list[JoystickEvent]) -> None:
+        publish_now, publish_soon = False, False
         for event in events:
             if event.is_axis:
-                soon |= self._turned(event)
-            elif self._pressed(event):
-                # After opening, the device reports the state of all axes and buttons; these events share one message.
-                now, soon = now or not event.initial, soon or event.initial
-        if now or (soon and self._settings.coalesce == 0.0):
+                publish_soon |= self._update_axis(event)
+            elif self._update_button(event):
+                # When it is opened, the device reports all axes and buttons; one message contains all these events.
+                publish_now, publish_soon = publish_now or not event.is_initial, publish_soon or event.is_initial
+        if publish_now or (publish_soon and self._settings.coalesce == 0.0):
             self._publish()
-        elif soon and self._soon.is_canceled():
+        elif publish_soon and self._soon.is_canceled():
             self._soon.reset()
 
-    def _turned(self, event: JoystickEvent) -> bool:
+    def _update_axis(self, event: JoystickEvent) -> bool:
         axes = self._axes
         axes += [0.0] * (event.number + 1 - len(axes))
-        before, axes[event.number] = axes[event.number], deflection(event.value, self._settings.deadzone)
-        return event.initial or before != axes[event.number]
+        old_value, axes[event.number] = axes[event.number], deflection(event.value, self._settings.deadzone)
+        return event.is_initial or old_value != axes[event.number]
 
-    def _pressed(self, event: JoystickEvent) -> bool:
+    def _update_button(self, event: JoystickEvent) -> bool:
         buttons = self._buttons
         buttons += [0] * (event.number + 1 - len(buttons))
-        before = buttons[event.number]
+        old_value = buttons[event.number]
         if not self._settings.sticky:
             buttons[event.number] = int(event.value != 0)
         elif event.value:
-            buttons[event.number] = 1 - before
-        return event.initial or before != buttons[event.number]
+            buttons[event.number] = 1 - old_value
+        return event.is_initial or old_value != buttons[event.number]
 
     def _publish(self) -> None:
         self._soon.cancel()
@@ -190,7 +192,7 @@ class JoyNode(SingleNode):
         self._send()
 
     def _send(self) -> None:
-        message = self._type()
+        message = self._message_type()
         message.header.stamp = self._node.get_clock().now().to_msg()
         message.header.frame_id = "joy"
         message.axes, message.buttons = list(self._axes), list(self._buttons)
@@ -198,17 +200,14 @@ class JoyNode(SingleNode):
 
 
 class JoyLinuxNode(JoyNode):
-    """The running joy_linux_node: a `JoyNode` with other parameters.
-
-    These are ``dev``, ``dev_name`` and ``coalesce_interval``.
-    """
+    """The running joy_linux_node, a `JoyNode` with the parameters ``dev``, ``dev_name`` and ``coalesce_interval``."""
 
     def _read_settings(self, node: Node) -> _Settings:
         path = Path(node.declare_parameter("dev", "/dev/input/js0").value)
         name: str = node.declare_parameter("dev_name", "").value
         node.declare_parameter("dev_ff", "/dev/input/event0")
         node.declare_parameter("default_trig_val", False)
-        return _settings(node, 0, name, path, _within(node, "coalesce_interval", 0.001, 0.0, None))
+        return _settings(node, 0, name, path, _number_in_range(node, "coalesce_interval", 0.001, 0.0, None))
 
 
 def deflection(value: int, deadzone: float) -> float:
@@ -218,39 +217,39 @@ def deflection(value: int, deadzone: float) -> float:
         value: the device's value from -32767 to 32767, positive backwards and to the right.
         deadzone: the fraction around the centre that counts as 0; beyond it, the deflection grows from 0.
     """
-    part = max(-1.0, min(1.0, -value / FULL))
-    beyond = abs(part) - deadzone
-    if beyond <= 0.0:
+    raw_deflection = max(-1.0, min(1.0, -value / MAX_VALUE))
+    excess = abs(raw_deflection) - deadzone
+    if excess <= 0.0:
         return 0.0
-    return beyond / (1.0 - deadzone) * (1.0 if part > 0.0 else -1.0)
+    return excess / (1.0 - deadzone) * (1.0 if raw_deflection > 0.0 else -1.0)
 
 
 def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: float) -> _Settings:
-    deadzone = _within(node, "deadzone", 0.05, 0.0, 1.0)
-    repeat_rate = _within(node, "autorepeat_rate", 20.0, 0.0, _FASTEST)
+    deadzone = _number_in_range(node, "deadzone", 0.05, 0.0, 1.0)
+    repeat_rate = _number_in_range(node, "autorepeat_rate", 20.0, 0.0, _MAX_RATE)
     sticky: bool = node.declare_parameter("sticky_buttons", False).value
     return _Settings(number, name, path, deadzone, repeat_rate, coalesce, sticky)
 
 
-def _within(node: Node, name: str, default: float, least: float, most: float | None) -> float:
+def _number_in_range(node: Node, name: str, default: float, minimum: float, maximum: float | None) -> float:
     """Declare a numeric parameter, and return its value after checking the range.
 
-    `most` is None for no maximum.
+    `maximum` is None for no maximum.
 
     Raises:
         LinkwrightError: NODE903, the parameter is out of its range.
     """
     value: Any = node.declare_parameter(name, default).value
-    if isfinite(value) and value >= least and (most is None or value <= most):
+    if isfinite(value) and value >= minimum and (maximum is None or value <= maximum):
         return float(value)
     message = (
-        phrase("parameter '{name}' must be at least {least}, but it is {value}", name=name, least=least, value=value)
-        if most is None
+        phrase("parameter '{name}' must be at least {least}, but it is {value}", name=name, least=minimum, value=value)
+        if maximum is None
         else phrase(
             "parameter '{name}' must be between {least} and {most}, but it is {value}",
             name=name,
-            least=least,
-            most=most,
+            least=minimum,
+            most=maximum,
             value=value,
         )
     )

@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 FOLDER = Path("/dev/input")
-FULL = 32767
-"""The value of an axis at its end; the other end is its negative."""
+MAX_VALUE = 32767
+"""The value of an axis at one end of its travel; the value at the other end is the negative."""
 
 _EVENT = struct.Struct("=IhBB")
 _BUTTON, _AXIS, _INITIAL = 0x01, 0x02, 0x80
-_EVENTS_AT_ONCE = 64
+_MAX_EVENTS = 64
 _NAME_BYTES = 128
 _GET_NAME = 0x80006A13 | _NAME_BYTES << 16
 
@@ -29,16 +29,16 @@ class JoystickEvent(NamedTuple):
     """A change of an axis or a button.
 
     Attributes:
-        is_axis: whether an axis has changed; otherwise a button.
+        is_axis: whether an axis has changed; otherwise a button has changed.
         number: the number of the axis or button, from 0.
-        value: for an axis -32767 to 32767, right and backwards positive; for a button 1 while it is pressed.
-        initial: whether the event reports the state when the device was opened.
+        value: for an axis -32767 to 32767, positive to the right and backwards; for a button 1 while it is pressed.
+        is_initial: whether the event reports the state when the device was opened.
     """
 
     is_axis: bool
     number: int
     value: int
-    initial: bool = False
+    is_initial: bool = False
 
 
 class JoystickDevice:
@@ -47,7 +47,7 @@ class JoystickDevice:
     Args:
         path: the path of the device.
         on_events: called with each list of events.
-        on_end: called once when the device was unplugged.
+        on_end: called once when the device is unplugged.
 
     Raises:
         OSError: the device cannot be opened.
@@ -57,9 +57,9 @@ class JoystickDevice:
         self, path: Path, on_events: Callable[[list[JoystickEvent]], None], on_end: Callable[[], None]
     ) -> None:
         self._on_events, self._on_end = on_events, on_end
-        self._rest = b""
+        self._incomplete_event = b""
         self._descriptor: int | None = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
-        self.name = _name_of(self._descriptor)
+        self.name = _device_name(self._descriptor)
         try:
             asyncio.get_running_loop().add_reader(self._descriptor, self._read)
         except OSError:  # The event loop cannot watch a folder or a file.
@@ -76,7 +76,7 @@ class JoystickDevice:
     def _read(self) -> None:
         assert self._descriptor is not None
         try:
-            data = os.read(self._descriptor, _EVENT.size * _EVENTS_AT_ONCE)
+            data = os.read(self._descriptor, _EVENT.size * _MAX_EVENTS)
         except BlockingIOError:
             return
         except OSError:  # The joystick was unplugged.
@@ -85,16 +85,14 @@ class JoystickDevice:
             self.close()
             self._on_end()
             return
-        data = self._rest + data
-        whole = len(data) - len(data) % _EVENT.size
-        self._rest = data[whole:]
-        self._on_events(list(_events(data[:whole])))
+        data = self._incomplete_event + data
+        complete_bytes = len(data) - len(data) % _EVENT.size
+        self._incomplete_event = data[complete_bytes:]
+        self._on_events(list(_parse_events(data[:complete_bytes])))
 
 
 def find_device(number: int, name: str = "") -> Path | None:
-    """Return the path of a joystick, found by number or by a part of its name.
-
-    Returns None if there is no such joystick.
+    """Return the path of the joystick with a number or a name, or None if it is not connected.
 
     Args:
         number: the number in ``/dev/input/jsNUMBER``.
@@ -107,20 +105,20 @@ def find_device(number: int, name: str = "") -> Path | None:
         with contextlib.suppress(OSError):
             descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
             try:
-                if name in _name_of(descriptor):
+                if name in _device_name(descriptor):
                     return path
             finally:
                 os.close(descriptor)
     return None
 
 
-def _events(data: bytes) -> Iterator[JoystickEvent]:
+def _parse_events(data: bytes) -> Iterator[JoystickEvent]:
     for _, value, kind, number in _EVENT.iter_unpack(data):
         if kind & ~_INITIAL in (_BUTTON, _AXIS):
             yield JoystickEvent(bool(kind & _AXIS), number, value, bool(kind & _INITIAL))
 
 
-def _name_of(descriptor: int) -> str:
+def _device_name(descriptor: int) -> str:
     if sys.platform == "win32":
         return ""
     import fcntl

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, phrase
 
 INTERRUPT = "\x03"
-"""Ctrl-C, where the terminal does not make a signal of it."""
+"""The character of Ctrl-C, if the terminal does not turn it into a signal."""
 
 _KEYS = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
 
@@ -57,12 +57,12 @@ SPEEDS = {
     "e": (1.0, 1.1),
     "c": (1.0, 0.9),
 }
-"""The factors of speed and turning speed by key."""
+"""The factors for the linear and the angular speed, by key."""
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """Iterate over the keys in a terminal's input, some of which send several characters."""
-    return (found[0] for found in _KEYS.finditer(text))
+    """Iterate over the keys in a terminal's input; some keys send several characters."""
+    return (match[0] for match in _KEYS.finditer(text))
 
 
 def help_text() -> Phrase:
@@ -94,6 +94,6 @@ CTRL-C ends
 """)
 
 
-def speeds_text(speed: float, turn: float) -> str:
+def speeds_text(speed: float, turn_speed: float) -> str:
     """Return the line that shows the current speeds, in m/s and rad/s."""
-    return f"currently:\tspeed {speed}\tturn {turn} "
+    return f"currently:\tspeed {speed}\tturn {turn_speed} "

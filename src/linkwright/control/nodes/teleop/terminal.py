@@ -14,7 +14,7 @@ _POLL_SECONDS = 0.02
 
 
 class KeyTerminal:
-    """A terminal in a mode that reports each key at once.
+    """A terminal in a mode that reports each key immediately.
 
     Keys are not echoed. Ctrl-C still sends a signal. Keys that would suspend or abort the program (Ctrl-Z and the like)
     are treated as ordinary keys, because a suspended program cannot stop a robot.
@@ -32,14 +32,14 @@ class KeyTerminal:
         if not os.isatty(descriptor):
             raise OSError(f"{descriptor} is not a terminal")
         self._on_text, self._on_end = on_text, on_end
-        self._undo = _watch_windows(self._took) if sys.platform == "win32" else self._watch(descriptor)
+        self._undo = _watch_windows(self._on_data) if sys.platform == "win32" else self._watch(descriptor)
 
     def close(self) -> None:
         """Restore the terminal; further calls do nothing."""
-        undo, self._undo = self._undo, lambda: None
-        undo()
+        restore, self._undo = self._undo, lambda: None
+        restore()
 
-    def _took(self, data: bytes) -> None:
+    def _on_data(self, data: bytes) -> None:
         if data:
             self._on_text(data.decode("utf-8", "replace"))
             return
@@ -49,8 +49,8 @@ class KeyTerminal:
     def _watch(self, descriptor: int) -> Callable[[], None]:
         import termios
 
-        before = termios.tcgetattr(descriptor)
-        settings: list[Any] = [*before[:6], list(before[6])]
+        old_settings = termios.tcgetattr(descriptor)
+        settings: list[Any] = [*old_settings[:6], list(old_settings[6])]
         settings[3] &= ~(termios.ICANON | termios.ECHO)
         settings[6][termios.VMIN], settings[6][termios.VTIME] = 1, 0
         for key in (termios.VSUSP, termios.VQUIT):
@@ -63,20 +63,20 @@ class KeyTerminal:
                 data = os.read(descriptor, _READ_BYTES)
             except BlockingIOError:
                 return
-            except OSError:  # The other side of the terminal is closed.
+            except OSError:  # The other end of the terminal is closed.
                 data = b""
-            self._took(data)
+            self._on_data(data)
 
         def undo() -> None:
             loop.remove_reader(descriptor)
             with contextlib.suppress(termios.error):  # The terminal may be closed.
-                termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+                termios.tcsetattr(descriptor, termios.TCSADRAIN, old_settings)
 
         loop.add_reader(descriptor, read)
         return undo
 
 
-def _watch_windows(took: Callable[[bytes], None]) -> Callable[[], None]:
+def _watch_windows(on_data: Callable[[bytes], None]) -> Callable[[], None]:
     """Poll the Windows console for keys, because the event loop cannot watch it.
 
     Returns:
@@ -95,7 +95,7 @@ def _watch_windows(took: Callable[[bytes], None]) -> Callable[[], None]:
         while console.kbhit():
             text += console.getwch()
         if text:
-            took(text.encode())
+            on_data(text.encode())
 
     def undo() -> None:
         if handle is not None:

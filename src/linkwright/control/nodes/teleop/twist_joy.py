@@ -1,8 +1,8 @@
 """teleop_node of teleop_twist_joy, which drives a robot by joystick while a button is held.
 
-Parameters and defaults are those of the ROS node. Two things differ on purpose: unless ``publish_stamped_twist`` is
-set, the node publishes the type that the topic's subscriptions expect; and it stops the robot when the last publisher
-of ``joy`` is gone.
+Parameters and defaults are those of the ROS node. Deliberate differences: unless ``publish_stamped_twist`` is set, the
+node publishes the type that the subscriptions of the topic expect; and it stops the robot when the last publisher of
+``joy`` disappears.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class _Axis:
     """The mapping from a joystick axis to one component of the velocity.
 
     Attributes:
-        number: the number of the joystick's axis, below 0 for none.
+        number: the number of the joystick's axis; negative for none.
         scale: the velocity at the axis's end position, in m/s or rad/s.
         turbo_scale: the velocity at the end position while the turbo button is held.
     """
@@ -40,7 +40,7 @@ class _Axis:
     turbo_scale: float
 
     def velocity(self, axes: Sequence[float], *, turbo: bool) -> float:
-        """Return the velocity for the axis values of a message, or 0 if the joystick lacks the axis."""
+        """Return the velocity for the axis values of a message, or 0 if the joystick does not have the axis."""
         if not 0 <= self.number < len(axes):
             return 0.0
         return axes[self.number] * (self.turbo_scale if turbo else self.scale)
@@ -53,13 +53,13 @@ class TeleopTwistJoy(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        self._drives = False
+        self._is_driving = False
         with starting(self._node):
             self._start()
 
     def _start(self) -> None:
         node = self._node
-        stamped: bool | None = node.declare_parameter("publish_stamped_twist", ParameterType.BOOL).value
+        is_stamped: bool | None = node.declare_parameter("publish_stamped_twist", ParameterType.BOOL).value
         frame: str = node.declare_parameter("frame", "teleop_twist_joy").value
         for name, default in (
             ("require_enable_button", True),
@@ -74,67 +74,67 @@ class TeleopTwistJoy(SingleNode):
                 node.declare_parameter(f"axis_{key}", _AXES.get(key, -1))
                 node.declare_parameter(f"scale_{key}", _SCALES.get(key, 0.0))
                 node.declare_parameter(f"scale_{kind}_turbo.{name}", _TURBO_SCALES.get(key, 0.0))
-        self._follow_parameters()
-        node.add_post_set_parameters_callback(lambda _: self._follow_parameters())
-        self._topic = VelocityTopic(node, "cmd_vel", stamped, frame)
-        self._joy = node.resolve_topic_name("joy")
+        self._apply_parameters()
+        node.add_post_set_parameters_callback(lambda _: self._apply_parameters())
+        self._topic = VelocityTopic(node, "cmd_vel", is_stamped, frame)
+        self._joy_topic = node.resolve_topic_name("joy")
         node.create_subscription(get_message("sensor_msgs/msg/Joy"), "joy", self._receive, _DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
         logger = node.get_logger()
         if self._needs_button:
-            logger.info(f"Teleop enable button {self._button}.")
+            logger.info(f"Teleop enable button {self._enable_button}.")
         if self._turbo_button >= 0:
             logger.info(f"Turbo on button {self._turbo_button}.")
 
     def close(self) -> None:
         """Stop the robot if this node was driving it, and close the node."""
-        if self._drives:
+        if self._is_driving:
             self._topic.stop()
         self._topic.close()
         super().close()
 
-    def _follow_parameters(self) -> None:
+    def _apply_parameters(self) -> None:
         node = self._node
         self._needs_button: bool = node.get_parameter("require_enable_button").value
-        self._button: int = node.get_parameter("enable_button").value
+        self._enable_button: int = node.get_parameter("enable_button").value
         self._turbo_button: int = node.get_parameter("enable_turbo_button").value
-        self._inverted: bool = node.get_parameter("inverted_reverse").value
-        self._linear = [_axis(node, "linear", name) for name in _LINEAR]
-        self._angular = [_axis(node, "angular", name) for name in _ANGULAR]
+        self._inverts_reverse: bool = node.get_parameter("inverted_reverse").value
+        self._linear = [_read_axis(node, "linear", name) for name in _LINEAR]
+        self._angular_axes = [_read_axis(node, "angular", name) for name in _ANGULAR]
 
     def _receive(self, message: Any) -> None:
         buttons, axes = message.buttons, message.axes
-        turbo = _pressed(buttons, self._turbo_button)
-        if turbo or not self._needs_button or _pressed(buttons, self._button):
-            linear = [axis.velocity(axes, turbo=turbo) for axis in self._linear]
-            angular = [axis.velocity(axes, turbo=turbo) for axis in self._angular]
-            if self._inverted and linear[0] < 0.0:
+        is_turbo = _is_pressed(buttons, self._turbo_button)
+        if is_turbo or not self._needs_button or _is_pressed(buttons, self._enable_button):
+            linear = [axis.velocity(axes, turbo=is_turbo) for axis in self._linear]
+            angular = [axis.velocity(axes, turbo=is_turbo) for axis in self._angular_axes]
+            if self._inverts_reverse and linear[0] < 0.0:
                 angular[2] = -angular[2]
-            self._drives = True
+            self._is_driving = True
             self._topic.publish(linear, angular)
         else:
             self._stop()
 
     def _stop(self) -> None:
         """Publish a zero velocity once, if this node was driving the robot."""
-        if self._drives:
-            self._drives = False
+        if self._is_driving:
+            self._is_driving = False
             self._topic.stop()
 
     def _review(self) -> None:
-        self._topic.review(may_change=not self._drives)
-        if self._drives and not any(
-            endpoint.name == self._joy and endpoint.kind is EndpointKind.PUBLISHER
+        self._topic.review(may_change=not self._is_driving)
+        if self._is_driving and not any(
+            endpoint.name == self._joy_topic and endpoint.kind is EndpointKind.PUBLISHER
             for endpoint in self._node.graph.endpoints()
         ):
             self._stop()
             self._node.get_logger().warning(
-                phrase("no node publishes '{topic}' any more: the robot is stopped", topic=self._joy)
+                phrase("no node publishes '{topic}' any more, so the robot is stopped", topic=self._joy_topic)
             )
 
 
-def _axis(node: Node, kind: str, name: str) -> _Axis:
+def _read_axis(node: Node, kind: str, name: str) -> _Axis:
     return _Axis(
         node.get_parameter(f"axis_{kind}.{name}").value,
         node.get_parameter(f"scale_{kind}.{name}").value,
@@ -142,5 +142,5 @@ def _axis(node: Node, kind: str, name: str) -> _Axis:
     )
 
 
-def _pressed(buttons: Sequence[int], number: int) -> bool:
+def _is_pressed(buttons: Sequence[int], number: int) -> bool:
     return 0 <= number < len(buttons) and buttons[number] != 0

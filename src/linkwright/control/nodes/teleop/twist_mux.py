@@ -2,8 +2,8 @@
 
 Parameters, rules and diagnostics are those of the ROS node. A topic is active until its ``timeout`` has passed since
 its last message. A lock that is on, or that received no message within its ``timeout``, blocks all topics of lower
-priority. Two things differ on purpose: a topic without a timeout blocks others only after its first message, and a stop
-is sent when the publisher of the last velocity is lost.
+priority. Deliberate differences: a topic without a timeout blocks others only after its first message, and a stop is
+published when the publisher of the last velocity disappears.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEPTH = 10
-_MOST = 255
+_MAX_PRIORITY = 255
 
 
 class _Source:
@@ -33,24 +33,27 @@ class _Source:
 
     def __init__(self, name: str, topic: str, timeout: float, priority: int) -> None:
         self.name, self.topic, self.timeout = name, topic, timeout
-        self.priority = max(0, min(_MOST, priority))
+        self.priority = max(0, min(_MAX_PRIORITY, priority))
         self.locked = False
-        self._heard_ns: int | None = None
+        self._latest_message_ns: int | None = None
 
     def hear(self, now_ns: int) -> None:
         """Record the arrival of a message."""
-        self._heard_ns = now_ns
+        self._latest_message_ns = now_ns
 
     def expired(self, now_ns: int) -> bool:
-        """Return whether no message arrived within the timeout; always False without a timeout."""
+        """Return whether no message arrived within the timeout; False if the input has no timeout."""
         if self.timeout == 0.0:
             return False
-        return self._heard_ns is None or (now_ns - self._heard_ns) / NANOSECONDS_PER_SECOND > self.timeout
+        return (
+            self._latest_message_ns is None
+            or (now_ns - self._latest_message_ns) / NANOSECONDS_PER_SECOND > self.timeout
+        )
 
     @property
     def silent(self) -> bool:
         """Whether no message has arrived yet."""
-        return self._heard_ns is None
+        return self._latest_message_ns is None
 
     def diagnostic_line(self, state: str) -> str:
         """Return the text about the input in the diagnostics."""
@@ -80,7 +83,7 @@ class TwistMux(SingleNode):
         if not node.has_parameter("use_stamped"):
             node.declare_parameter("use_stamped", False)
         kind = TWIST_STAMPED if node.get_parameter("use_stamped").value else TWIST
-        self._topics, self._locks = _sources(node, "topics"), _sources(node, "locks")
+        self._topics, self._locks = _read_sources(node, "topics"), _read_sources(node, "locks")
         if not self._topics:
             node.get_logger().warning(
                 localized(phrase("no parameter topics.NAME.topic is set, so nothing is forwarded"))
@@ -107,11 +110,13 @@ class TwistMux(SingleNode):
 
     def _velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
         drivers.note_command(message, info)
-        now = self._now_ns()
-        source.hear(now)
-        lock = self._lock_priority(now)
-        open_ones = [topic for topic in self._topics if topic.priority and not self._is_masked(topic, lock, now)]
-        if open_ones and max(open_ones, key=lambda open_one: open_one.priority) is source:
+        now_ns = self._now_ns()
+        source.hear(now_ns)
+        lock_priority = self._lock_priority(now_ns)
+        unmasked = [
+            topic for topic in self._topics if topic.priority and not self._is_masked(topic, lock_priority, now_ns)
+        ]
+        if unmasked and max(unmasked, key=lambda source_topic: source_topic.priority) is source:
             self._commander.note_publisher(info)
             self._publisher.publish(message)
 
@@ -122,28 +127,28 @@ class TwistMux(SingleNode):
     def _lock_priority(self, now_ns: int) -> int:
         return max((lock.priority for lock in self._locks if lock.locked or lock.expired(now_ns)), default=0)
 
-    def _is_masked(self, source: _Source, lock: int, now_ns: int) -> bool:
-        return source.silent or source.expired(now_ns) or source.priority < lock
+    def _is_masked(self, source: _Source, lock_priority: int, now_ns: int) -> bool:
+        return source.silent or source.expired(now_ns) or source.priority < lock_priority
 
     def _health(self) -> Health:
-        now = self._now_ns()
-        lock = self._lock_priority(now)
+        now_ns = self._now_ns()
+        lock = self._lock_priority(now_ns)
         values = {
             f"velocity {topic.name}": topic.diagnostic_line(
-                "masked" if self._is_masked(topic, lock, now) else "unmasked"
+                "masked" if self._is_masked(topic, lock, now_ns) else "unmasked"
             )
             for topic in self._topics
         }
         values |= {
-            f"lock {lock.name}": lock.diagnostic_line("locked" if lock.locked or lock.expired(now) else "free")
+            f"lock {lock.name}": lock.diagnostic_line("locked" if lock.locked or lock.expired(now_ns) else "free")
             for lock in self._locks
         }
         values["current priority"] = str(lock)
         return Health(Level.OK, "ok", values)
 
 
-def _sources(node: Node, group: str) -> list[_Source]:
-    """Return the inputs that the parameters ``GROUP.NAME.*`` describe, sorted by name.
+def _read_sources(node: Node, group: str) -> list[_Source]:
+    """Return the inputs described by the parameters ``GROUP.NAME.*``, sorted by name.
 
     Raises:
         LinkwrightError: NODE904, the parameters are incomplete or invalid.
@@ -152,25 +157,25 @@ def _sources(node: Node, group: str) -> list[_Source]:
     for key, parameter in node.get_parameters_by_prefix(group).items():
         name, _, entry = key.rpartition(".")
         values.setdefault(name, {})[entry] = parameter.value
-    return [_source(f"{group}.{name}", name, given) for name, given in sorted(values.items()) if name]
+    return [_parse_source(f"{group}.{name}", name, entries) for name, entries in sorted(values.items()) if name]
 
 
-def _source(path: str, name: str, given: Mapping[str, Any]) -> _Source:
-    topic, timeout, priority = (given.get(key) for key in ("topic", "timeout", "priority"))
+def _parse_source(path: str, name: str, entries: Mapping[str, Any]) -> _Source:
+    topic, timeout, priority = (entries.get(key) for key in ("topic", "timeout", "priority"))
     if not isinstance(topic, str) or not topic:
-        raise _wrong(path, phrase("parameter '{name}' must be the name of a topic", name=f"{path}.topic"))
+        raise _parameter_error(path, phrase("parameter '{name}' must be the name of a topic", name=f"{path}.topic"))
     if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not isfinite(timeout) or timeout < 0.0:
-        raise _wrong(
+        raise _parameter_error(
             path,
             phrase(
                 "parameter '{name}' must be a time in seconds, such as 0.5, or 0 for no timeout", name=f"{path}.timeout"
             ),
         )
     if isinstance(priority, bool) or not isinstance(priority, int):
-        raise _wrong(path, phrase("parameter '{name}' must be an integer, 0 to 255", name=f"{path}.priority"))
+        raise _parameter_error(path, phrase("parameter '{name}' must be an integer, 0 to 255", name=f"{path}.priority"))
     return _Source(name, topic, float(timeout), priority)
 
 
-def _wrong(path: str, message: Phrase) -> LinkwrightError:
+def _parameter_error(path: str, message: Phrase) -> LinkwrightError:
     hint = phrase("'{path}' must have three entries: topic, timeout and priority", path=path)
     return LinkwrightError(Diagnostic("NODE904", message, hint=hint))

@@ -22,29 +22,29 @@ from linkwright.launch.model.substitution import (
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Parser
 
-_TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
+_BOOLEAN_TEXTS = ("true", "false", "True", "False", "TRUE", "FALSE")
 
 
-def _listed_choices(entity: Entity) -> list[str] | None:
-    """Return the list ``choices`` of a YAML tag, or None.
+def _read_choice_list(entity: Entity) -> list[str] | None:
+    """Return the value of the list ``choices`` of a YAML tag, or None if it has none.
 
     Raises:
         TypeError: LAUNCH118, the value is not a list of strings.
     """
     try:
-        listed: list[str] | None = entity.get_attr("choices", data_type=list[str], optional=True)
+        choices: list[str] | None = entity.get_attr("choices", data_type=list[str], optional=True)
     except TypeError as error:
         ros_error = TypeError("Attribute 'choices' of Entity 'arg' expected to be a list of strings")
         message = phrase("key 'choices' of '{type_name}' must be a list of strings", type_name=entity.type_name)
         raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error) from error
-    return listed
+    return choices
 
 
 @expose_action("arg")
 class DeclareLaunchArgument(Action):
-    """Declares an argument.
+    """Declares an argument of a launch file.
 
-    The launch configuration with the argument's name is set to the given or default value.
+    The launch configuration with the argument's name receives the given value or the default value.
 
     Args:
         name: the argument's name.
@@ -86,7 +86,7 @@ class DeclareLaunchArgument(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``name``, ``default``, ``description`` and the choices of the tag.
+        """Return the class and keyword arguments for the tag, with its choices.
 
         The choices are ``choice`` tags inside, or the list ``choices`` in YAML.
         """
@@ -102,9 +102,9 @@ class DeclareLaunchArgument(Action):
             for choice in choices:
                 choice.assert_entity_completely_parsed()
         else:
-            listed = _listed_choices(entity)
-            if listed is not None:
-                kwargs["choices"] = [parser.escape_characters(choice) for choice in listed]
+            choice_list = _read_choice_list(entity)
+            if choice_list is not None:
+                kwargs["choices"] = [parser.escape_characters(choice) for choice in choice_list]
         return cls, kwargs
 
     @property
@@ -114,7 +114,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def default_value(self) -> list[Substitution] | None:
-        """The default as substitutions; None for a required argument."""
+        """The default value, as substitutions; None for a required argument."""
         return self._default
 
     @property
@@ -124,8 +124,8 @@ class DeclareLaunchArgument(Action):
             return "no description given" if self._choices is None else f"One of: {self._choices}"
         if self._choices is None:
             return self._description
-        stop = "" if self._description.endswith(".") else "."
-        return f"{self._description}{stop} Valid choices are: {self._choices}"
+        period = "" if self._description.endswith(".") else "."
+        return f"{self._description}{period} Valid choices are: {self._choices}"
 
     @property
     def choices(self) -> list[str] | None:
@@ -134,7 +134,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def _conditionally_included(self) -> bool:
-        """The flag `conditionally_included`, under its private name in ROS."""
+        """The value of `conditionally_included`, for code that reads it under its private name in ROS."""
         return self.conditionally_included
 
     def describe(self) -> str:
@@ -153,12 +153,12 @@ class DeclareLaunchArgument(Action):
             if self._default is None:
                 message = (
                     phrase(
-                        "argument '{name}' ({description}) is required and was not given",
+                        "argument '{name}' ({description}) is required, but was not given",
                         name=self._name,
                         description=self._description,
                     )
                     if self._description
-                    else phrase("argument '{name}' is required and was not given", name=self._name)
+                    else phrase("argument '{name}' is required, but was not given", name=self._name)
                 )
                 ros_error = RuntimeError(f'Required launch argument "{self._name}" was not provided.')
                 raise error_at(
@@ -178,9 +178,9 @@ class DeclareLaunchArgument(Action):
 
     def _hint(self, value: str) -> Phrase:
         choices = self._choices or []
-        choose = phrase("choose from {names}", names=quoted_names(choices))
-        near = did_you_mean(value, choices) if len(choices) > 2 else None
-        return phrase("{hint} ({choose})", hint=near, choose=choose) if near else choose
+        choices_hint = phrase("choose from {names}", names=quoted_names(choices))
+        suggestion = did_you_mean(value, choices) if len(choices) > 2 else None
+        return phrase("{hint} ({choose})", hint=suggestion, choose=choices_hint) if suggestion else choices_hint
 
 
 @expose_action("bool_arg")
@@ -194,11 +194,11 @@ class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
 
     def __init__(self, name: str, *, default_value: SomeSubstitutionsType | bool | None = None, **kwargs: Any) -> None:
         default = str(default_value) if isinstance(default_value, bool) else default_value
-        super().__init__(name, default_value=default, choices=_TRUTHS, **kwargs)
+        super().__init__(name, default_value=default, choices=_BOOLEAN_TEXTS, **kwargs)
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of ``arg``, except its choices."""
+        """Return the class and keyword arguments for the tag, which accepts no choices."""
         _, kwargs = super().parse(entity, parser)
         if "choices" in kwargs:
             raise ValueError("Cannot specify choices for bool_arg")

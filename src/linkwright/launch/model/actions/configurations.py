@@ -31,7 +31,7 @@ class SetLaunchConfiguration(AssigningAction):
 
 @expose_action("unset")
 class UnsetLaunchConfiguration(NamedAction):
-    """Unsets a launch configuration; has no effect if it is not set."""
+    """Unsets a launch configuration, if it is set."""
 
     def execute(self, context: LaunchContext) -> None:
         """Unset the launch configuration."""
@@ -62,25 +62,25 @@ class ResetLaunchConfigurations(Action):
     """Removes all launch configurations, and then sets the given ones.
 
     Args:
-        launch_configurations: name -> value to set afterwards; evaluated before the existing configurations are
-            removed.
+        launch_configurations: maps names to the values to set. Both are evaluated before the existing configurations
+            are removed.
     """
 
     def __init__(self, launch_configurations: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._kept = normalize_pairs(launch_configurations or {})
+        self._new_configurations = normalize_pairs(launch_configurations or {})
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the ``keep`` tags inside."""
+        """Return the class and keyword arguments for the tag, with the ``keep`` tags inside."""
         _, kwargs = super().parse(entity, parser)
-        kept = parse_pairs(entity, parser, "keep")
-        if kept is not None:
-            kwargs["launch_configurations"] = kept
+        configurations = parse_pairs(entity, parser, "keep")
+        if configurations is not None:
+            kwargs["launch_configurations"] = configurations
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Replace the launch configurations by the given ones."""
-        kept = perform_pairs(context, self._kept)
+        """Replace all launch configurations by the given ones."""
+        configurations = perform_pairs(context, self._new_configurations)
         context.launch_configurations.clear()
-        context.launch_configurations.update(kept)
+        context.launch_configurations.update(configurations)

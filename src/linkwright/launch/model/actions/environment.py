@@ -40,7 +40,7 @@ class SetEnvironmentVariable(AssigningAction):
 
 @expose_action("unset_env")
 class UnsetEnvironmentVariable(NamedAction):
-    """Unsets an environment variable; has no effect if it is not set."""
+    """Unsets an environment variable, if it is set."""
 
     def execute(self, context: LaunchContext) -> None:
         """Unset the environment variable."""
@@ -54,7 +54,7 @@ class AppendEnvironmentVariable(AssigningAction):
     Args:
         name: the name of the variable.
         value: the value to add.
-        prepend: whether to insert the value before the existing ones.
+        prepend: whether to insert the value before the existing values.
         separator: the separator between the values; the system's path separator by default.
     """
 
@@ -72,7 +72,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``prepend`` and ``separator`` in addition to ``name`` and ``value``."""
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         prepend = entity.get_attr("prepend", optional=True, data_type=bool, can_be_str=True)
         if prepend is not None:
@@ -81,7 +81,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @property
     def prepend(self) -> Any:
-        """A boolean or substitutions that tell whether to insert the value before the existing ones."""
+        """Whether to insert the value before the existing values: a boolean or substitutions."""
         return self._prepend
 
     @property
@@ -92,17 +92,17 @@ class AppendEnvironmentVariable(AssigningAction):
     def execute(self, context: LaunchContext) -> None:
         """Add the value to the environment variable."""
         name, value = self.resolved_name(context), self.resolved_value(context)
-        parts = [context.environment[name]] if name in context.environment else []
-        parts.insert(0 if perform_typed_substitution(context, self._prepend, bool) else len(parts), value)
-        context.environment[name] = perform_substitutions(context, self._separator).join(parts)
+        values = [context.environment[name]] if name in context.environment else []
+        values.insert(0 if perform_typed_substitution(context, self._prepend, bool) else len(values), value)
+        context.environment[name] = perform_substitutions(context, self._separator).join(values)
 
 
 @expose_action("rep_env")
 class ReplaceEnvironmentVariables(Action):
-    """Replaces the environment by the given variables.
+    """Replaces the entire environment by the given variables.
 
     Args:
-        environment: name -> value of the variables.
+        environment: maps the names of the variables to their values.
     """
 
     def __init__(self, environment: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
@@ -111,7 +111,7 @@ class ReplaceEnvironmentVariables(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the ``env`` tags inside."""
+        """Return the class and keyword arguments for the tag, with the ``env`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         environment = parse_pairs(entity, parser, "env")
         if environment is not None:
@@ -120,7 +120,7 @@ class ReplaceEnvironmentVariables(Action):
 
     @property
     def environment(self) -> Mapping[Any, Any]:
-        """The variables, as given."""
+        """The names and values of the variables, as passed to the constructor."""
         return self._environment
 
     def execute(self, context: LaunchContext) -> None:

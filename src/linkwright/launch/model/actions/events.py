@@ -45,16 +45,16 @@ class RegisterEventHandler(_HandlerAction):
         context.register_event_handler(self._event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the entities that the handler visits, as far as they are known."""
-        known = self.get_sub_entities()
-        return [(f"{self._event_handler} handles an event", known)] if known else []
+        """Return the entities that the handler visits, with a text about the event, if they are known."""
+        entities = self.get_sub_entities()
+        return [(f"{self._event_handler} handles an event", entities)] if entities else []
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return an empty list, because the handler visits its entities only on an event."""
         return []
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the entities that the handler visits, as far as they are known."""
+        """Return the entities that the handler visits, if they are known before the event."""
         return self._event_handler.describe()[1]
 
 
@@ -67,7 +67,7 @@ class UnregisterEventHandler(_HandlerAction):
 
 
 class EmitEvent(Action):
-    """Adds an event to the queue of the launch."""
+    """Emits an event, which the launch then handles."""
 
     def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -81,7 +81,7 @@ class EmitEvent(Action):
         return self._event
 
     def describe(self) -> str:
-        """Return a text that names the event."""
+        """Return a text with the name of the event."""
         return f"{type(self).__name__}(event='{self._event.name}')"
 
     def execute(self, context: LaunchContext) -> None:
@@ -93,7 +93,7 @@ class EmitEvent(Action):
 class Shutdown(EmitEvent):
     """Shuts the launch down.
 
-    In ``on_exit`` of a process, this action also logs the name of the process.
+    If the action runs because a process ended, it also logs the name of the process.
     """
 
     def __init__(self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any) -> None:
@@ -103,7 +103,7 @@ class Shutdown(EmitEvent):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attribute ``reason``."""
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         reason = entity.get_attr("reason", optional=True)
         if reason:
@@ -112,7 +112,9 @@ class Shutdown(EmitEvent):
 
     def execute(self, context: LaunchContext) -> None:
         """Emit the event that ends the launch."""
-        cause = context.get_locals_as_dict().get("event")
-        if isinstance(cause, events.ProcessExited):
-            context.log("launch", 20, f"process[{cause.process_name}] was required: shutting down launched system")
+        handled_event = context.get_locals_as_dict().get("event")
+        if isinstance(handled_event, events.ProcessExited):
+            context.log(
+                "launch", 20, f"process[{handled_event.process_name}] was required: shutting down launched system"
+            )
         context.emit_event_sync(events.Shutdown(reason=perform_substitutions(context, self._reason)))

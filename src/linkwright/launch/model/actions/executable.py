@@ -21,19 +21,19 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_numbers = count(1)
+_process_numbers = count(1)
 
 
 class Executable:
     """A program to be run as a process.
 
     Args:
-        cmd: program and arguments, each a string, a substitution, or a list of these to join.
-        prefix: a command to put before the program, such as ``gdb -ex run --args``; by default the launch configuration
-            ``launch-prefix``, if the program's name matches the pattern ``launch-prefix-filter``.
-        name: the name in the log, to which a number is appended; the program's name by default.
-        cwd: the folder in which the program runs.
-        env: the entire environment; the launcher's by default.
+        cmd: the program and its arguments. Each is a string, a substitution, or a list of these that is joined.
+        prefix: a command to insert before the program, such as ``gdb -ex run --args``. By default, this is the launch
+            configuration ``launch-prefix``, if the program's name matches the pattern ``launch-prefix-filter``.
+        name: the name in the log, to which a number is appended; by default the file name of the program.
+        cwd: the folder in which the program runs; by default the launcher's.
+        env: the complete environment; by default the launcher's.
         additional_env: additional environment variables.
         arguments: arguments to append to `cmd`.
 
@@ -55,8 +55,10 @@ class Executable:
         additional_env: Mapping[Any, Any] | None = None,
         arguments: Iterable[SomeSubstitutionsType] | None = None,
     ) -> None:
-        parts = [cmd] if isinstance(cmd, (str, Substitution, Path)) else list(cmd)
-        self.cmd = [normalize_to_list_of_substitutions(part) for part in (*parts, *(arguments or ()))]
+        command_parts = [cmd] if isinstance(cmd, (str, Substitution, Path)) else list(cmd)
+        self.cmd = [
+            normalize_to_list_of_substitutions(command_part) for command_part in (*command_parts, *(arguments or ()))
+        ]
         self.arguments = arguments
         self.prefix = _normalize_optional(prefix)
         self.name = _normalize_optional(name)
@@ -70,29 +72,29 @@ class Executable:
 
     def prepare(self, context: LaunchContext, action: Any = None) -> None:
         """Evaluate the command, environment, folder and name."""
-        command = [perform_substitutions(context, part) for part in self.cmd]
-        self.final_cmd = [*self.prefix_words(context, command), *command]
-        self.final_name = f"{self.base_name(context, self.final_cmd)}-{next(_numbers)}"
+        command = [perform_substitutions(context, argument) for argument in self.cmd]
+        self.final_cmd = [*self.prefix_arguments(context, command), *command]
+        self.final_name = f"{self.base_name(context, self.final_cmd)}-{next(_process_numbers)}"
         self.final_cwd = None if self.cwd is None else perform_substitutions(context, self.cwd)
         self.final_env = self.environment(context)
 
     apply_context = prepare
 
-    def prefix_words(self, context: LaunchContext, command: list[str]) -> list[str]:
-        """Return the arguments of the command prefix; empty if there is none."""
+    def prefix_arguments(self, context: LaunchContext, command: list[str]) -> list[str]:
+        """Return the arguments of the command prefix, or an empty list if there is none."""
         if self.prefix is not None:
             return shlex.split(perform_substitutions(context, self.prefix))
-        wanted = context.launch_configurations.get("launch-prefix", "")
+        prefix = context.launch_configurations.get("launch-prefix", "")
         pattern = context.launch_configurations.get("launch-prefix-filter", "")
-        applies = not wanted or re.match(pattern, Path(command[0]).name)
-        return shlex.split(wanted) if wanted and applies else []
+        is_applicable = not prefix or re.match(pattern, Path(command[0]).name)
+        return shlex.split(prefix) if prefix and is_applicable else []
 
     def base_name(self, context: LaunchContext, command: list[str]) -> str:
-        """Return the process's name in the log, without its number."""
+        """Return the name of the process in the log, without its number."""
         return Path(command[0]).name if self.name is None else perform_substitutions(context, self.name)
 
     def environment(self, context: LaunchContext) -> dict[str, str]:
-        """Return the environment for the process."""
+        """Return the evaluated environment of the process."""
         environment = dict(context.environment) if self.env is None else perform_pairs(context, self.env)
         environment.update(perform_pairs(context, self.additional_env or []))
         return environment

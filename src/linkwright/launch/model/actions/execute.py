@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 OnExit = SomeEntitiesType | Callable[..., Any] | None
 
 _DEFAULT_TIMEOUT = "5"
-"""Seconds."""
+"""The default of `sigterm_timeout` and `sigkill_timeout` in seconds."""
 
 
 class ExecuteLocal(Action):
@@ -43,27 +43,28 @@ class ExecuteLocal(Action):
     Args:
         process_description: the program to run.
         shell: whether a shell runs the command.
-        sigterm_timeout: seconds between SIGINT and SIGTERM when the process is to end; by default the launch
-            configuration of this name, else 5.
-        sigkill_timeout: seconds between SIGTERM and SIGKILL; by default the launch configuration of this name, else 5.
-        emulate_tty: whether the process gets a pseudo-terminal; the launch configuration of this name takes precedence.
+        sigterm_timeout: the seconds between SIGINT and SIGTERM when the process must end. By default, this is the
+            launch configuration with this name, or 5.
+        sigkill_timeout: the seconds between SIGTERM and SIGKILL, with the same default.
+        emulate_tty: whether the process gets a pseudo-terminal. The launch configuration with this name takes
+            precedence.
         output: the destination of the output: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
             ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment variable
             ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` takes precedence.
-        output_format: the format of a line, which may contain ``{line}`` and ``{this}`` (the action).
-        cached_output: whether `get_stdout` and `get_stderr` return the output.
-        log_cmd: whether the command is shown before it runs.
+        output_format: the format of an output line, which may contain ``{line}`` and ``{this}`` (the action).
+        cached_output: whether the output is stored, so that `get_stdout` and `get_stderr` can return it.
+        log_cmd: whether the command is logged before it runs.
         on_exit: the entities to visit when the process has ended, or a function of event and context that returns them.
         respawn: whether the process is restarted if it ends before the launch.
         respawn_delay: seconds to wait before a restart.
         respawn_max_retries: the maximum number of restarts; unlimited if negative.
-        split_arguments: whether each word of the command is split as in a shell, for substitutions that produce several
-            words.
+        split_arguments: whether each argument is split into words as in a shell, because a substitution may produce
+            several words.
         kwargs: see `Action`.
 
     Attributes:
-        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process once it is running.
-        return_code: the exit status of the process once it has ended.
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process; None before it runs.
+        return_code: the exit status of the process; None before it has ended.
     """
 
     def __init__(
@@ -91,21 +92,21 @@ class ExecuteLocal(Action):
         self._output = dict(output) if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
         self._output_format = output_format
         self._log_cmd = log_cmd
-        self._after_exit: Callable[..., Any] | None = None
+        self._exit_callback: Callable[..., Any] | None = None
         self._on_exit: list[LaunchDescriptionEntity] = []
         if callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity):
-            self._after_exit = on_exit
+            self._exit_callback = on_exit
         else:
             self._on_exit = as_entities(on_exit)
         self._respawn = normalize_typed_substitution(read_boolean(respawn), bool)
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries
         self._split_arguments = split_arguments
-        self._sigterm_timeout = _timeout(sigterm_timeout, "sigterm_timeout")
-        self._sigkill_timeout = _timeout(sigkill_timeout, "sigkill_timeout")
+        self._sigterm_timeout = _normalize_timeout(sigterm_timeout, "sigterm_timeout")
+        self._sigkill_timeout = _normalize_timeout(sigkill_timeout, "sigkill_timeout")
         self._emulate_tty = emulate_tty
-        self._cached: dict[int, list[bytes]] | None = {1: [], 2: []} if cached_output else None
-        self._started = False
+        self._output_chunks: dict[int, list[bytes]] | None = {1: [], 2: []} if cached_output else None
+        self._has_started = False
         self.process_details: dict[str, Any] | None = None
         self.return_code: int | None = None
 
@@ -123,7 +124,7 @@ class ExecuteLocal(Action):
 
     @property
     def emulate_tty(self) -> Any:
-        """The given value of `emulate_tty`: a boolean or substitutions."""
+        """The value of `emulate_tty` that was passed to the constructor: a boolean or substitutions."""
         return self._emulate_tty
 
     @property
@@ -158,24 +159,28 @@ class ExecuteLocal(Action):
         return self._read_cached_output(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities to visit when the process has ended, if they are known."""
+        """Return the entities to visit when the process has ended; empty if a function returns them."""
         return self._on_exit
 
     def describe(self) -> str:
         """Return a text with the command, folder and environment, and whether a shell is used."""
-        about = self._description
-        command = ", ".join(describe(part) for part in about.cmd)
-        folder = None if about.cwd is None else describe(about.cwd)
-        pairs = None if about.env is None else [f"{describe(name)}: {describe(value)}" for name, value in about.env]
-        environment = None if pairs is None else "{" + ", ".join(pairs) + "}"
-        return f"{type(self).__name__}(cmd=[{command}], cwd={folder}, env={environment}, shell={self._shell})"
+        description = self._description
+        command = ", ".join(describe(argument) for argument in description.cmd)
+        folder_text = None if description.cwd is None else describe(description.cwd)
+        variable_texts = (
+            None
+            if description.env is None
+            else [f"{describe(name)}: {describe(value)}" for name, value in description.env]
+        )
+        environment_text = None if variable_texts is None else "{" + ", ".join(variable_texts) + "}"
+        return f"{type(self).__name__}(cmd=[{command}], cwd={folder_text}, env={environment_text}, shell={self._shell})"
 
     # --- execution ------------------------------------------------------------------------------------------
 
     def prepare(self, context: LaunchContext) -> None:
-        """Evaluate the name, command, folder and environment.
+        """Evaluate the name, command, folder and environment of the process.
 
-        Users can then read them before the process starts.
+        After this call, users can read these values before the process starts.
         """
         self._description.prepare(context, self)
 
@@ -187,55 +192,55 @@ class ExecuteLocal(Action):
             LinkwrightError: LAUNCH141, an option of the process is invalid.
         """
         if not context.is_shutdown:
-            self._start(context, [perform_substitutions(context, part) for part in self._description.cmd])
+            self._start(context, [perform_substitutions(context, argument) for argument in self._description.cmd])
         return None
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Record the exit status, and return the entities to visit next."""
+        """Record the exit status of the process, and return the entities to visit next."""
         self.return_code = event.returncode
-        if self._after_exit is None:
+        if self._exit_callback is None:
             return self._on_exit
-        return as_entities(self._after_exit(event, context))
+        return as_entities(self._exit_callback(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
         """Store output of the process to stdout (1) or stderr (2), if `cached_output` is set."""
-        if self._cached is not None:
-            self._cached[stream].append(text)
+        if self._output_chunks is not None:
+            self._output_chunks[stream].append(text)
 
     def _start(self, context: LaunchContext, command: list[str]) -> str:
         """Start the process with an evaluated command, and return its name in the log."""
-        if self._started:
+        if self._has_started:
             text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
             message = phrase(
-                "the action of process '{final_name}' is executed a second time",
+                "the action that starts process '{final_name}' was executed twice",
                 final_name=self._description.final_name,
             )
-            hint = phrase("create an action for each start, for example in a function")
+            hint = phrase("create a new action for each start, for example in a function")
             raise error_at(self.place, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
         plan = self._plan(context, command)
         name = context.session.number_process(plan.name)
-        about = self._description
-        about.final_name, about.final_cmd = name, list(plan.command)
-        about.final_cwd, about.final_env = plan.folder, dict(plan.environment)
-        self._started = True
+        description = self._description
+        description.final_name, description.final_cmd = name, list(plan.command)
+        description.final_cwd, description.final_env = plan.folder, dict(plan.environment)
+        self._has_started = True
         context.session.start_process(plan, name)
         return name
 
     def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
-        about = self._description
+        description = self._description
         if not command or not command[0].strip():
             raise error_at(self.place, "LAUNCH141", phrase("the command of the process is empty"))
         if self._split_arguments and not self._shell:
-            command = [word for part in command for word in self._divided(part)]
+            command = [word for argument in command for word in self._split_argument(argument)]
         program = [shlex.split(command[0])[0]] if self._shell else command
         return ProcessPlan(
             action=self,
-            name=about.base_name(context, program),
-            command=[*about.prefix_words(context, program), *command],
-            folder=None if about.cwd is None else perform_substitutions(context, about.cwd),
+            name=description.base_name(context, program),
+            command=[*description.prefix_arguments(context, program), *command],
+            folder=None if description.cwd is None else perform_substitutions(context, description.cwd),
             environment=self._environment(context),
             shell=self._shell,
-            emulate_tty=self._truth(context, "emulate_tty", self._emulate_tty),
+            emulate_tty=self._evaluate_condition(context, "emulate_tty", self._emulate_tty),
             destinations=self._destinations(context),
             output_format=self._output_format,
             log_command=self._log_cmd,
@@ -246,11 +251,13 @@ class ExecuteLocal(Action):
             seconds_to_sigkill=self._seconds(context, self._sigkill_timeout, "sigkill_timeout"),
         )
 
-    def _divided(self, text: str) -> list[str]:
+    def _split_argument(self, text: str) -> list[str]:
         try:
             return shlex.split(text)
         except ValueError as error:
-            message = phrase("'{text}' cannot be split into words: {error}", text=text, error=str(error).lower())
+            message = phrase(
+                ("argument '{text}' cannot be split into words: {error}"), text=text, error=str(error).lower()
+            )
             raise error_at(self.place, "LAUNCH118", message, ros_error=error) from error
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
@@ -263,15 +270,15 @@ class ExecuteLocal(Action):
         try:
             return output_destinations(mode)
         except KeyError as error:
-            wrong = str(error.args[0])
+            invalid_mode = str(error.args[0])
             modes = ", ".join(f"'{output_mode}'" for output_mode in OUTPUT_MODES)
-            hint = did_you_mean(wrong, OUTPUT_MODES) or phrase("use one of {modes}", modes=modes)
-            text = f'{wrong} is not a valid standard output config i.e. "screen", "log" or "both"'
-            message = phrase("there is no output '{wrong}'", wrong=wrong)
+            hint = did_you_mean(invalid_mode, OUTPUT_MODES) or phrase("use one of {modes}", modes=modes)
+            text = f'{invalid_mode} is not a valid standard output config i.e. "screen", "log" or "both"'
+            message = phrase("output destination '{wrong}' does not exist", wrong=invalid_mode)
             raise error_at(self.place, "LAUNCH141", message, hint, ros_error=ValueError(text)) from error
 
-    def _truth(self, context: LaunchContext, name: str, given: Any) -> bool:
-        value = context.launch_configurations.get(name, given)
+    def _evaluate_condition(self, context: LaunchContext, name: str, default: Any) -> bool:
+        value = context.launch_configurations.get(name, default)
         try:
             return value if isinstance(value, bool) else evaluate_condition_expression(context, value)
         except InvalidConditionExpressionError as error:
@@ -289,8 +296,8 @@ class ExecuteLocal(Action):
             )
             raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
 
-    def _seconds(self, context: LaunchContext, given: list[Substitution], name: str) -> float:
-        text = perform_substitutions(context, given)
+    def _seconds(self, context: LaunchContext, substitutions: list[Substitution], name: str) -> float:
+        text = perform_substitutions(context, substitutions)
         try:
             return float(text)
         except ValueError as error:
@@ -298,9 +305,9 @@ class ExecuteLocal(Action):
             raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
 
     def _read_cached_output(self, stream: int) -> str:
-        if self._cached is None:
+        if self._output_chunks is None:
             raise RuntimeError("cached output must be true to be able to get stdout: give it cached_output=True")
-        return b"".join(self._cached[stream]).decode(errors="replace")
+        return b"".join(self._output_chunks[stream]).decode(errors="replace")
 
 
 @expose_action("executable")
@@ -328,8 +335,8 @@ class ExecuteProcess(ExecuteLocal):
         additional_env: Mapping[Any, Any] | None = None,
         **kwargs: Any,
     ) -> None:
-        described = Executable(cmd=cmd, prefix=prefix, name=name, cwd=cwd, env=env, additional_env=additional_env)
-        super().__init__(process_description=described, **kwargs)
+        description = Executable(cmd=cmd, prefix=prefix, name=name, cwd=cwd, env=env, additional_env=additional_env)
+        super().__init__(process_description=description, **kwargs)
 
     @classmethod
     def parse(
@@ -352,7 +359,7 @@ class ExecuteProcess(ExecuteLocal):
     def _parse_cmdline(cls, cmd: str, parser: Parser) -> list[list[Substitution]]:
         """Return the arguments of a command line, each as substitutions.
 
-        The method has its name in ROS.
+        The method has this name in ROS.
         """
         from linkwright.launch.model.markup.command_line import parse_command_line
 
@@ -367,13 +374,13 @@ class ExecuteProcess(ExecuteLocal):
                 replaces the program cannot be imported.
         """
         if not context.is_shutdown:
-            command = [perform_substitutions(context, part) for part in self._description.cmd]
+            command = [perform_substitutions(context, argument) for argument in self._description.cmd]
             if not self._start_replacement(context, command):
                 self._start(context, command)
         return None
 
     def _start_replacement(self, context: LaunchContext, command: list[str]) -> bool:
-        """Start the Linkwright node that replaces the command, if there is one.
+        """Start the Linkwright node that replaces the program of the command, if there is one.
 
         Returns:
             Whether a node was started.
@@ -381,16 +388,16 @@ class ExecuteProcess(ExecuteLocal):
         from linkwright.launch.model.replaced_programs import replacing_node
 
         try:
-            words = shlex.split(" ".join(command)) if self._shell else command
+            arguments = shlex.split(" ".join(command)) if self._shell else command
         except ValueError:
             return False
-        replacement = replacing_node(words, context.environment)
+        replacement = replacing_node(arguments, context.environment)
         if replacement is None:
             return False
-        about = self._description
+        description = self._description
         plan = HostedPlan(
             self,
-            context.session.number_process(about.base_name(context, words)),
+            context.session.number_process(description.base_name(context, arguments)),
             replacement.package,
             replacement.executable,
             None,
@@ -400,7 +407,7 @@ class ExecuteProcess(ExecuteLocal):
             list(replacement.ros_arguments),
             destinations=self._destinations(context),
         )
-        about.final_name, about.final_cmd = plan.process_name, list(words)
+        description.final_name, description.final_cmd = plan.process_name, list(arguments)
         context.session.host.plan(plan)
         return True
 
@@ -411,7 +418,7 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def name(self) -> Any:
-        """The name of the process in the log, such as ``talker-1``.
+        """The name of the process in the log, such as ``talker-1``; substitutions until it is evaluated.
 
         The property contains substitutions until the name is evaluated.
         """
@@ -419,7 +426,7 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def cwd(self) -> Any:
-        """The folder in which the process runs.
+        """The folder in which the process runs; substitutions until it is evaluated.
 
         The property contains substitutions until the folder is evaluated.
         """
@@ -427,7 +434,7 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def env(self) -> Any:
-        """The environment of the process.
+        """The environment of the process; substitutions until it is evaluated.
 
         The property contains substitutions until the environment is evaluated.
         """
@@ -443,9 +450,9 @@ class ExecuteProcess(ExecuteLocal):
         return self._description.name
 
 
-def _timeout(given: Any, name: str) -> list[Substitution]:
+def _normalize_timeout(timeout: Any, name: str) -> list[Substitution]:
     from linkwright.launch.model.substitutions.configuration import LaunchConfiguration
 
-    if given is None:
+    if timeout is None:
         return [LaunchConfiguration(name, default=_DEFAULT_TIMEOUT)]
-    return normalize_to_list_of_substitutions(str(given) if isinstance(given, (int, float)) else given)
+    return normalize_to_list_of_substitutions(str(timeout) if isinstance(timeout, (int, float)) else timeout)

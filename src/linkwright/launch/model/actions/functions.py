@@ -15,7 +15,7 @@ class OpaqueFunction(Action):
     """Calls a function with the launch context, and visits the entities that it returns.
 
     Args:
-        function: called as ``function(context, *args, **kwargs)``.
+        function: the function, which is called as ``function(context, *args, **kwargs)``.
         args: further positional arguments.
         kwargs: further keyword arguments.
     """
@@ -26,9 +26,9 @@ class OpaqueFunction(Action):
         function: Callable[..., Any],
         args: Iterable[Any] | None = None,
         kwargs: Mapping[str, Any] | None = None,
-        **others: Any,
+        **options: Any,
     ) -> None:
-        super().__init__(**others)
+        super().__init__(**options)
         if not callable(function):
             raise TypeError(f"OpaqueFunction expects a function, got {function!r} of type {type(function).__name__}")
         self._function = function
@@ -51,10 +51,10 @@ class OpaqueCoroutine(Action):
     The launch waits for the coroutine to finish, and a shutdown cancels it.
 
     Args:
-        coroutine: called as ``coroutine(context, *args, **kwargs)``.
+        coroutine: the coroutine function, which is called as ``coroutine(context, *args, **kwargs)``.
         args: further positional arguments.
         kwargs: further keyword arguments.
-        ignore_context: whether the coroutine function is called without the context.
+        ignore_context: whether the coroutine function is called without the launch context.
     """
 
     def __init__(
@@ -64,12 +64,12 @@ class OpaqueCoroutine(Action):
         args: Iterable[Any] | None = None,
         kwargs: Mapping[str, Any] | None = None,
         ignore_context: bool = False,
-        **others: Any,
+        **options: Any,
     ) -> None:
-        super().__init__(**others)
+        super().__init__(**options)
         if not inspect.iscoroutinefunction(coroutine):
-            kind = type(coroutine).__name__
-            raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{kind}'")
+            type_name = type(coroutine).__name__
+            raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{type_name}'")
         self._coroutine = coroutine
         self._args = tuple(args or ())
         self._kwargs = dict(kwargs or {})

@@ -30,9 +30,9 @@ class GroupAction(Action):
 
     Args:
         actions: the actions of the group.
-        scoped: whether changes to launch configurations and environment variables are undone after the group.
-        forwarding: whether a scoped group sees the launch configurations and environment variables from outside.
-        launch_configurations: name -> value of configurations to set in the group.
+        scoped: whether the changes of launch configurations and environment variables end with the group.
+        forwarding: whether a scoped group inherits the launch configurations and environment variables from outside.
+        launch_configurations: maps the names of launch configurations to set in the group to their values.
     """
 
     def __init__(
@@ -53,36 +53,36 @@ class GroupAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``scoped``, ``forwarding``, and the ``keep`` tags and actions inside."""
+        """Return the class and keyword arguments for the tag, with the ``keep`` tags and actions inside."""
         _, kwargs = super().parse(entity, parser)
         for name in ("scoped", "forwarding"):
             value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
             if value is not None:
                 kwargs[name] = value
-        kept = parse_pairs(entity, parser, _KEEP)
-        if kept is not None:
-            kwargs["launch_configurations"] = kept
+        configurations = parse_pairs(entity, parser, _KEEP)
+        if configurations is not None:
+            kwargs["launch_configurations"] = configurations
         kwargs["actions"] = [parser.parse_action(child) for child in entity.children if child.type_name != _KEEP]
         return cls, kwargs
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the actions of the group, with the actions that open and close its scope."""
-        # Users' classes set '_GroupAction__actions' (its name in ROS) in 'execute', so build the list again after a
-        # change.
+        """Return the actions of the group, between the actions that open and close its scope."""
+        # Users' classes replace '_GroupAction__actions' (its name in ROS) in 'execute'. Therefore, the list is built
+        # again when that attribute has changed.
         if self.__following is None or self.__following[0] is not self.__actions:
             self.__following = self.__actions, self._enclose_in_scope()
         return self.__following[1]
 
     def _enclose_in_scope(self) -> list[LaunchDescriptionEntity]:
-        setting: list[LaunchDescriptionEntity] = [
+        set_actions: list[LaunchDescriptionEntity] = [
             SetLaunchConfiguration(name, value) for name, value in self._configurations.items()
         ]
         if not self._scoped:
-            return [*setting, *self.__actions]
-        opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
+            return [*set_actions, *self.__actions]
+        open_actions: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
         if not self._forwarding:
-            setting = [ResetEnvironment(), ResetLaunchConfigurations(self._configurations)]
-        return [*opening, *setting, *self.__actions, PopEnvironment(), PopLaunchConfigurations()]
+            set_actions = [ResetEnvironment(), ResetLaunchConfigurations(self._configurations)]
+        return [*open_actions, *set_actions, *self.__actions, PopEnvironment(), PopLaunchConfigurations()]
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Return the actions to visit next."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linkwright.launch.errors.places import Place
     from linkwright.launch.model.markup.entity import Entity, Parser
 
-_LOGGER = "launch.user"
+_LOGGER_NAME = "launch.user"
 LEVELS = {
     "DEBUG": logging.DEBUG,
     "INFO": logging.INFO,
@@ -49,25 +49,27 @@ class Log(Action):
         super().__init__(**kwargs)
         self._msg = normalize_to_list_of_substitutions(msg)
         self._level = normalize_to_list_of_substitutions(level)
-        if all(isinstance(part, TextSubstitution) for part in self._level):
-            _number("".join(part.text for part in self._level if isinstance(part, TextSubstitution)), self._level_place)
+        if all(isinstance(substitution, TextSubstitution) for substitution in self._level):
+            _level_number(
+                "".join(part.text for part in self._level if isinstance(part, TextSubstitution)), self._level_place
+            )
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``message`` and ``level``."""
+        """Return the class and keyword arguments for the tag."""
         _, kwargs = super().parse(entity, parser)
         kwargs["msg"] = parser.parse_substitution(entity.get_attr("message"))
         level = entity.get_attr("level", optional=True)
         if level is None:
             if cls is Log:
-                problem = (
+                warning = (
                     "The action log now expects a log level. Either provide one or switch to using the log_info action"
                 )
                 place = entity.place
                 if place is None:
-                    warnings.warn(problem, stacklevel=2)
+                    warnings.warn(warning, stacklevel=2)
                 else:
-                    warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
+                    warnings.warn_explicit(warning, UserWarning, place.file, place.span().line)
                 return LogInfo, kwargs  # Jazzy and earlier log this tag at level INFO
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
@@ -85,23 +87,23 @@ class Log(Action):
 
     @property
     def _level_place(self) -> Place | None:
-        return next((part.place for part in self._level if part.place is not None), self.place)
+        return next((substitution.place for substitution in self._level if substitution.place is not None), self.place)
 
     def describe(self) -> str:
-        """Return a text with the line to log."""
+        """Return a text with the logged line."""
         return f"{type(self).__name__}({describe(self._msg)})"
 
     def execute(self, context: LaunchContext) -> None:
-        """Write the line.
+        """Write the line to the log.
 
         Raises:
             KeyError: LAUNCH150, there is no such level.
         """
-        level = _number(perform_substitutions(context, self._level), self._level_place)
-        context.log(_LOGGER, level, perform_substitutions(context, self._msg))
+        level = _level_number(perform_substitutions(context, self._level), self._level_place)
+        context.log(_LOGGER_NAME, level, perform_substitutions(context, self._msg))
 
 
-def _number(level: str, place: Place | None) -> int:
+def _level_number(level: str, place: Place | None) -> int:
     if level.upper() in LEVELS:
         return LEVELS[level.upper()]
     from linkwright.diagnostics import did_you_mean
@@ -125,28 +127,28 @@ class _LogOfLevel(Log):
 
 @expose_action("log_info")
 class LogInfo(_LogOfLevel):
-    """Writes an informational line."""
+    """Writes a line at level INFO."""
 
 
 @expose_action("log_debug")
 class LogDebug(_LogOfLevel):
-    """Writes a debug line, which is shown only with ``--debug``."""
+    """Writes a line at level DEBUG, which is shown only with ``--debug``."""
 
     _LEVEL = "DEBUG"
 
 
 @expose_action("log_warning")
 class LogWarning(_LogOfLevel):
-    """Writes a warning."""
+    """Writes a line at level WARNING."""
 
     _LEVEL = "WARNING"
 
 
 @expose_action("log_error")
 class LogError(_LogOfLevel):
-    """Writes an error.
+    """Writes a line at level ERROR.
 
-    The launch continues.
+    The launch continues after an error.
     """
 
     _LEVEL = "ERROR"

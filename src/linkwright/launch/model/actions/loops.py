@@ -1,4 +1,4 @@
-"""Actions that are repeated with different values."""
+"""Actions that repeat other actions with different values."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class ForEach(Action):
     """Calls a function for each of several sets of values, and visits the returned entities.
 
     Args:
-        input_values: the sets, each a YAML mapping in braces, separated by semicolons.
-        function: called with the values of a set as keyword arguments; returns entities.
+        input_values: the sets of values, each a YAML mapping in braces, separated by semicolons.
+        function: called with the values of one set as keyword arguments; returns entities.
     """
 
     SEPARATOR = ";"
@@ -44,11 +44,11 @@ class ForEach(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``values`` and the actions inside."""
+        """Return the class and keyword arguments for the tag, with the actions inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["input_values"] = parser.parse_substitution(entity.get_attr("values"))
         children = [parser.parse_action(child) for child in entity.children]
-        kwargs["function"] = lambda **values: iteration(children, values)
+        kwargs["function"] = lambda **values: iteration_entities(children, values)
         return cls, kwargs
 
     @property
@@ -58,7 +58,7 @@ class ForEach(Action):
 
     @property
     def function(self) -> Callable[..., Any]:
-        """The function to call for each set."""
+        """The function that is called with each set of values."""
         return self._function
 
     def describe(self) -> str:
@@ -66,7 +66,7 @@ class ForEach(Action):
         return f"{type(self).__name__}(input_values={describe(self._input_values)}, function={_name(self._function)})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities for all sets of values, to be visited next.
+        """Return the entities for all sets of values, which are visited next.
 
         Raises:
             LinkwrightError: LAUNCH151, a set is not a mapping.
@@ -83,7 +83,11 @@ class ForEach(Action):
                 raise error_at(
                     self.place,
                     "LAUNCH151",
-                    phrase("values '{text}' are not YAML: {error}", text=text.strip(), error=foreign(error)),
+                    phrase(
+                        ("values '{text}' of the loop are not valid YAML: {error}"),
+                        text=text.strip(),
+                        error=foreign(error),
+                    ),
                 ) from error
             if not isinstance(values, dict):
                 hint = phrase("write each set of values as {name: value, ...}, and separate them with ';'")
@@ -99,7 +103,7 @@ class ForLoop(Action):
 
     Args:
         length: the number of iterations.
-        function: called with the index as the keyword argument ``i``; returns entities.
+        function: called with the keyword argument ``i``, which is the index; returns entities.
         name: the name of the index in ``$(index NAME)``.
     """
 
@@ -113,12 +117,12 @@ class ForLoop(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``len``, ``name`` and the actions inside."""
+        """Return the class and keyword arguments for the tag, with the actions inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["length"] = parser.parse_substitution(entity.get_attr("len"))
         name = kwargs["name"] = entity.get_attr("name")
         children = [parser.parse_action(child) for child in entity.children]
-        kwargs["function"] = lambda i: iteration(children, {name: i})
+        kwargs["function"] = lambda i: iteration_entities(children, {name: i})
         return cls, kwargs
 
     @property
@@ -133,7 +137,7 @@ class ForLoop(Action):
 
     @property
     def name(self) -> str | None:
-        """The name of the index for ``$(index NAME)``."""
+        """The name of the index in ``$(index NAME)``."""
         return self._name
 
     def describe(self) -> str:
@@ -142,7 +146,7 @@ class ForLoop(Action):
         return f"{type(self).__name__}(length={length}, name='{self._name}', function={function})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return a `ForEach` over the indices, to be visited next.
+        """Return a `ForEach` over the indices, which is visited next.
 
         Raises:
             ValueError: LAUNCH151, the length is not an integer.
@@ -153,7 +157,7 @@ class ForLoop(Action):
         except ValueError as error:
             message = phrase("the length '{text}' of a loop is not an integer", text=text)
             raise error_at(self.place, "LAUNCH151", message, ros_error=error) from error
-        values = ForEach.SEPARATOR.join(f"{{i: {number}}}" for number in range(length))
+        values = ForEach.SEPARATOR.join(f"{{i: {index}}}" for index in range(length))
         return [ForEach(values, function=self._function)]
 
 
@@ -161,7 +165,9 @@ def _name(function: Callable[..., Any]) -> str:
     return str(getattr(function, "__name__", type(function).__name__))
 
 
-def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]) -> list[LaunchDescriptionEntity]:
+def iteration_entities(
+    children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]
+) -> list[LaunchDescriptionEntity]:
     """Return the actions of one iteration of a loop.
 
     In these actions, ``$(for-var NAME)`` and ``$(index NAME)`` return the values of the iteration.
@@ -176,8 +182,7 @@ def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, 
     def leave(context: LaunchContext) -> None:
         context.pop_locals()
 
-    # As in ROS, the scope takes three actions, because users count the entities of a loop. The children are copied for
-    # each
-    # iteration, because an action such as a node has state.
-    around = [OpaqueFunction(function=step) for step in (begin, enter, leave)]
-    return [*around[:2], *deepcopy(list(children)), around[2]]
+    # As in ROS, three actions open and close the scope, because users count the entities of a loop. The children are
+    # copied for each iteration, because an action such as a node has state.
+    scope_actions = [OpaqueFunction(function=function) for function in (begin, enter, leave)]
+    return [*scope_actions[:2], *deepcopy(list(children)), scope_actions[2]]

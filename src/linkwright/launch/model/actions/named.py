@@ -28,7 +28,7 @@ Pairs = list[tuple[list[Substitution], list[Substitution]]]
 
 
 class NamedAction(Action):
-    """An action on a launch configuration or environment variable with a given name."""
+    """An action on the launch configuration or environment variable with a given name."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -36,7 +36,7 @@ class NamedAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attribute ``name``."""
+        """Return the class and keyword arguments for the tag, with its attribute ``name``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
         return cls, kwargs
@@ -64,7 +64,7 @@ class AssigningAction(NamedAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes ``name`` and ``value``."""
+        """Return the class and keyword arguments for the tag, with its attributes ``name`` and ``value``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value"))
         return cls, kwargs
@@ -88,26 +88,26 @@ def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | No
 
     The result is None if there are no such tags.
     """
-    inside = entity.get_attr(tag, data_type=list[Entity], optional=True)
-    if inside is None:
+    children = entity.get_attr(tag, data_type=list[Entity], optional=True)
+    if children is None:
         return None
     pairs = {
         tuple(parser.parse_substitution(child.get_attr("name"))): parser.parse_substitution(child.get_attr("value"))
-        for child in inside
+        for child in children
     }
-    for child in inside:
+    for child in children:
         child.assert_entity_completely_parsed()
     return pairs
 
 
-def normalize_pairs(values: Any) -> Pairs:
-    """Convert a mapping, or pairs of names and values, to pairs of substitution lists."""
-    pairs: Iterable[Any] = values.items() if hasattr(values, "items") else values
+def normalize_pairs(pairs_or_mapping: Any) -> Pairs:
+    """Return the pairs of a mapping, or of an iterable of names and values, as substitutions."""
+    pairs: Iterable[Any] = pairs_or_mapping.items() if hasattr(pairs_or_mapping, "items") else pairs_or_mapping
     return [
         (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)) for name, value in pairs
     ]
 
 
 def perform_pairs(context: LaunchContext, pairs: Pairs) -> dict[str, str]:
-    """Evaluate pairs of names and values, and return them as a dictionary."""
+    """Return the evaluated names and values as a dictionary."""
     return {perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs}

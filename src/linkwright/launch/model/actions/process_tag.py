@@ -12,11 +12,17 @@ from linkwright.launch.model.markup.command_line import parse_command_line
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
 
-_TEXTS = {"cwd": "cwd", "name": "name", "prefix": "launch-prefix", "output": "output", "respawn": "respawn"}
-"""Argument -> attribute, for those that may contain substitutions."""
+_SUBSTITUTED_ATTRIBUTES = {
+    "cwd": "cwd",
+    "name": "name",
+    "prefix": "launch-prefix",
+    "output": "output",
+    "respawn": "respawn",
+}
+"""Maps the keyword arguments that may contain substitutions to the attributes of the tag."""
 
-_TRUTHS = ("shell", "emulate_tty", "log_cmd", "cached_output", "split_arguments")
-_SECONDS = ("sigkill_timeout", "sigterm_timeout")
+_BOOLEAN_ATTRIBUTES = ("shell", "emulate_tty", "log_cmd", "cached_output", "split_arguments")
+_TIMEOUT_ATTRIBUTES = ("sigkill_timeout", "sigterm_timeout")
 
 
 def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> dict[str, Any]:
@@ -35,12 +41,12 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
     kwargs: dict[str, Any] = {}
     if "cmd" not in ignored:
         kwargs["cmd"] = parse_command_line(entity.get_attr("cmd"), parser)
-    for argument, attribute in _TEXTS.items():
+    for argument, attribute in _SUBSTITUTED_ATTRIBUTES.items():
         if argument not in ignored:
-            value = entity.get_attr(attribute, optional=True, **_as_text(argument))
+            value = entity.get_attr(attribute, optional=True, **_reading_options(argument))
             if value is not None:
                 kwargs[argument] = parser.parse_substitution(value) if isinstance(value, str) else value
-    for name in _TRUTHS:
+    for name in _BOOLEAN_ATTRIBUTES:
         if name not in ignored:
             value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
             if value is not None:
@@ -50,11 +56,11 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
         if retries is not None:
             kwargs["respawn_max_retries"] = retries
     if "respawn_delay" not in ignored:
-        delay = _not_negative(entity, "respawn_delay")
+        delay = _read_non_negative(entity, "respawn_delay")
         if delay is not None:
             kwargs["respawn_delay"] = delay
-    for name in _SECONDS:
-        seconds = None if name in ignored else _not_negative(entity, name)
+    for name in _TIMEOUT_ATTRIBUTES:
+        seconds = None if name in ignored else _read_non_negative(entity, name)
         if seconds is not None:
             kwargs[name] = str(seconds)
     if "on_exit" not in ignored:
@@ -66,19 +72,21 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
     return kwargs
 
 
-def _as_text(argument: str) -> dict[str, Any]:
-    """Return the options of `get_attr` for an argument that may contain substitutions.
+def _reading_options(argument: str) -> dict[str, Any]:
+    """Return the options of `get_attr` for an attribute that may contain substitutions.
 
     In YAML, ``respawn`` may also be a boolean.
     """
     return {"data_type": bool, "can_be_str": True} if argument == "respawn" else {}
 
 
-def _not_negative(entity: Entity, name: str) -> float | None:
+def _read_non_negative(entity: Entity, name: str) -> float | None:
     value: float | None = entity.get_attr(name, data_type=float, optional=True, can_be_str=False)
     if value is not None and value < 0.0:
         text = f"Attribute {name} of Entity node expected to be a non-negative value but got `{value}`"
-        message = phrase("attribute '{name}' of '{type_name}' is negative", name=name, type_name=entity.type_name)
+        message = phrase(
+            ("attribute '{name}' of '{type_name}' must not be negative"), name=name, type_name=entity.type_name
+        )
         raise error_at(entity.place, "LAUNCH118", message, ros_error=ValueError(text))
     return value
 

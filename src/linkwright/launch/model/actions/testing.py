@@ -1,6 +1,6 @@
 """The actions of ``launch_testing``, for the launch files of tests.
 
-These launch files can also be launched like any other. ``launch_test`` runs the tests in them; see
+Any launch can run these launch files. ``launch_test`` also runs the tests in them; see
 `linkwright.launch.standins.launch_testing_api`.
 """
 
@@ -39,7 +39,7 @@ class ReadyToTest(Action):
         self._callbacks.append(callback)
 
     def execute(self, context: LaunchContext) -> None:
-        """Call the registered functions."""
+        """Call the functions that `_add_callback` registered."""
         for callback in self._callbacks:
             callback()
 
@@ -50,15 +50,15 @@ def find_ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[
         if isinstance(entity, ReadyToTest):
             yield entity
         yield from find_ready_actions(entity.describe_sub_entities())
-        for _, inside in entity.describe_conditional_sub_entities():
-            yield from find_ready_actions(inside)
+        for _, children in entity.describe_conditional_sub_entities():
+            yield from find_ready_actions(children)
 
 
 class Test(ExecuteProcess):
-    """A process that is a test.
+    """A process that runs a test.
 
     Args:
-        timeout: seconds after which the test is ended; no limit by default.
+        timeout: the seconds after which the process is shut down; None for no limit.
         kill_timeout: has no effect, as in ROS.
         kwargs: see `ExecuteProcess`.
     """
@@ -78,27 +78,27 @@ class Test(ExecuteProcess):
 
     @property
     def timeout(self) -> Any:
-        """The timeout as given: seconds, substitutions or None."""
+        """The timeout as passed to the constructor: seconds, substitutions, or None."""
         return self._timeout
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the test, and return the entities to visit next, such as the timeout timer."""
+        """Start the test, and return the entities to visit next, such as the timer of the timeout."""
         entities = list(super().execute(context) or ())
         if self._timeout is not None:
-            end = EmitEvent(event=events.ShutdownProcess(process_matcher=events.matches_action(self)))
-            self._timer = TimerAction(period=self._timeout, actions=[end])
+            shutdown_action = EmitEvent(event=events.ShutdownProcess(process_matcher=events.matches_action(self)))
+            self._timer = TimerAction(period=self._timeout, actions=[shutdown_action])
             entities.append(self._timer)
         return entities
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Cancel the timeout timer, and return the entities to visit when the test has ended."""
+        """Cancel the timer of the timeout, and return the entities to visit next."""
         if self._timer is not None:
             self._timer.cancel()
         return super().exited(event, context)
 
 
 class GTest(Test):
-    """A test that is a compiled program.
+    """A test in a compiled program.
 
     Args:
         path: the path of the program.
@@ -111,7 +111,7 @@ class GTest(Test):
 
 
 class PyTest(Test):
-    """A test that pytest runs.
+    """A test file that pytest runs.
 
     Args:
         path: the path of the test file.

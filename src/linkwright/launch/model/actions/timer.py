@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 @expose_action("timer")
 class TimerAction(Action):
-    """Visits actions once, after a period.
+    """Visits actions once, when a period has passed.
 
     Args:
         period: the period in seconds, as a number or substitutions.
         actions: the actions to visit.
-        cancel_on_shutdown: whether a shutdown cancels the timer; otherwise the launch waits for it.
+        cancel_on_shutdown: whether a shutdown cancels the timer. If False, the launch waits for the timer.
     """
 
     def __init__(
@@ -39,20 +39,20 @@ class TimerAction(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._period = normalize_typed_substitution(_number(period, self), float)
+        self._period = normalize_typed_substitution(_normalize_period(period, self), float)
         self._actions = as_entities(actions)
         self._cancel_on_shutdown = normalize_typed_substitution(cancel_on_shutdown, bool)
         self._cancel: Callable[[], None] | None = None
-        self._canceled = False
+        self._is_canceled = False
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``period``, ``cancel_on_shutdown`` and the actions inside."""
+        """Return the class and keyword arguments for the tag, with the actions inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["period"] = parser.parse_if_substitutions(entity.get_attr("period", data_type=float, can_be_str=True))
-        cancel = entity.get_attr("cancel_on_shutdown", optional=True, data_type=bool, can_be_str=True)
-        if cancel is not None:
-            kwargs["cancel_on_shutdown"] = parser.parse_if_substitutions(cancel)
+        cancel_on_shutdown = entity.get_attr("cancel_on_shutdown", optional=True, data_type=bool, can_be_str=True)
+        if cancel_on_shutdown is not None:
+            kwargs["cancel_on_shutdown"] = parser.parse_if_substitutions(cancel_on_shutdown)
         kwargs["actions"] = [parser.parse_action(child) for child in entity.children]
         return cls, kwargs
 
@@ -71,11 +71,11 @@ class TimerAction(Action):
         return f"{type(self).__name__}(period={self._period}, actions=<actions>)"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return an empty list, because the actions are visited only after the period."""
+        """Return an empty list, because the actions are visited only when the period has passed."""
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the actions, with a text about the timer."""
+        """Return the actions, with a text about the period."""
         return [(f"{self._period} seconds pass without being canceled", self._actions)]
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
@@ -87,7 +87,7 @@ class TimerAction(Action):
 
         This method has no effect once the period has passed.
         """
-        self._canceled = True
+        self._is_canceled = True
         if self._cancel is not None:
             self._cancel()
 
@@ -99,31 +99,31 @@ class TimerAction(Action):
         """
         try:
             seconds = float(perform_typed_substitution(context, self._period, float))
-            cancels = bool(perform_typed_substitution(context, self._cancel_on_shutdown, bool))
+            cancel_on_shutdown = bool(perform_typed_substitution(context, self._cancel_on_shutdown, bool))
         except ValueError as error:
             text = perform_substitutions(context, self._period) if isinstance(self._period, list) else self._period
             message = phrase("the period '{text}' of a timer is not a number", text=text)
             raise error_at(self.place, "LAUNCH127", message, ros_error=error) from error
-        if not self._canceled:
+        if not self._is_canceled:
             event = events.TimerEvent(timer_action=self, context=context)
             self._cancel = context.session.call_later(
-                seconds, event, self._actions, cancel_on_shutdown=cancels, schedule=self._schedule(context)
+                seconds, event, self._actions, cancel_on_shutdown=cancel_on_shutdown, schedule=self._schedule(context)
             )
 
     def _schedule(self, context: LaunchContext) -> Schedule | None:
-        """Return the scheduler of the timer, or None for the event loop of the launch."""
+        """Return the scheduler that calls the timer, or None for the event loop of the launch."""
         return None
 
 
-def _number(period: Any, timer: TimerAction) -> Any:
-    """Convert a literal period to a number, and return substitutions unchanged.
+def _normalize_period(period: Any, timer: TimerAction) -> Any:
+    """Return a literal period as a number, and substitutions unchanged.
 
     Raises:
         LinkwrightError: LAUNCH127, the literal is not a number.
     """
     if isinstance(period, (bool, int)):
         return float(period)
-    if isinstance(period, (list, tuple)) and all(isinstance(part, str) for part in period):
+    if isinstance(period, (list, tuple)) and all(isinstance(item, str) for item in period):
         period = "".join(period)
     if not isinstance(period, str):
         return period

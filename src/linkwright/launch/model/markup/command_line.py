@@ -12,49 +12,54 @@ _ESCAPED_IN_DOUBLE_QUOTES = '"\\'
 
 
 def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
-    """Split a command line into arguments, each a list of substitutions to join.
+    """Return the arguments of a command line, each as a list of substitutions to join.
 
-    Literal spaces, quotes and backslashes have the same meaning as in a shell, but not in the text that a substitution
-    produces. A quote may be opened before a substitution and closed after it.
+    Spaces, quotes and backslashes in literal text have the same meaning as in a shell. In the text that a substitution
+    produces, they have no special meaning. A quote may be opened before a substitution and closed after it.
 
     Raises:
         ValueError: LAUNCH118, a quote is not closed.
     """
-    divided = _Words()
-    parts: list[Substitution] = parser.parse_substitution(text)
-    for part in parts:
-        if isinstance(part, TextSubstitution):
-            with reading_markup_at(part.place):
-                divided.add_text(part.text)
+    splitter = _ArgumentSplitter()
+    substitutions: list[Substitution] = parser.parse_substitution(text)
+    for substitution in substitutions:
+        if isinstance(substitution, TextSubstitution):
+            with reading_markup_at(substitution.place):
+                splitter.add_text(substitution.text)
         else:
-            divided.add_substitution(part)
-    if divided.quote:
+            splitter.add_substitution(substitution)
+    if splitter.quote:
         ros_error = ValueError("No closing quotation")
         message = phrase(
-            "command '{text}' cannot be split into words: the quote {quote} is not closed",
+            "command '{text}' cannot be split into arguments, because the quote {quote} is not closed",
             text=text,
-            quote=divided.quote,
+            quote=splitter.quote,
         )
-        raise error_at(parts[-1].place, "LAUNCH118", message, ros_error=ros_error)
-    divided.end_word()
-    return divided.words
+        raise error_at(substitutions[-1].place, "LAUNCH118", message, ros_error=ros_error)
+    splitter.end_argument()
+    return splitter.arguments
 
 
-class _Words:
-    """Splits literal text and substitutions into the arguments of a command."""
+class _ArgumentSplitter:
+    """Splits literal text and substitutions into the arguments of a command.
+
+    Attributes:
+        arguments: the finished arguments, each as a list of substitutions.
+        quote: the quote that is open; empty if none is.
+    """
 
     def __init__(self) -> None:
-        self.words: list[list[Substitution]] = []
+        self.arguments: list[list[Substitution]] = []
         self.quote = ""
-        self._word: list[Substitution] = []
+        self._argument: list[Substitution] = []
         self._text = ""
-        self._began = False
+        self._has_begun = False
 
-    def add_substitution(self, part: Substitution) -> None:
+    def add_substitution(self, substitution: Substitution) -> None:
         """Append a substitution to the current argument."""
         self._end_text()
-        self._word.append(part)
-        self._began = True
+        self._argument.append(substitution)
+        self._has_begun = True
 
     def add_text(self, text: str) -> None:
         """Add literal text, which may end the current argument and start others."""
@@ -64,29 +69,29 @@ class _Words:
                 self.quote = ""
             elif not self.quote and character in "'\"":
                 self.quote = character
-                self._began = True
+                self._has_begun = True
             elif not self.quote and character.isspace():
-                self.end_word()
+                self.end_argument()
             elif character == "\\" and self.quote != "'":
-                following = next(characters, "")
-                keeps = self.quote and following not in _ESCAPED_IN_DOUBLE_QUOTES
-                self._add(character + following if keeps else following)
+                next_character = next(characters, "")
+                keeps_backslash = self.quote and next_character not in _ESCAPED_IN_DOUBLE_QUOTES
+                self._add(character + next_character if keeps_backslash else next_character)
             else:
                 self._add(character)
         self._end_text()
 
-    def end_word(self) -> None:
+    def end_argument(self) -> None:
         """End the current argument, if there is one."""
         self._end_text()
-        if self._began:
-            self.words.append(self._word or [TextSubstitution(text="")])
-        self._word, self._began = [], False
+        if self._has_begun:
+            self.arguments.append(self._argument or [TextSubstitution(text="")])
+        self._argument, self._has_begun = [], False
 
     def _add(self, text: str) -> None:
         self._text += text
-        self._began = True
+        self._has_begun = True
 
     def _end_text(self) -> None:
         if self._text:
-            self._word.append(TextSubstitution(text=self._text))
+            self._argument.append(TextSubstitution(text=self._text))
         self._text = ""

@@ -1,6 +1,6 @@
 """The interfaces that functions for reading tags use.
 
-They are `Entity`, an XML tag or YAML mapping, and `Parser`, the parser of the file.
+They are `Entity`, which is an XML tag or YAML mapping, and `Parser`, which parses the file.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ class Entity:
 
     @property
     def place(self) -> Place | None:
-        """The location; None for an entity that a program created."""
+        """The location of the entity in its file; None if a program created the entity."""
         return None
 
     def assert_entity_completely_parsed(self) -> None:
-        """Check that all parts of the entity have been read.
+        """Raise an error if some attributes or child entities have not been read.
 
         Raises:
-            ValueError: LAUNCH116, there are unread attributes or child entities.
+            ValueError: LAUNCH116, an attribute or child entity was not read.
         """
         raise NotImplementedError
 
@@ -52,12 +52,12 @@ class Entity:
             data_type: the type of the value (see `linkwright.launch.model.markup.values`); None applies YAML's rules,
                 and a list of `Entity` requests the child entities with that name.
             optional: whether to return None if the attribute is missing.
-            can_be_str: whether to return a string of another type, because it may contain a substitution.
+            can_be_str: whether to return a string unchanged if it is not of the type, because it may contain a
+                substitution.
 
         Raises:
             AttributeError: LAUNCH117, the attribute is missing and not optional.
-            TypeError: LAUNCH118, the attribute has another type.
-            ValueError: LAUNCH118, the attribute has another type.
+            TypeError, ValueError: LAUNCH118, the attribute has another type.
         """
         raise NotImplementedError
 
@@ -84,10 +84,10 @@ class PlacedText(str):
     place: Place | None
 
     def __new__(cls, text: str, place: Place | None) -> PlacedText:  # noqa: PYI034 - Self needs Python 3.11
-        """Create the string with its location."""
-        made = super().__new__(cls, text)
-        made.place = place
-        return made
+        """Return a string with a location."""
+        placed_text = super().__new__(cls, text)
+        placed_text.place = place
+        return placed_text
 
 
 def place_of(text: object) -> Place | None:
@@ -108,19 +108,19 @@ class Parser(Protocol):
         """Parse a text that may contain ``$(...)`` into substitutions."""
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """Parse the substitutions in the strings of a value; strings without any are unchanged."""
+        """Return a value with the substitutions in its strings parsed; strings without any are unchanged."""
 
     def escape_characters(self, value: str) -> str:
         """Return the text with its backslash escapes resolved."""
 
 
 def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
-    """Return keyword arguments with the substitutions in the attributes that the tag has.
+    """Return keyword arguments for those of the given attributes that the tag has.
 
     Args:
         entity: the tag.
         parser: parses the substitutions.
-        attributes: argument name -> attribute name.
+        attributes: maps the names of arguments to the names of attributes.
     """
-    given = {argument: entity.get_attr(attribute, optional=True) for argument, attribute in attributes.items()}
-    return {argument: parser.parse_substitution(text) for argument, text in given.items() if text is not None}
+    texts = {argument: entity.get_attr(attribute, optional=True) for argument, attribute in attributes.items()}
+    return {argument: parser.parse_substitution(text) for argument, text in texts.items() if text is not None}

@@ -38,7 +38,7 @@ StrSomeScalarType = SomeScalarType
 StrSomeSequenceType = Sequence[ScalarValueType]
 StrSomeValueType = StrSomeScalarType | StrSomeSequenceType
 
-_TRUE_BY_NUMBER = {"1": "true", "0": "false"}
+_BOOLEANS_BY_DIGIT = {"1": "true", "0": "false"}
 
 
 def is_typing_list(data_type: Any) -> bool:
@@ -47,12 +47,12 @@ def is_typing_list(data_type: Any) -> bool:
 
 
 def is_valid_scalar_type(data_type: Any) -> bool:
-    """Return whether a type is ``int``, ``float``, ``bool`` or ``str``."""
+    """Return whether a type is one of ``int``, ``float``, ``bool`` and ``str``."""
     return data_type in ScalarTypesTuple
 
 
 def extract_type(data_type: Any) -> tuple[Any, bool]:
-    """Return the scalar type of a type, and whether the type is a list of that scalar type.
+    """Return the scalar type that a type consists of, and whether the type is a list.
 
     Raises:
         ValueError: the type is neither a scalar type nor a list of one.
@@ -65,20 +65,20 @@ def extract_type(data_type: Any) -> tuple[Any, bool]:
 
 
 def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
-    """Return whether a value has one of the allowed types.
+    """Return whether a value is a scalar of an allowed type, or a list with items of one such type.
 
     If `can_be_str` is set, lists may contain strings among other items.
     """
     if not isinstance(value, list):
         return isinstance(value, ScalarTypesTuple)
-    kinds = {_scalar_type(item) for item in value}
-    if None in kinds:
+    item_types = {_scalar_type(item) for item in value}
+    if None in item_types:
         return False
-    return len(kinds - {str}) <= 1 if can_be_str else len(kinds) <= 1
+    return len(item_types - {str}) <= 1 if can_be_str else len(item_types) <= 1
 
 
 def _scalar_type(value: Any) -> type | None:
-    return next((kind for kind in (bool, int, float, str) if isinstance(value, kind)), None)
+    return next((scalar_type for scalar_type in (bool, int, float, str) if isinstance(value, scalar_type)), None)
 
 
 def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
@@ -91,15 +91,15 @@ def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) 
     """
     if data_type is None:
         return is_instance_of_valid_type(value, can_be_str=can_be_str)
-    scalar, is_list = extract_type(data_type)
-    accepted = (scalar, str) if can_be_str else (scalar,)
+    scalar_type, is_list = extract_type(data_type)
+    accepted_types = (scalar_type, str) if can_be_str else (scalar_type,)
     if is_list:
-        return isinstance(value, list) and all(isinstance(item, accepted) for item in value)
-    return isinstance(value, accepted)
+        return isinstance(value, list) and all(isinstance(item, accepted_types) for item in value)
+    return isinstance(value, accepted_types)
 
 
 def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) -> Any:
-    """Convert a string to a value of a type.
+    """Return the value of a type that a string represents.
 
     Args:
         value: the string.
@@ -115,72 +115,73 @@ def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) 
         raise TypeError(f"expected 'value' to be of type '{str}', but got {value!r} of type {type(value)}")
     if data_type is None:
         return _parse_yaml(value, f"Failed to convert '{value}' using yaml rules", can_be_str)
-    scalar, is_list = extract_type(data_type)
+    scalar_type, is_list = extract_type(data_type)
     if is_list:
-        return _coerce_to_list(value, scalar, can_be_str)
-    if scalar is str:
+        return _coerce_to_list(value, scalar_type, can_be_str)
+    if scalar_type is str:
         return value
-    if scalar is bool:
-        made = _parse_yaml(_TRUE_BY_NUMBER.get(value, value), f"Failed to convert '{value}' to '{bool}'", can_be_str)
-        if isinstance(made, (bool, str) if can_be_str else bool):
-            return made
+    if scalar_type is bool:
+        parsed = _parse_yaml(
+            _BOOLEANS_BY_DIGIT.get(value, value), f"Failed to convert '{value}' to '{bool}'", can_be_str
+        )
+        if isinstance(parsed, (bool, str) if can_be_str else bool):
+            return parsed
         raise ValueError(f"Cannot convert value '{value}' to '{bool}'")
     try:
-        return scalar(value)
+        return scalar_type(value)
     except ValueError:
         if can_be_str:
             return value
         raise
 
 
-def _coerce_to_list(value: str, scalar: type, can_be_str: bool) -> Any:
-    accepted = (str, scalar) if can_be_str else (scalar,)
-    problem = f"Cannot convert value '{value}' to a list of '{scalar.__name__}'"
-    made = _parse_yaml(value, problem, can_be_str)
-    if not isinstance(made, list):
-        raise ValueError(problem)  # noqa: TRY004 - as in ROS
-    if not all(isinstance(item, accepted) for item in made):
-        raise ValueError(f"{problem}, got {made}")
-    return made
+def _coerce_to_list(value: str, scalar_type: type, can_be_str: bool) -> Any:
+    accepted_types = (str, scalar_type) if can_be_str else (scalar_type,)
+    message = f"Cannot convert value '{value}' to a list of '{scalar_type.__name__}'"
+    parsed = _parse_yaml(value, message, can_be_str)
+    if not isinstance(parsed, list):
+        raise ValueError(message)  # noqa: TRY004 - as in ROS
+    if not all(isinstance(item, accepted_types) for item in parsed):
+        raise ValueError(f"{message}, got {parsed}")
+    return parsed
 
 
-def _parse_yaml(value: str, problem: str, can_be_str: bool) -> Any:
+def _parse_yaml(value: str, message: str, can_be_str: bool) -> Any:
     import yaml
 
     if not value:
         return value
     try:
-        made = yaml.safe_load(value)
+        parsed = yaml.safe_load(value)
     except Exception as error:
         if can_be_str:
             return value
-        raise ValueError(f"{problem}: yaml.safe_load() failed\n{error}") from error
-    if not is_instance_of_valid_type(made, can_be_str=can_be_str):
-        raise ValueError(f"{problem}: output type is not allowed, got {type(made)}")
-    return made
+        raise ValueError(f"{message}: yaml.safe_load() failed\n{error}") from error
+    if not is_instance_of_valid_type(parsed, can_be_str=can_be_str):
+        raise ValueError(f"{message}: output type is not allowed, got {type(parsed)}")
+    return parsed
 
 
 def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = False) -> list[Any]:
-    """Convert a list of strings to a uniform list of a scalar type; see `coerce_to_type`.
+    """Return the values of a scalar type that a list of strings represents; see `coerce_to_type`.
 
     Raises:
         TypeError: the value is not a list of strings.
-        ValueError: a string cannot be converted, the list is not uniform, or the type is not allowed.
+        ValueError: a string cannot be converted, the values have different types, or the type is not allowed.
     """
     if not isinstance(value, list):
         raise TypeError(f"expected 'value' to be of type '{list}', but got {value!r} of type {type(value)}")
-    made = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
-    if not is_instance_of_valid_type(made, can_be_str=can_be_str):
+    values = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
+    if not is_instance_of_valid_type(values, can_be_str=can_be_str):
         raise ValueError(f"cannot convert value to {data_type}. Got value=`{value}`")
-    return made
+    return values
 
 
 def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: bool = False) -> Any:
-    """Convert a string or a list of strings to a value of a type; see `coerce_to_type`.
+    """Return the value of a type that a string or a list of strings represents; see `coerce_to_type`.
 
     Raises:
-        TypeError: a list is given for a type that is not a list, or the value is neither a string nor a list of
-            strings.
+        TypeError: the value is a list although the type is not, or it is neither a string nor a list of strings.
         ValueError: the value cannot be converted, or the type is not allowed.
     """
     if not isinstance(value, list):
@@ -196,7 +197,7 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
 
 
 def is_substitution(value: Any) -> bool:
-    """Return whether a value is a substitution, or a list of strings and some substitutions."""
+    """Return whether a value is a substitution, or an iterable of strings and at least one substitution."""
     if isinstance(value, Substitution):
         return True
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -213,7 +214,7 @@ def is_normalized_substitution(value: Any) -> bool:
 
 
 def read_boolean(value: Any) -> Any:
-    """Convert a string to a boolean, and return any other value unchanged.
+    """Return the boolean that a string represents, and any other value unchanged.
 
     Raises:
         ValueError: the string is not a boolean.
@@ -222,12 +223,12 @@ def read_boolean(value: Any) -> Any:
 
 
 def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
-    """Convert the substitutions in a value or in the items of a list to lists of substitutions.
+    """Return a value in which the substitutions are normalized to lists of substitutions.
 
-    A list of strings and substitutions is a single value: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
+    A list of strings and substitutions is one value: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
 
     Raises:
-        TypeError: the value can never be of the type.
+        TypeError: the value cannot have the type, whatever its substitutions evaluate to.
         ValueError: the type is not allowed.
     """
     if is_substitution(value):
@@ -238,21 +239,21 @@ def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
         return value
     if not isinstance(value, Sequence):
         raise TypeError(f"value={value!r} of type {type(value)} is neither a value, a substitution nor a list")
-    scalar, is_list = (None, True) if data_type is None else extract_type(data_type)
+    scalar_type, is_list = (None, True) if data_type is None else extract_type(data_type)
     if not is_list:
         raise TypeError(f"value='{value}' is a list, and {data_type} is expected")
     items = [normalize_to_list_of_substitutions(item) if is_substitution(item) else item for item in value]
-    plain = [item for item in items if not isinstance(item, list)]
-    if not is_instance_of(plain, None if scalar is None else list[scalar]):  # type: ignore[valid-type]  # a type made here
-        raise TypeError(f"value='{value}' is not a list of {data_type if scalar is None else scalar}")
+    plain_items = [item for item in items if not isinstance(item, list)]
+    if not is_instance_of(plain_items, None if scalar_type is None else list[scalar_type]):  # type: ignore[valid-type]  # a type made here
+        raise TypeError(f"value='{value}' is not a list of {data_type if scalar_type is None else scalar_type}")
     return items
 
 
 def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) -> Any:
-    """Evaluate the result of `normalize_typed_substitution`, and return a value of the type.
+    """Return the value of a type to which the result of `normalize_typed_substitution` evaluates.
 
     Raises:
-        TypeError: a plain value has another type.
+        TypeError: a value without substitutions has another type.
         ValueError: the evaluated text cannot be converted to the type.
     """
     if is_normalized_substitution(value):
@@ -261,14 +262,14 @@ def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) 
         if not is_instance_of(value, data_type):
             raise TypeError(f"value='{value}' is not an instance of {data_type}")
         return value
-    scalar = None if data_type is None else extract_type(data_type)[0]
-    made = [
-        coerce_to_type(perform_substitutions(context, item), scalar) if is_normalized_substitution(item) else item
+    scalar_type = None if data_type is None else extract_type(data_type)[0]
+    evaluated_items = [
+        coerce_to_type(perform_substitutions(context, item), scalar_type) if is_normalized_substitution(item) else item
         for item in value
     ]
-    if not is_instance_of(made, data_type):
-        raise ValueError(f"value='{value}' is not an instance of {data_type}, got {made}")
-    return made
+    if not is_instance_of(evaluated_items, data_type):
+        raise ValueError(f"value='{value}' is not an instance of {data_type}, got {evaluated_items}")
+    return evaluated_items
 
 
 _TYPE_NAMES: dict[str, Any] = {

@@ -1,6 +1,6 @@
 """The substitution that runs a command.
 
-xacro commands are expanded in this process, so that their errors have locations.
+xacro commands run in the launcher's process, so that their errors have locations.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from linkwright.packages import current_finder
 if TYPE_CHECKING:
     from linkwright.hosting.xacro_calls import XacroCall
 
-_ON_STDERR = ("fail", "warn", "ignore", "capture")
+_STDERR_RULES = ("fail", "warn", "ignore", "capture")
 
 
 class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
-    """The standard output of a command.
+    """Evaluates to the standard output of a command.
 
     Args:
-        command: program and arguments, quoted as in a shell.
-        on_stderr: the reaction to output on stderr: ``fail`` (the default), ``warn``, ``ignore`` or ``capture`` (append
-            the output to the result).
+        command: the program and its arguments, quoted as in a shell.
+        on_stderr: what output to stderr causes: ``fail`` (the default), ``warn``, ``ignore`` or ``capture``, which
+            appends it to the result.
     """
 
     command: Texts = Texts()
@@ -45,84 +45,84 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
-        """Return a ValueError, as ROS does."""
+        """Return a ValueError for a wrong number of arguments, as ROS does."""
         return ValueError(*super().wrong_count(expected, given).args)
 
     def perform(self, context: LaunchContext) -> str:
-        """Run the command, and return its output.
+        """Run the command, and return its standard output.
 
         Raises:
-            DescriptionError: the command is xacro, and the model has errors.
+            DescriptionError: the command is xacro, and the robot description has errors.
             LinkwrightError: LAUNCH128 or LAUNCH129, the command is invalid, cannot be run or fails.
         """
         text = perform_substitutions(context, self.command)
         try:
-            words = shlex.split(text)
+            arguments = shlex.split(text)
         except ValueError as error:
             raise error_at(
                 self.place,
                 "LAUNCH128",
-                phrase("command '{text}' cannot be split: {error}", text=text, error=foreign(error)),
+                phrase("command '{text}' cannot be split into arguments: {error}", text=text, error=foreign(error)),
             ) from error
-        if not words:
+        if not arguments:
             raise error_at(self.place, "LAUNCH128", phrase("the command is empty"))
-        after_xacro = _xacro_arguments(words)
-        if after_xacro is not None:
-            before = len(words) - len(after_xacro)
-            written = text.split(None, before)[before:]
-            return self._expand(context, after_xacro, written[0] if written else "")
-        return self._run(context, text, words)
+        xacro_arguments = _xacro_arguments(arguments)
+        if xacro_arguments is not None:
+            skipped_count = len(arguments) - len(xacro_arguments)
+            argument_text = text.split(None, skipped_count)[skipped_count:]
+            return self._expand(context, xacro_arguments, argument_text[0] if argument_text else "")
+        return self._run(context, text, arguments)
 
-    def _expand(self, context: LaunchContext, words: list[str], written: str) -> str:
+    def _expand(self, context: LaunchContext, words: list[str], argument_text: str) -> str:
         try:
-            call, remark = parse_xacro_arguments(words, written, Path.cwd())
+            call, warning = parse_xacro_arguments(words, argument_text, Path.cwd())
         except LinkwrightError as error:
             raise located(error, self.place) from error
-        if remark:
-            self._warn(context, "LAUNCH128", remark, phrase("put quotes around it: Command(['xacro \"', path, '\"'])"))
+        if warning:
+            self._warn(context, "LAUNCH128", warning, phrase("put quotes around it: Command(['xacro \"', path, '\"'])"))
         return _expand(context, call)
 
     def _run(self, context: LaunchContext, text: str, words: list[str]) -> str:
         rule = perform_substitutions(context, self.on_stderr)
-        if rule not in _ON_STDERR:
+        if rule not in _STDERR_RULES:
             message = phrase("'on_stderr' is '{rule}', not one of 'fail', 'warn', 'ignore', 'capture'", rule=rule)
             ros_error = SubstitutionFailure(
                 f"expected 'on_stderr' to be one of: ['fail', 'ignore', 'warn', 'capture'], got '{rule}'"
             )
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
         try:
-            done = subprocess.run(  # noqa: S603 - the launch file's command
+            process = subprocess.run(  # noqa: S603 - the launch file's command
                 words, check=False, capture_output=True, text=True, errors="replace", env=dict(context.environment)
             )
         except OSError as error:
             message = phrase(
-                "command '{text}' cannot be run: {strerror}: '{words}'",
+                "command '{text}' cannot be run, because program '{words}' does not start: {strerror}",
                 text=text,
                 strerror=foreign(error.strerror or error),
                 words=words[0],
             )
             ros_error = SubstitutionFailure(f"file not found: {error}")
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error) from error
-        if done.returncode != 0:
+        if process.returncode != 0:
             message = _append_output(
-                phrase("command '{text}' failed with exit status {status}", text=text, status=done.returncode),
-                done.stderr,
+                phrase("command '{text}' failed with exit status {status}", text=text, status=process.returncode),
+                process.stderr,
             )
             ros_error = SubstitutionFailure(
-                f"executed command failed. Command: {text}\nCaptured stderr output: {done.stderr}"
+                f"executed command failed. Command: {text}\nCaptured stderr output: {process.stderr}"
             )
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
-        if done.stderr and rule == "fail":
-            message = _append_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
+        if process.stderr and rule == "fail":
+            message = _append_output(phrase("command '{text}' wrote to stderr", text=text), process.stderr)
             hint = phrase("if that is not an error, pass on_stderr='warn' to Command")
             ros_error = SubstitutionFailure(
-                f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{done.stderr}"
+                f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{process.stderr}"
             )
             raise error_at(self.place, "LAUNCH129", message, hint, ros_error=ros_error)
-        if done.stderr and rule == "warn":
-            message = _append_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
+        if process.stderr and rule == "warn":
+            message = _append_output(phrase("command '{text}' wrote to stderr", text=text), process.stderr)
             self._warn(context, "LAUNCH129", message)
-        return done.stdout + done.stderr if rule == "capture" else done.stdout
+        return process.stdout + process.stderr if rule == "capture" else process.stdout
 
     def _warn(self, context: LaunchContext, code: str, message: Phrase, hint: Phrase | None = None) -> None:
         source = self.place.source() if self.place else None

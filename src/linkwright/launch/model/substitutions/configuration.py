@@ -1,6 +1,6 @@
 """Substitutions that read the launch context.
 
-They evaluate to launch configurations, environment variables, locals and paths of the launch.
+They evaluate to launch configurations, environment variables, locals, and paths of the launch.
 """
 
 from __future__ import annotations
@@ -30,13 +30,15 @@ from linkwright.launch.model.substitution import (
 )
 
 _ANONYMOUS = "anon"
-_NOT_IN_NAMES = str.maketrans(".-:", "___")
+_NAME_REPLACEMENTS = str.maketrans(".-:", "___")
 
 
-def normalize_default(given: Any) -> list[Substitution]:
-    """Convert a default to substitutions; its parts may also be numbers and booleans."""
-    parts = given if isinstance(given, (list, tuple)) else [given]
-    return normalize_to_list_of_substitutions([part if isinstance(part, Substitution) else str(part) for part in parts])
+def normalize_default(default: Any) -> list[Substitution]:
+    """Return a default as substitutions; it may also be, or contain, numbers and booleans."""
+    values = default if isinstance(default, (list, tuple)) else [default]
+    return normalize_to_list_of_substitutions(
+        [value if isinstance(value, Substitution) else str(value) for value in values]
+    )
 
 
 class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({variable_name})"):
@@ -44,7 +46,7 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
 
     Args:
         variable_name: the name of the launch configuration.
-        default: the text if the configuration is not set; None makes an unset configuration an error.
+        default: the text if the configuration is not set. If it is None, an unset configuration is an error.
     """
 
     variable_name: Texts = Texts()
@@ -57,12 +59,12 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
             SubstitutionFailure: LAUNCH121, the configuration is not set and there is no default.
         """
         name = perform_substitutions(context, self.variable_name)
-        known = context.launch_configurations
-        if name in known:
-            return str(known[name])
+        configurations = context.launch_configurations
+        if name in configurations:
+            return str(configurations[name])
         if self.default is not None:
             return perform_substitutions(context, self.default)
-        hint = did_you_mean(name, known) or (
+        hint = did_you_mean(name, configurations) or (
             phrase("declare it with DeclareLaunchArgument('{name}') before the action that uses it", name=name)
         )
         ros_error = SubstitutionFailure(f"launch configuration '{name}' does not exist")
@@ -80,7 +82,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
     Args:
         name: the name of the variable.
-        default_value: the text if the variable is not set; None makes an unset variable an error.
+        default_value: the text if the variable is not set. If it is None, an unset variable is an error.
     """
 
     name: Texts = Texts()
@@ -97,7 +99,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
             return context.environment[name]
         if self.default_value is not None:
             return perform_substitutions(context, self.default_value)
-        hint = did_you_mean(name, context.environment) or phrase("set it, or give the substitution a default_value")
+        hint = did_you_mean(name, context.environment) or phrase("set it, or pass a default_value to the substitution")
         ros_error = SubstitutionFailure(f"environment variable '{name}' does not exist")
         raise error_at(
             self.place,
@@ -109,14 +111,19 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
 
 class LocalSubstitution(Substitution):
-    """The value of an expression on a local of the launch context, such as ``event.reason``."""
+    """The value of a local of the launch context or of its attributes, such as ``event.reason``.
+
+    Args:
+        expression: the name of the local, and names of attributes, separated by dots.
+        description: the text for listings; by default the expression.
+    """
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
         self.description = description
 
     def describe(self) -> str:
-        """Return a text with the expression."""
+        """Return a text with the description, or the expression if there is none."""
         return f"LocalVar('{self.description or self.expression}')"
 
     def perform(self, context: LaunchContext) -> str:
@@ -125,24 +132,24 @@ class LocalSubstitution(Substitution):
         Raises:
             SubstitutionFailure: LAUNCH123, the local does not exist when the substitution is evaluated.
         """
-        known = context.get_locals_as_dict()
-        first, *rest = self.expression.split(".")
-        if first not in known:
-            ros_error = SubstitutionFailure(f"no local '{first}' in this context")
-            message = phrase("the launch context has no local '{first}' at this point", first=first)
-            raise error_at(self.place, "LAUNCH123", message, did_you_mean(first, known), ros_error=ros_error)
-        value = known[first]
-        for name in rest:
-            if not hasattr(value, name):
+        local_values = context.get_locals_as_dict()
+        local, *attributes = self.expression.split(".")
+        if local not in local_values:
+            ros_error = SubstitutionFailure(f"no local '{local}' in this context")
+            message = phrase("the launch context has no local '{first}' at this point", first=local)
+            raise error_at(self.place, "LAUNCH123", message, did_you_mean(local, local_values), ros_error=ros_error)
+        value = local_values[local]
+        for attribute in attributes:
+            if not hasattr(value, attribute):
                 message = phrase(
-                    "'{expression}': {type} has no '{name}'",
+                    "'{expression}' cannot be evaluated: {type} has no attribute '{name}'",
                     expression=self.expression,
                     type=type(value).__name__,
-                    name=name,
+                    name=attribute,
                 )
-                hint = did_you_mean(name, dir(value))
+                hint = did_you_mean(attribute, dir(value))
                 raise error_at(self.place, "LAUNCH123", message, hint, ros_error=SubstitutionFailure(message))
-            value = getattr(value, name)
+            value = getattr(value, attribute)
         return str(value)
 
 
@@ -159,7 +166,7 @@ class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
         if path is None:
             ros_error = SubstitutionFailure(f"{type(self).__name__} used outside of a launch file (in a script)")
             raise error_at(
-                self.place, "LAUNCH123", phrase("the launch description does not come from a file"), ros_error=ros_error
+                self.place, "LAUNCH123", phrase("the launch description was not read from a file"), ros_error=ros_error
             )
         return str(path)
 
@@ -189,7 +196,7 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
 
 
 class LaunchLogDir(DeclaredSubstitution, tag="launch_log_dir/log_dir"):
-    """The folder of the launch's log files."""
+    """The folder that contains the log files of the launch."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return the path of the folder."""
@@ -207,9 +214,9 @@ class AnonName(DeclaredSubstitution, tag=_ANONYMOUS):
     def perform(self, context: LaunchContext) -> str:
         """Return the unique name."""
         name = perform_substitutions(context, self.name)
-        names: dict[str, str] = context.launch_configurations.setdefault(_ANONYMOUS, {})
-        if name not in names:
-            number = random.randint(0, sys.maxsize)  # noqa: S311 - a name, no secret
-            made = f"{name}_{socket.gethostname()}_{os.getpid()}_{number}"
-            names[name] = made.translate(_NOT_IN_NAMES)
-        return names[name]
+        unique_names: dict[str, str] = context.launch_configurations.setdefault(_ANONYMOUS, {})
+        if name not in unique_names:
+            random_number = random.randint(0, sys.maxsize)  # noqa: S311 - a name, no secret
+            unique_name = f"{name}_{socket.gethostname()}_{os.getpid()}_{random_number}"
+            unique_names[name] = unique_name.translate(_NAME_REPLACEMENTS)
+        return unique_names[name]

@@ -22,12 +22,12 @@ from linkwright.launch.model.substitution import (
 
 
 class PythonExpression(DeclaredSubstitution, tag="eval"):
-    """The value of a Python expression, as text.
+    """Evaluates to the value of a Python expression, as text.
 
     Args:
         expression: the expression.
-        python_modules: the modules that the expression may use; by default ``math``, whose members can also be used
-            without the module name.
+        python_modules: the names of the modules that the expression may use; by default ``math``. The members of
+            ``math`` can also be used without the module name.
     """
 
     expression: Texts = Texts()
@@ -35,7 +35,7 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """Return the class and its keyword arguments for an expression and optional modules.
+        """Return the class and keyword arguments for an expression and, optionally, modules.
 
         The names of the modules are separated by commas.
 
@@ -46,7 +46,7 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
             raise TypeError("eval substitution expects 1 or 2 arguments")
         kwargs: dict[str, Any] = {"expression": data[0]}
         if len(data) == 2:
-            if not all(isinstance(part, TextSubstitution) for part in data[1]):
+            if not all(isinstance(substitution, TextSubstitution) for substitution in data[1]):
                 raise TypeError("the modules of an eval substitution must be plain text")
             names = "".join(part.text for part in data[1]).split(",")
             kwargs["python_modules"] = [TextSubstitution(text=name.strip()) for name in names if name.strip()]
@@ -63,18 +63,18 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
         The expression runs unrestricted, like the launch file that contains it.
 
         Raises:
-            Exception: LAUNCH126, with the class and text of Python's exception.
+            Exception: LAUNCH126, an error that the expression raises, with the class of Python's exception.
         """
         expression = perform_substitutions(context, self.expression)
-        names: dict[str, Any] = {}
+        namespace: dict[str, Any] = {}
         try:
             for module in self.python_modules:
                 name = perform_substitutions(context, [module])
-                names[name] = importlib.import_module(name)
-            if "math" in names:
-                members = vars(names["math"]).items()
-                names.update({name: value for name, value in members if not name.startswith("_")})
-            return str(eval(expression, {}, names))  # noqa: S307 - launch files are programs by design
+                namespace[name] = importlib.import_module(name)
+            if "math" in namespace:
+                members = vars(namespace["math"]).items()
+                namespace.update({name: value for name, value in members if not name.startswith("_")})
+            return str(eval(expression, {}, namespace))  # noqa: S307 - launch files are programs by design
         except LinkwrightError:
             raise
         except Exception as error:

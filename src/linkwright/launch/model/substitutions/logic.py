@@ -25,11 +25,11 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_WORDS = {"true": True, "1": True, "false": False, "0": False}
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
-def _operand(value: Any) -> list[Substitution]:
-    """Convert an operand of a comparison to substitutions.
+def _normalize_operand(value: Any) -> list[Substitution]:
+    """Return an operand of a comparison as substitutions.
 
     The operand may also be a number, a boolean or None.
     """
@@ -41,24 +41,24 @@ def _operand(value: Any) -> list[Substitution]:
 
 
 class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
-    """A comparison that evaluates to ``true`` if two texts are equal, else to ``false``.
+    """Evaluates to ``true`` if two texts are equal, otherwise to ``false``.
 
     Numbers and booleans are compared by value.
     """
 
-    left: AnyTexts = AnyTexts(read=_operand)
-    right: AnyTexts = AnyTexts(read=_operand)
+    left: AnyTexts = AnyTexts(read=_normalize_operand)
+    right: AnyTexts = AnyTexts(read=_normalize_operand)
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if the texts are equal, else ``false``."""
-        return _text(self._equal(context))
+        """Return ``true`` if the texts are equal, otherwise ``false``."""
+        return _text(self._is_equal(context))
 
-    def _equal(self, context: LaunchContext) -> bool:
+    def _is_equal(self, context: LaunchContext) -> bool:
         left = perform_substitutions(context, self.left)
         right = perform_substitutions(context, self.right)
-        truths = [_WORDS.get(text.strip().lower()) for text in (left, right)]
-        if None not in truths:
-            return truths[0] == truths[1]
+        booleans = [_BOOLEANS.get(text.strip().lower()) for text in (left, right)]
+        if None not in booleans:
+            return booleans[0] == booleans[1]
         try:
             return math.isclose(float(left), float(right))
         except ValueError:
@@ -66,46 +66,46 @@ class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
 
 
 class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
-    """A comparison that evaluates to ``true`` if two texts differ, else to ``false``."""
+    """Evaluates to ``true`` if two texts differ, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if the texts differ, else ``false``."""
-        return _text(not self._equal(context))
+        """Return ``true`` if the texts differ, otherwise ``false``."""
+        return _text(not self._is_equal(context))
 
 
 class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
-    """The negation of a boolean, which evaluates to ``true`` or ``false``."""
+    """Evaluates to ``true`` if a boolean is false, otherwise to ``false``."""
 
     value: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if the value is false, else ``false``."""
-        return _text(not _boolean(self, context, self.value))
+        """Return ``true`` if the value is false, otherwise ``false``."""
+        return _text(not _evaluate_boolean(self, context, self.value))
 
 
 class AndSubstitution(DeclaredSubstitution, tag="and"):
-    """The conjunction of two booleans, which evaluates to ``true`` or ``false``."""
+    """Evaluates to ``true`` if two booleans are both true, otherwise to ``false``."""
 
     left: Texts = Texts()
     right: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if both values are true, else ``false``."""
+        """Return ``true`` if both values are true, otherwise ``false``."""
         return _text(all(self._truths(context)))
 
     def _truths(self, context: LaunchContext) -> list[bool]:
-        return [_boolean(self, context, side) for side in (self.left, self.right)]
+        return [_evaluate_boolean(self, context, operand) for operand in (self.left, self.right)]
 
 
 class OrSubstitution(AndSubstitution, tag="or"):
-    """The disjunction of two booleans, which evaluates to ``true`` or ``false``."""
+    """Evaluates to ``true`` if at least one of two booleans is true, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if at least one value is true, else ``false``."""
+        """Return ``true`` if at least one value is true, otherwise ``false``."""
         return _text(any(self._truths(context)))
 
 
-class _ManyValues(Substitution):
+class _MultiValueSubstitution(Substitution):
     """The base class of substitutions that combine any number of values."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
@@ -121,41 +121,41 @@ class _ManyValues(Substitution):
         return f"{type(self).__name__}({', '.join(map(describe, self._values))})"
 
     def _truths(self, context: LaunchContext) -> list[bool]:
-        return [_boolean(self, context, value) for value in self._values]
+        return [_evaluate_boolean(self, context, value) for value in self._values]
 
 
-def _parsed_any(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+def _parse_any(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
     return lambda: AnySubstitution(*data), {}
 
 
-def _parsed_all(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+def _parse_all(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
     return lambda: AllSubstitution(*data), {}
 
 
-expose_substitution("any")(_parsed_any)
-expose_substitution("all")(_parsed_all)
+expose_substitution("any")(_parse_any)
+expose_substitution("all")(_parse_all)
 
 
-class AnySubstitution(_ManyValues):
-    """The disjunction of several booleans, which evaluates to ``true`` or ``false``."""
+class AnySubstitution(_MultiValueSubstitution):
+    """Evaluates to ``true`` if at least one of several booleans is true, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if any value is true, else ``false``."""
+        """Return ``true`` if at least one value is true, otherwise ``false``."""
         return _text(any(self._truths(context)))
 
 
-class AllSubstitution(_ManyValues):
-    """The conjunction of several booleans, which evaluates to ``true`` or ``false``."""
+class AllSubstitution(_MultiValueSubstitution):
+    """Evaluates to ``true`` if several booleans are all true, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if all values are true, else ``false``."""
+        """Return ``true`` if all values are true, otherwise ``false``."""
         return _text(all(self._truths(context)))
 
 
 class IfElseSubstitution(
     DeclaredSubstitution, tag="if", shown="IfElseSubstitution({condition}, {if_value}, {else_value})"
 ):
-    """One of two texts, selected by a boolean.
+    """Evaluates to one of two texts, which a boolean selects.
 
     Args:
         condition: the boolean.
@@ -185,15 +185,15 @@ class IfElseSubstitution(
 
     def perform(self, context: LaunchContext) -> str:
         """Return the selected text."""
-        chosen = self.if_value if _boolean(self, context, self.condition) else self.else_value
-        return perform_substitutions(context, chosen)
+        selected_value = self.if_value if _evaluate_boolean(self, context, self.condition) else self.else_value
+        return perform_substitutions(context, selected_value)
 
 
-def _boolean(substitution: Substitution, context: LaunchContext, value: list[Substitution]) -> bool:
+def _evaluate_boolean(substitution: Substitution, context: LaunchContext, value: list[Substitution]) -> bool:
     text = perform_substitutions(context, value)
-    word = _WORDS.get(text.strip().lower())
-    if word is not None:
-        return word
+    boolean = _BOOLEANS.get(text.strip().lower())
+    if boolean is not None:
+        return boolean
     try:
         return bool(coerce_to_type(text, bool))
     except ValueError as error:

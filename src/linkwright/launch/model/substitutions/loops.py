@@ -17,20 +17,20 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_PREFIX = "ForEachVar__"
+_LOCAL_PREFIX = "ForEachVar__"
 
 
 def local_name(name: str) -> str:
-    """Return the name of the launch context's local that holds a loop value."""
-    return _PREFIX + name
+    """Return the name of the local in which the launch context stores a value of a loop."""
+    return _LOCAL_PREFIX + name
 
 
 class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name}, default_value={default_value})"):
-    """A value of the current iteration of a `ForEach`.
+    """Evaluates to a value of the current iteration of a `ForEach`.
 
     Args:
         name: the name of the value.
-        default_value: the text if the iteration has no such value; None makes a missing value an error.
+        default_value: the text if the iteration has no such value. If it is None, a missing value is an error.
     """
 
     name: Texts = Texts()
@@ -38,12 +38,12 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - the interface
-        """Return a ValueError, as ROS does."""
+        """Return a ValueError for a wrong number of arguments, as ROS does."""
         return ValueError(f"{cls.__name__} substitution expects {expected}")
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
-        """Return the name of the launch context's local that holds the value."""
+        """Return the name of the local in which the launch context stores the value."""
         return local_name(name)
 
     def perform(self, context: LaunchContext) -> str:
@@ -58,18 +58,26 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
             return str(values[local_name(name)])
         if self.default_value is not None:
             return perform_substitutions(context, self.default_value)
-        known = [value.removeprefix(_PREFIX) for value in values if value.startswith(_PREFIX)]
-        hint = did_you_mean(name, known)
+        loop_names = [value.removeprefix(_LOCAL_PREFIX) for value in values if value.startswith(_LOCAL_PREFIX)]
+        hint = did_you_mean(name, loop_names)
         if hint is None:
-            hint = phrase("it has {names}", names=quoted_names(known)) if known else phrase("use it inside a loop")
+            hint = (
+                phrase("it has {names}", names=quoted_names(loop_names))
+                if loop_names
+                else phrase("use it inside a loop")
+            )
         ros_error = RuntimeError(f"No value available for {type(self).__name__} '{name}' and no default value provided")
         raise error_at(
-            self.place, "LAUNCH123", phrase("the loop has no value '{name}'", name=name), hint, ros_error=ros_error
+            self.place,
+            "LAUNCH123",
+            phrase(("the loop has no value named '{name}'"), name=name),
+            hint,
+            ros_error=ros_error,
         )
 
 
 class ForLoopIndex(ForEachVar, tag="index"):
-    """The current index of the `ForLoop` with a name."""
+    """Evaluates to the current index of the `ForLoop` with the given name."""
 
     def __init__(self, name: SomeSubstitutionsType, **_: Any) -> None:
         super().__init__(name)

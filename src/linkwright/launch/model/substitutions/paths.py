@@ -25,7 +25,7 @@ from linkwright.launch.model.substitution import (
 )
 
 IN_PROCESS_PROGRAMS = frozenset({"xacro"})
-"""Programs that `Command` runs in this process and that need not be installed."""
+"""Programs that `Command` runs in the launcher's process, and that need not be installed."""
 
 _LAUNCH_STEMS = ("", ".launch", "_launch")
 _LAUNCH_SUFFIXES = (".py", ".xml", ".yaml")
@@ -34,7 +34,7 @@ _LAUNCH_SUFFIXES = (".py", ".xml", ".yaml")
 class PathSubstitution(DeclaredSubstitution, shown="Path({path})"):
     """A path.
 
-    The operator ``/`` appends a part: ``PathSubstitution("a") / "b"``.
+    The operator ``/`` appends a component: ``PathSubstitution("a") / "b"``.
     """
 
     path: Texts = Texts()
@@ -48,21 +48,21 @@ class PathSubstitution(DeclaredSubstitution, shown="Path({path})"):
 
 
 class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoin({substitutions})"):
-    """Parts of a path, joined with the system's separator.
+    """The components of a path, joined with the system's separator.
 
-    The operator ``/`` appends a part: ``PathJoinSubstitution(["a"]) / "b"``.
+    The operator ``/`` appends a component: ``PathJoinSubstitution(["a"]) / "b"``.
     """
 
     substitutions: TextLists = TextLists(
-        read=lambda given: [given] if isinstance(given, (str, Substitution)) else given
+        read=lambda paths: [paths] if isinstance(paths, (str, Substitution)) else paths
     )
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """Return the class and its keyword arguments for the parts.
+        """Return the class and keyword arguments for the components.
 
         Raises:
-            ValueError: there are no parts.
+            ValueError: there are no components.
         """
         if not data:
             raise ValueError("path-join substitution expects at least 1 argument")
@@ -73,14 +73,14 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
 
     def perform(self, context: LaunchContext) -> str:
         """Return the joined path."""
-        return os.path.join(*(perform_substitutions(context, part) for part in self.substitutions))  # noqa: PTH118
+        return os.path.join(*(perform_substitutions(context, component) for component in self.substitutions))  # noqa: PTH118
 
 
 class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
     """The path of a program on ``PATH``.
 
-    xacro and programs that a Linkwright node replaces need not be installed. In that case, the result is the bare name
-    of the program.
+    xacro and programs that a Linkwright node replaces need not be installed. For these, the result is the bare name of
+    the program if it is not on ``PATH``.
     """
 
     name: Texts = Texts(kw_only=True)
@@ -97,13 +97,13 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
             return path
         from linkwright.launch.model.replaced_programs import replaced_programs
 
-        known = IN_PROCESS_PROGRAMS | replaced_programs().keys()
-        if name in known:
+        replaceable_programs = IN_PROCESS_PROGRAMS | replaced_programs().keys()
+        if name in replaceable_programs:
             return name
-        hint = did_you_mean(name, known) or phrase("install it, or add its folder to PATH")
+        hint = did_you_mean(name, replaceable_programs) or phrase("install it, or add its folder to PATH")
         ros_error = SubstitutionFailure(f"executable '{name}' not found on the PATH")
         raise error_at(
-            self.place, "LAUNCH124", phrase("executable '{name}' is not on PATH", name=name), hint, ros_error=ros_error
+            self.place, "LAUNCH124", phrase("program '{name}' is not on PATH", name=name), hint, ros_error=ros_error
         )
 
 
@@ -133,7 +133,7 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
 
 
 class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLaunchfile(name={name}, path={path})"):
-    """The path of the launch file with a given name in a folder, in any language.
+    """The path of the launch file with a given name in a folder, in Python, XML or YAML.
 
     Args:
         name: the name of the file, or its stem without ``.launch``, ``_launch`` and the extension.
@@ -147,29 +147,34 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
         """Return the path.
 
         Raises:
-            SubstitutionFailure: LAUNCH125, there is no such file, or there are several.
+            SubstitutionFailure: LAUNCH125, the folder does not exist, or contains no such file or several.
         """
         name = perform_substitutions(context, self.name)
         folder = Path(perform_substitutions(context, self.path))
         if not folder.is_dir():
-            raise self._failure(phrase("'{folder}' is not a folder", folder=folder))
+            raise self._create_error(phrase("'{folder}' is not a folder", folder=folder))
         files = sorted(file for file in folder.iterdir() if file.is_file() and file.suffix in _LAUNCH_SUFFIXES)
-        found = [
-            file for file in files if file.name == name or file.stem in [name + ending for ending in _LAUNCH_STEMS]
+        matching_files = [
+            file
+            for file in files
+            if file.name == name or file.stem in [name + stem_ending for stem_ending in _LAUNCH_STEMS]
         ]
-        if len(found) == 1:
-            return str(found[0])
-        if found:
-            listed = ", ".join(file.name for file in found)
-            raise self._failure(
+        if len(matching_files) == 1:
+            return str(matching_files[0])
+        if matching_files:
+            names_text = ", ".join(file.name for file in matching_files)
+            raise self._create_error(
                 phrase(
-                    "several launch files '{name}' are in '{folder}': {listed}", name=name, folder=folder, listed=listed
+                    "folder '{folder}' has several launch files '{name}': {listed}",
+                    name=name,
+                    folder=folder,
+                    listed=names_text,
                 )
             )
-        raise self._failure(
-            phrase("no launch file '{name}' is in '{folder}'", name=name, folder=folder),
+        raise self._create_error(
+            phrase("folder '{folder}' has no launch file '{name}'", name=name, folder=folder),
             did_you_mean(name, [file.name for file in files]),
         )
 
-    def _failure(self, message: Phrase, hint: Phrase | None = None) -> Exception:
+    def _create_error(self, message: Phrase, hint: Phrase | None = None) -> Exception:
         return error_at(self.place, "LAUNCH125", message, hint, ros_error=SubstitutionFailure(message))

@@ -29,7 +29,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """Return the class and its keyword arguments for a delimiter and texts.
+        """Return the class and keyword arguments for a delimiter and texts.
 
         Raises:
             ValueError: there are not enough arguments.
@@ -41,7 +41,9 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
     def perform(self, context: LaunchContext) -> str:
         """Return the joined text."""
         delimiter = perform_substitutions(context, self.delimiter)
-        return delimiter.join(perform_substitutions(context, part) for part in self.substitutions)
+        return delimiter.join(
+            perform_substitutions(context, substitution_list) for substitution_list in self.substitutions
+        )
 
 
 class _OneTextSubstitution(DeclaredSubstitution):
@@ -59,16 +61,16 @@ class StringStripSubstitution(_OneTextSubstitution, tag="string-strip"):
 
 
 class IsEmptySubstitution(_OneTextSubstitution, tag="is-empty"):
-    """A test that evaluates to ``true`` if a text is empty, else to ``false``."""
+    """Evaluates to ``true`` if a text is empty, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if the text is empty, else ``false``."""
+        """Return ``true`` if the text is empty, otherwise ``false``."""
         return "false" if perform_substitutions(context, self.value) else "true"
 
 
 class NotEmptySubstitution(_OneTextSubstitution, tag="not-empty"):
-    """A test that evaluates to ``true`` if a text is not empty, else to ``false``."""
+    """Evaluates to ``true`` if a text is not empty, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``true`` if the text is not empty, else ``false``."""
+        """Return ``true`` if the text is not empty, otherwise ``false``."""
         return "true" if perform_substitutions(context, self.value) else "false"

@@ -23,13 +23,13 @@ _SCOPES = ("function", "class", "module", "package", "session")
 
 @dataclass(frozen=True)
 class LaunchOptions:
-    """The launch options of a fixture's description.
+    """The options with which the description of a launch fixture is launched.
 
     Attributes:
         fixture: the name of the fixture.
-        scope: how long the launch lasts: one of pytest's scopes.
+        scope: the pytest scope of the fixture, during which the launch runs.
         shutdown_when_idle: whether the launch ends when it is idle.
-        auto_shutdown: whether the launch is shut down before the tests that run after it; otherwise these tests wait
+        auto_shutdown: whether the launch is shut down before the tests that run after it. If False, these tests wait
             for the launch to end.
     """
 
@@ -49,15 +49,16 @@ def fixture(
     """Decorate a function that creates a launch description for tests.
 
     The description is launched for the tests that request the fixture. The function returns or yields a
-    ``LaunchDescription``, or a sequence whose first item is one. If a launch lasts longer than a test, the other
-    fixtures of this module must last as long. They are therefore added to the test's module, unless that module defines
-    its own.
+    ``LaunchDescription``, or a sequence whose first item is one. If the scope is wider than a function, the other
+    fixtures of this module need the same scope. They are therefore added to the test's module, unless that module
+    defines them itself.
 
     Args:
         decorated: the function, if the decorator has no arguments.
         *args: passed to ``pytest.fixture``.
         shutdown_when_idle: whether the launch ends when it is idle.
-        auto_shutdown: whether the launch is ended after the tests that run during it; otherwise it must end on its own.
+        auto_shutdown: whether the launch is shut down after the tests that run during it. If False, it must end by
+            itself.
         **kwargs: passed to ``pytest.fixture``; a ``scope`` that depends on the configuration is not supported.
     """
     scope = kwargs.get("scope", "function")
@@ -68,9 +69,9 @@ def fixture(
         name = kwargs.get("name") or function.__name__
         options = LaunchOptions(name, scope, shutdown_when_idle, auto_shutdown)
         setattr(function, _OPTIONS, options)
-        made: Any = pytest.fixture(*args, **kwargs)(function)
-        setattr(made, _OPTIONS, options)  # the marker gets this object, and pytest's hook gets the function
-        return made
+        created_fixture: Any = pytest.fixture(*args, **kwargs)(function)
+        setattr(created_fixture, _OPTIONS, options)  # the marker gets this object, and pytest's hook gets the function
+        return created_fixture
 
     return decorate if decorated is None else decorate(decorated)
 
@@ -85,25 +86,25 @@ def options_of(function: object) -> LaunchOptions | None:
 
 
 def _add_fixtures(namespace: MutableMapping[str, Any], scope: str) -> None:
-    """Add the fixtures of this module to a test module with a scope.
+    """Add the fixtures of this module, with a scope, to the namespace of a test module.
 
-    Fixtures that the test module defines itself are not replaced. Fixtures added earlier are replaced if their scope is
-    smaller.
+    Fixtures that the test module defines itself are kept. Fixtures that were added earlier with a narrower scope are
+    replaced.
     """
     for name, function in _FUNCTIONS.items():
-        present = namespace.get(name)
-        if present is None or _SCOPES.index(getattr(present, _SCOPE, _SCOPES[-1])) < _SCOPES.index(scope):
-            namespace[name] = _lasting(function, scope)
+        existing = namespace.get(name)
+        if existing is None or _SCOPES.index(getattr(existing, _SCOPE, _SCOPES[-1])) < _SCOPES.index(scope):
+            namespace[name] = _create_fixture(function, scope)
 
 
-def _lasting(function: Callable[..., Any], scope: Any) -> Any:
-    made: Any = pytest.fixture(scope=scope)(function)
-    setattr(made, _SCOPE, scope)
-    return made
+def _create_fixture(function: Callable[..., Any], scope: Any) -> Any:
+    created_fixture: Any = pytest.fixture(scope=scope)(function)
+    setattr(created_fixture, _SCOPE, scope)
+    return created_fixture
 
 
 def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
-    """Yield the event loop that runs the launch and the coroutines of tests."""
+    """Yield the event loop that runs the launch and the tests' coroutines."""
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     yield loop
@@ -131,20 +132,20 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "launch_context": _launch_context,
 }
 FIXTURES = tuple(_FUNCTIONS)
-"""The names of the fixtures that each launch has."""
+"""The names of the fixtures that belong to each launch."""
 
-event_loop = _lasting(_event_loop, "function")
-launch_service = _lasting(_launch_service, "function")
-launch_context = _lasting(_launch_context, "function")
+event_loop = _create_fixture(_event_loop, "function")
+launch_service = _create_fixture(_launch_service, "function")
+launch_context = _create_fixture(_launch_context, "function")
 
 
-def finish(service: LaunchService, when: str, *, ask: bool = True) -> None:
-    """End a running launch, and wait until it has ended.
+def finish(service: LaunchService, phase: str, *, ask: bool = True) -> None:
+    """Shut down a running launch, and wait until it has ended.
 
     Args:
         service: the launch service.
-        when: the phase, for the failure message.
-        ask: whether to shut the launch down; otherwise only wait until the launch ends on its own.
+        phase: the phase of the test run, with which the failure message begins.
+        ask: whether to shut the launch down. If False, only wait until it ends on its own.
 
     Raises:
         pytest.fail.Exception: something in the launch failed.
@@ -156,4 +157,4 @@ def finish(service: LaunchService, when: str, *, ask: bool = True) -> None:
         service.shutdown(force_sync=True)
     status = loop.run_until_complete(task)
     if status != 0:
-        pytest.fail(f"{when}: the launch failed with status {status}; its output says why", pytrace=False)
+        pytest.fail(f"{phase}: the launch failed with status {status}; its output says why", pytrace=False)

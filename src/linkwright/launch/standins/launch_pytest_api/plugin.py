@@ -3,8 +3,8 @@
 The plugin launches the descriptions of fixtures and runs the marked tests. A test with
 ``@pytest.mark.launch(fixture=description)`` runs during the launch: a coroutine on the launch's event loop, a function
 in a thread. With ``shutdown=True``, the test runs after the launch has ended. A generator runs up to its ``yield``
-during the launch, and the rest after it. If the launch outlasts the test, the rest is a separate test, which runs after
-all tests that run during the launch.
+during the launch, and continues after it. If the scope of the fixture is wider than a function, this second part is a
+separate test, which runs after all tests that run during the launch.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ _EXHAUSTED = object()
 
 
 class LaunchTestWarning(pytest.PytestWarning):
-    """Issued when the mark of a test does not make it a launch test."""
+    """Issued when a test has the mark ``launch`` without a launch fixture."""
 
 
 def look_up_hooks() -> None:
-    """Load the hooks of the stand-in module ``launch_pytest.plugin``.
+    """Load the hooks of the stand-in module ``launch_pytest.plugin`` into its namespace.
 
-    pytest registers only hooks that a module already contains.
+    pytest registers only the hooks that a module's namespace already contains.
     """
     module = importlib.import_module("launch_pytest.plugin")
     for name in module.__all__:
@@ -72,36 +72,36 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest
         return (yield)
     service = request.getfixturevalue("launch_service")
     loop = request.getfixturevalue("event_loop")
-    made = yield
-    when = f"launch fixture '{options.fixture}'"
-    fixturedef.addfinalizer(functools.partial(finish, service, when, ask=options.auto_shutdown))
+    fixture_value = yield
+    phase = f"launch fixture '{options.fixture}'"
+    fixturedef.addfinalizer(functools.partial(finish, service, phase, ask=options.auto_shutdown))
     try:
-        _launch(service, loop, _description_in(made, when), options)
-    except BaseException as error:  # cache the error, so that other tests with the fixture fail with it
+        _launch(service, loop, _description_in(fixture_value, phase), options)
+    except BaseException as error:  # cache the error, so that other tests that use the fixture fail with it
         fixturedef.cached_result = (None, fixturedef.cache_key(request), (error, error.__traceback__))
         raise
-    return made
+    return fixture_value
 
 
-def _description_in(made: object, when: str) -> LaunchDescription:
+def _description_in(fixture_value: object, phase: str) -> LaunchDescription:
     """Return the launch description in the value of a launch fixture.
 
     Raises:
         pytest.fail.Exception: the value contains no launch description.
     """
-    first = made[0] if isinstance(made, Sequence) and made else made
-    if not isinstance(first, LaunchDescription):
+    description = fixture_value[0] if isinstance(fixture_value, Sequence) and fixture_value else fixture_value
+    if not isinstance(description, LaunchDescription):
         pytest.fail(
-            f"{when}: its value must be either a launch description or a sequence whose first item is one",
+            f"{phase}: its value must be either a launch description or a sequence whose first item is one",
             pytrace=False,
         )
-    return first
+    return description
 
 
 def _launch(
     service: LaunchService, loop: asyncio.AbstractEventLoop, description: LaunchDescription, options: LaunchOptions
 ) -> None:
-    """Start a launch, and wait until its `ReadyToTest` has been visited."""
+    """Start a launch, and wait until its `ReadyToTest` action is executed."""
     actions = list(find_ready_actions(description.entities))
     if len(actions) > 1:
         pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
@@ -111,12 +111,12 @@ def _launch(
     ready = asyncio.Event()
     actions[0]._add_callback(ready.set)
     service.include_launch_description(description)
-    run = loop.create_task(service.run_async(shutdown_when_idle=options.shutdown_when_idle))
-    waiting = loop.create_task(ready.wait())
-    loop.run_until_complete(asyncio.wait({waiting, run}, return_when=asyncio.FIRST_COMPLETED))
+    launch_task = loop.create_task(service.run_async(shutdown_when_idle=options.shutdown_when_idle))
+    ready_task = loop.create_task(ready.wait())
+    loop.run_until_complete(asyncio.wait({ready_task, launch_task}, return_when=asyncio.FIRST_COMPLETED))
     if not ready.is_set():
-        waiting.cancel()
-        run.result()  # raises the exception of run_async, if it failed
+        ready_task.cancel()
+        launch_task.result()  # raises the exception of run_async, if it failed
         pytest.fail(f"launch fixture '{options.fixture}': the launch ended before it was ready to test", pytrace=False)
 
 
@@ -127,10 +127,10 @@ class LaunchTest(pytest.Function):
     """A test that runs during a launch, or the part of a test that runs after the launch.
 
     Attributes:
-        options: the options of the launched fixture.
-        test: the test's function or bound method.
-        begun: the generator after the part before its ``yield`` has passed; None before that.
-        first_part: the test whose generator this test continues; None for a separate test.
+        options: the options of the launch fixture.
+        test: the test function or bound method.
+        begun: the generator, after its part before the ``yield`` has passed; None before that.
+        first_part: the test that runs the first part of the same generator; None for a test with a single part.
     """
 
     options: LaunchOptions
@@ -141,18 +141,18 @@ class LaunchTest(pytest.Function):
     @classmethod
     def of(cls, item: pytest.Function, options: LaunchOptions, first_part: LaunchTest | None = None) -> LaunchTest:
         """Create the launch test for a function that pytest collected."""
-        ending = "" if first_part is None else "[shutdown_test]"
-        made: LaunchTest = cls.from_parent(
+        suffix = "" if first_part is None else "[shutdown_test]"
+        launch_test: LaunchTest = cls.from_parent(
             item.parent,
-            name=item.name + ending,
+            name=item.name + suffix,
             callspec=getattr(item, "callspec", None),
-            callobj=_plain(item.obj),
+            callobj=_as_plain_function(item.obj),
             fixtureinfo=item._fixtureinfo,
             keywords=item.keywords,
-            originalname=item.originalname + ending,  # newer versions of pytest use the original name as the identifier
+            originalname=item.originalname + suffix,  # newer versions of pytest use the original name as the identifier
         )
-        made.options, made.test, made.first_part = options, item.obj, first_part
-        return made
+        launch_test.options, launch_test.test, launch_test.first_part = options, item.obj, first_part
+        return launch_test
 
     @property
     def is_after_shutdown(self) -> bool:
@@ -162,24 +162,24 @@ class LaunchTest(pytest.Function):
 
     @property
     def launch(self) -> tuple[object, ...]:
-        """The key of the launch, which is equal for tests that run during or after the same launch."""
+        """The key of the launch that the test belongs to, which is equal for all tests of one launch."""
         kinds: dict[str, Any] = {"function": pytest.Function, "class": pytest.Class, "module": pytest.Module}
-        lasting = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
+        scope_node = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
         params = self.callspec.indices if hasattr(self, "callspec") else {}
-        return self.options.fixture, lasting, params.get(self.options.fixture)
+        return self.options.fixture, scope_node, params.get(self.options.fixture)
 
     def runtest(self) -> None:
         """Run the test, or the part of the test that this item represents."""
         __tracebackhide__ = True
         loop = self._loop
-        given = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
+        arguments = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
         if not _has_parts(self.test):
             if self.is_after_shutdown:
                 self._end_launch()
             if inspect.iscoroutinefunction(self.test):
-                loop.run_until_complete(self.test(**given))
+                loop.run_until_complete(self.test(**arguments))
             else:
-                loop.run_until_complete(loop.run_in_executor(None, functools.partial(self.test, **given)))
+                loop.run_until_complete(loop.run_in_executor(None, functools.partial(self.test, **arguments)))
         elif self.first_part is not None:
             if self.first_part.begun is None:
                 pytest.skip("the part of the test before the shutdown did not pass")
@@ -187,7 +187,7 @@ class LaunchTest(pytest.Function):
         elif self.is_after_shutdown:
             pytest.fail("a generator or async generator must not be marked with shutdown=True", pytrace=False)
         else:
-            generator = self.test(**given)
+            generator = self.test(**arguments)
             if inspect.isasyncgen(generator):
                 loop.run_until_complete(_next(generator))
             else:
@@ -212,8 +212,8 @@ class LaunchTest(pytest.Function):
         __tracebackhide__ = True
         self._end_launch()
         is_async = inspect.isasyncgen(generator)
-        rest = loop.run_until_complete(_next(generator)) if is_async else next(generator, _EXHAUSTED)
-        if rest is not _EXHAUSTED:
+        next_value = loop.run_until_complete(_next(generator)) if is_async else next(generator, _EXHAUSTED)
+        if next_value is not _EXHAUSTED:
             pytest.fail("a launch test that is a generator must stop iteration after yielding once", pytrace=False)
 
 
@@ -225,7 +225,7 @@ def _has_parts(test: Callable[..., Any]) -> bool:
     return inspect.isgeneratorfunction(test) or inspect.isasyncgenfunction(test)
 
 
-def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
+def _as_plain_function(test: Callable[..., Any]) -> Callable[..., Any]:
     """Return a plain function with the signature of a test, for pytest to collect.
 
     If pytest collected the coroutine function itself, plugins for coroutines would run it.
@@ -243,7 +243,7 @@ def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
 def pytest_pycollect_makeitem(
     collector: pytest.Module | pytest.Class, name: str, obj: object
 ) -> list[pytest.Function] | None:
-    """Collect the tests that are marked with ``launch``."""
+    """Collect a function that is marked with ``launch`` as launch tests."""
     if not inspect.isfunction(obj) or not collector.funcnamefilter(name):
         return None
     marks = [mark for mark in getattr(obj, "pytestmark", ()) if mark.name == "launch"]
@@ -256,10 +256,10 @@ def pytest_pycollect_makeitem(
     pytest.mark.usefixtures(options.fixture, *FIXTURES[:2])(obj)
     items = list(collector._genfunctions(name, obj))
     tests = [LaunchTest.of(item, options) for item in items]
-    rests = []
+    second_parts = []
     if _has_parts(obj) and options.scope != "function":
-        rests = [LaunchTest.of(item, options, test) for item, test in zip(items, tests, strict=True)]
-    return [*tests, *rests]
+        second_parts = [LaunchTest.of(item, options, test) for item, test in zip(items, tests, strict=True)]
+    return [*tests, *second_parts]
 
 
 def _mark_skipped(item: pytest.Function) -> pytest.Function:
@@ -271,15 +271,15 @@ def _mark_skipped(item: pytest.Function) -> pytest.Function:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Move tests that run after a launch behind all tests that run during this launch."""
-    last = {
+    """Sort the tests so that tests after a launch follow all tests that run during it."""
+    last_index = {
         item.launch: index
         for index, item in enumerate(items)
         if isinstance(item, LaunchTest) and not item.is_after_shutdown
     }
-    places: dict[pytest.Item, tuple[int, bool]] = {}
+    sort_keys: dict[pytest.Item, tuple[int, bool]] = {}
     for index, item in enumerate(items):
-        after = isinstance(item, LaunchTest) and item.is_after_shutdown
-        beside = last.get(item.launch, index) if isinstance(item, LaunchTest) and after else index
-        places[item] = max(index, beside), after
-    items.sort(key=lambda item: places[item])
+        is_after = isinstance(item, LaunchTest) and item.is_after_shutdown
+        during_index = last_index.get(item.launch, index) if isinstance(item, LaunchTest) and is_after else index
+        sort_keys[item] = max(index, during_index), is_after
+    items.sort(key=lambda item: sort_keys[item])

@@ -21,37 +21,37 @@ from linkwright.launch.model.context import Handler, LaunchContext
 from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 
 Validate = Callable[[str], Any]
-"""Validates a text by its return value or by raising AssertionError."""
+"""A function that validates a text: it returns a false value or raises AssertionError if the text is wrong."""
 
 Reaction = Callable[..., None]
 _P = ParamSpec("_P")
 
 
 class _Wait:
-    """A wait for an event or for a condition.
+    """A wait until an event occurs or a condition holds.
 
     Args:
         context: the context of the launch.
-        handler: creates a handler of the events, given the function that the handler calls.
+        create_handler: returns an event handler that calls the function that it is given.
         timeout: the timeout in seconds; None to wait without limit.
         condition: the condition that must hold now or after an event; None if the first event ends the wait.
-        given_up: called on a timeout.
+        on_timeout: called if the wait times out.
     """
 
     def __init__(
         self,
         context: LaunchContext,
-        handler: Callable[[Reaction], Handler],
+        create_handler: Callable[[Reaction], Handler],
         timeout: float | None,
         condition: Callable[[], Any] | None = None,
-        given_up: Callable[[], object] = lambda: None,
+        on_timeout: Callable[[], object] = lambda: None,
     ) -> None:
         self._context = context
-        self._handler = handler
+        self._create_handler = create_handler
         self._timeout = timeout
         self._condition = condition
-        self._given_up = given_up
-        self._happened = False
+        self._on_timeout = on_timeout
+        self._has_occurred = False
 
     async def run(self) -> Any:
         """Wait on the launch's event loop, and return the last value of the condition.
@@ -66,7 +66,7 @@ class _Wait:
                 try:
                     await asyncio.wait_for(event.wait(), _remaining_seconds(deadline))
                 except asyncio.TimeoutError:
-                    self._given_up()
+                    self._on_timeout()
                     break
                 event.clear()
                 value = self._value()
@@ -83,7 +83,7 @@ class _Wait:
             deadline = self._deadline()
             while not value:
                 if not event.wait(_remaining_seconds(deadline)):
-                    self._given_up()
+                    self._on_timeout()
                     break
                 event.clear()
                 value = self._value()
@@ -93,17 +93,17 @@ class _Wait:
         return None if self._timeout is None else time.monotonic() + self._timeout
 
     def _value(self) -> Any:
-        return self._happened if self._condition is None else self._condition()
+        return self._has_occurred if self._condition is None else self._condition()
 
     @contextmanager
     def _listening(self, notify: Callable[[], None]) -> Iterator[None]:
         """Call `notify` after each event while the context is active."""
 
         def react(*_: object) -> None:
-            self._happened = True
+            self._has_occurred = True
             notify()
 
-        handler = self._handler(react)
+        handler = self._create_handler(react)
         self._context.register_event_handler(handler)
         try:
             yield
@@ -119,19 +119,21 @@ def _remaining_seconds(deadline: float | None) -> float | None:
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
 
-def _waits(make: Callable[_P, _Wait]) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
-    """Return a coroutine function and a function that run the wait that `make` creates.
+def _wait_functions(
+    create_wait: Callable[_P, _Wait],
+) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
+    """Return a coroutine function and a function that each perform the wait that `create_wait` creates.
 
-    Both have the signature and docstring of `make`.
+    Both have the signature and docstring of `create_wait`.
     """
 
-    @wraps(make)
+    @wraps(create_wait)
     async def wait(*args: _P.args, **kwargs: _P.kwargs) -> Any:
-        return await make(*args, **kwargs).run()
+        return await create_wait(*args, **kwargs).run()
 
-    @wraps(make)
+    @wraps(create_wait)
     def wait_sync(*args: _P.args, **kwargs: _P.kwargs) -> Any:
-        return make(*args, **kwargs).run_sync()
+        return create_wait(*args, **kwargs).run_sync()
 
     return wait, wait_sync
 
@@ -147,7 +149,7 @@ def _output_wait(stream: str) -> Callable[..., _Wait]:
 
         Return the last value of `validate_output`.
         """
-        handler, read = _output_reader(execute_process_action, stream)
+        handler, read = _output_access(execute_process_action, stream)
         return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
 
     return wait
@@ -164,7 +166,7 @@ def _output_assertion_wait(stream: str) -> Callable[..., _Wait]:
 
         On a timeout, `validate_output` is called once more, and its AssertionError is raised.
         """
-        handler, read = _output_reader(execute_process_action, stream)
+        handler, read = _output_access(execute_process_action, stream)
 
         def holds() -> bool:
             try:
@@ -200,10 +202,10 @@ def _exit_wait(
     return _Wait(launch_context, handler, timeout)
 
 
-def _output_reader(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
-    """Return a factory of handlers for output, and a function that returns the output so far.
+def _output_access(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
+    """Return a factory of event handlers for output, and a function that returns the output so far.
 
-    The stream is ``stdout`` or ``stderr``.
+    The parameter `stream` is ``stdout`` or ``stderr``.
     """
 
     def handler(react: Reaction) -> Handler:
@@ -212,9 +214,9 @@ def _output_reader(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reactio
     return handler, getattr(action, f"get_{stream}")
 
 
-wait_for_output, wait_for_output_sync = _waits(_output_wait("stdout"))
-wait_for_stderr, wait_for_stderr_sync = _waits(_output_wait("stderr"))
-assert_output, assert_output_sync = _waits(_output_assertion_wait("stdout"))
-assert_stderr, assert_stderr_sync = _waits(_output_assertion_wait("stderr"))
-wait_for_start, wait_for_start_sync = _waits(_start_wait)
-wait_for_exit, wait_for_exit_sync = _waits(_exit_wait)
+wait_for_output, wait_for_output_sync = _wait_functions(_output_wait("stdout"))
+wait_for_stderr, wait_for_stderr_sync = _wait_functions(_output_wait("stderr"))
+assert_output, assert_output_sync = _wait_functions(_output_assertion_wait("stdout"))
+assert_stderr, assert_stderr_sync = _wait_functions(_output_assertion_wait("stderr"))
+wait_for_start, wait_for_start_sync = _wait_functions(_start_wait)
+wait_for_exit, wait_for_exit_sync = _wait_functions(_exit_wait)

@@ -21,24 +21,24 @@ EXIT_FORCED = 1
 """The exit code of a process that a launch on Windows ended."""
 
 _STREAMS = ("stdout", "stderr")
-_LINES_AROUND = 3
-_FINE = (EXIT_OK,) if os.name != "nt" else (EXIT_OK, EXIT_FORCED)
+_CONTEXT_LINES = 3
+_DEFAULT_EXIT_CODES = (EXIT_OK,) if os.name != "nt" else (EXIT_OK, EXIT_FORCED)
 
 
 def assertExitCodes(
     proc_info: ProcessRecords,
-    allowable_exit_codes: Sequence[int] = _FINE,
+    allowable_exit_codes: Sequence[int] = _DEFAULT_EXIT_CODES,
     process: ExecuteLocal | str | None = None,
     cmd_args: str | Sequence[str] | None = None,
     *,
     strict_proc_matching: bool = True,
 ) -> None:
-    """Raise AssertionError unless all matching processes ended with an allowed exit code.
+    """Raise AssertionError unless all matching processes exited with an allowed code.
 
     Args:
         proc_info: the records of exits.
         allowable_exit_codes: the allowed exit codes.
-        process: an action, or a part of the name of a process; None for all processes.
+        process: the action or a part of the name of the process; None for all processes.
         cmd_args: arguments of the process, see `resolveProcesses`.
         strict_proc_matching: whether a name must match only one process.
     """
@@ -67,7 +67,7 @@ def assertInStream(
     Args:
         proc_output: the output of the processes.
         expected_output: a text, a regular expression, or several of them in order.
-        process: an action, or a part of the name of a process; None for any process.
+        process: the action or a part of the name of the process; None for any process.
         cmd_args: arguments of the process, see `resolveProcesses`.
         output_filter: a function that filters the output before the search.
         strict_proc_matching: whether a name must match only one process.
@@ -76,21 +76,23 @@ def assertInStream(
 
     Raises:
         ValueError: `output_filter` cannot be called, or there is no such stream.
-        NoMatchingProcessException: no such process wrote any output.
+        NoMatchingProcessException: no matching process wrote output.
     """
-    found = resolveProcesses(proc_output, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching)
+    matching_actions = resolveProcesses(
+        proc_output, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching
+    )
     if output_filter is not None and not callable(output_filter):
         raise ValueError("output_filter is not callable")
     if stream not in _STREAMS:
         raise ValueError("Invalid value for stream; must be 'stdout' or 'stderr'")
     match = build_text_match(expected_output)
-    for execute_local in found:
-        written = text_of(proc_output[execute_local], stream)
+    for execute_local in matching_actions:
+        output = text_of(proc_output[execute_local], stream)
         if strip_ansi_escape_sequences:
-            written = remove_ansi_escape_sequences(written)
-        if match(written if output_filter is None else output_filter(written)) is not None:
+            output = remove_ansi_escape_sequences(output)
+        if match(output if output_filter is None else output_filter(output)) is not None:
             return
-    names = ", ".join(sorted(map(name_of, found)))
+    names = ", ".join(sorted(map(name_of, matching_actions)))
     raise AssertionError(f"Did not find '{expected_output}' in output for any of the matching processes: {names}")
 
 
@@ -127,34 +129,34 @@ def assertDefaultStream() -> str:
     return "stderr"
 
 
-def text_of(written: Sequence[Any], stream: str | None = None) -> str:
+def text_of(output_events: Sequence[Any], stream: str | None = None) -> str:
     """Return the recorded output of a process as one text.
 
     Args:
-        written: the output events of the process.
+        output_events: the output events of the process.
         stream: ``stdout`` or ``stderr``; None for both.
     """
-    kept = (event for event in written if stream is None or getattr(event, f"from_{stream}"))
-    return b"".join(event.text for event in kept).decode(errors="replace")
+    stream_events = (event for event in output_events if stream is None or getattr(event, f"from_{stream}"))
+    return b"".join(event.text for event in stream_events).decode(errors="replace")
 
 
 @contextmanager
 def assertSequentialStdout(
     proc_output: ProcessRecords, process: ExecuteLocal | str, cmd_args: str | Sequence[str] | None = None
 ) -> Iterator[SequentialTextChecker]:
-    """Yield a checker that finds texts in the output of a process in order.
+    """Yield a checker that finds texts in the output of a process, in order.
 
     Args:
         proc_output: the output of the processes.
-        process: an action, or a part of the name of a process.
+        process: the action or a part of the name of the process.
         cmd_args: arguments of the process, see `resolveProcesses`.
     """
-    (found,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
-    yield SequentialTextChecker([text_of([event]) for event in proc_output[found]])
+    (action,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
+    yield SequentialTextChecker([text_of([event]) for event in proc_output[action]])
 
 
 class SequentialTextChecker:
-    """Finds texts in the output of a process, each after the last match.
+    """Finds texts in the output of a process, each after the previous match.
 
     Args:
         output: the output in chunks; each text must be within a single chunk.
@@ -162,16 +164,16 @@ class SequentialTextChecker:
 
     def __init__(self, output: Sequence[str]) -> None:
         self._output = list(output)
-        self._piece = 0
+        self._chunk_index = 0
         self._offset = 0
 
     def assertInText(self, msg: str) -> None:
-        """Raise AssertionError unless the output after the last match contains a text."""
+        """Raise AssertionError unless the output after the previous match contains a text."""
         offset = self._offset
-        for piece in range(self._piece, len(self._output)):
-            at = self._output[piece].find(msg, offset)
-            if at >= 0:
-                self._piece, self._offset = piece, at + len(msg)
+        for chunk_index in range(self._chunk_index, len(self._output)):
+            position = self._output[chunk_index].find(msg, offset)
+            if position >= 0:
+                self._chunk_index, self._offset = chunk_index, position + len(msg)
                 return
             offset = 0
         raise AssertionError(
@@ -182,18 +184,18 @@ class SequentialTextChecker:
     assertInStdout = assertInText
 
     def get_nearby_lines(self) -> str:
-        """Return the lines around the last match."""
+        """Return the previous match with the lines around it."""
         text = "".join(self._output)
-        at = sum(map(len, self._output[: self._piece])) + self._offset
-        begin = at
-        for _ in range(_LINES_AROUND):
-            begin = max(text.rfind("\n", 0, begin), 0)
-        end = at
-        for _ in range(_LINES_AROUND):
+        position = sum(map(len, self._output[: self._chunk_index])) + self._offset
+        start = position
+        for _ in range(_CONTEXT_LINES):
+            start = max(text.rfind("\n", 0, start), 0)
+        end = position
+        for _ in range(_CONTEXT_LINES):
             end = max(text.find("\n", end + 1), end)
-        return text[begin + 1 if begin else 0 : end]
+        return text[start + 1 if start else 0 : end]
 
 
-def _check(holds: bool, message: str) -> None:
-    if not holds:
+def _check(condition: bool, message: str) -> None:
+    if not condition:
         raise AssertionError(message)

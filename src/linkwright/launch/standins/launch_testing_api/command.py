@@ -21,7 +21,7 @@ from linkwright.launch.standins.launch_testing_api.test_runs import LoadTestsFro
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments of the command."""
+    """Add the arguments of the command to its parser."""
     parser.add_argument("launch_test_file", help="the file with generate_test_description and tests")
     parser.add_argument("--package-name", help="the package that the tests belong to, for the report")
     parser.add_argument("-v", "--verbose", action="store_true", help="log in detail what the launcher does")
@@ -56,13 +56,13 @@ def run(
         test_runner_cls: the class that runs the tests.
 
     Returns:
-        0 if all tests passed, else 1.
+        0 if all tests passed, otherwise 1.
     """
     path = Path(args.launch_test_file).absolute()
     if not path.is_file():
         parser.error(f"Test file '{args.launch_test_file}' does not exist")
     package = args.package_name or path.stem
-    module = _loaded(package, path)
+    module = _load_module(package, path)
     if not hasattr(module, "generate_test_description"):
         parser.error(f"Test file '{args.launch_test_file}' has no function generate_test_description")
     runs = LoadTestsFromPythonModule(module, name=f"{package}.{path.stem}.launch_tests")
@@ -88,12 +88,12 @@ def print_arguments_of_launch_description(*, launch_description: LaunchDescripti
 
 
 def main() -> None:
-    """Run the command, and exit with its status: 0 or 1, or 2 for a usage error."""
+    """Run the command, and exit with status 0 if all tests passed, 1 if not, and 2 for a usage error."""
     parser, args = parse_arguments()
     sys.exit(run(parser, args))
 
 
-def _loaded(name: str, path: Path) -> ModuleType:
+def _load_module(name: str, path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise ImportError(f"'{path}' is not a Python file", path=str(path))

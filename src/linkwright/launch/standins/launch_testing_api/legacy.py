@@ -14,13 +14,13 @@ from linkwright.launch.model.events import Shutdown
 from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO
 
 _Action = TypeVar("_Action")
-_RUNS, _PASSED, _FAILED, _DROPPED = "runs", "passed", "failed", "dropped"
+_RUNNING, _PASSED, _FAILED, _DROPPED = "runs", "passed", "failed", "dropped"
 
 _OutputTest = tuple[Any, Callable[[Any, bytes], Any], Callable[[Any, Any], bool], Sequence[Any]]
 
 
 class LaunchTestService:
-    """Ends a launch when its tests are finished.
+    """Ends a launch when all its tests have finished.
 
     `run` returns the status of the first failed test.
     """
@@ -32,15 +32,15 @@ class LaunchTestService:
     def add_fixture_action(
         self, launch_description: Any, action: _Action, exit_allowed: Collection[int] | bool = (0,)
     ) -> _Action:
-        """Add an action that the tests need.
+        """Add an action that the tests need to a launch description.
 
-        If the action is a process, an exit that is not allowed ends the launch.
+        If the action is a process, the launch ends when the process exits with a status that is not allowed.
 
         Args:
             launch_description: the description to which the action is added.
             action: the action.
-            exit_allowed: the statuses with which the process may exit before the tests, or whether any status is
-                allowed.
+            exit_allowed: the statuses with which the process may exit before the tests end. True allows any status,
+                and False allows none.
         """
         launch_description.add_action(action)
 
@@ -56,7 +56,7 @@ class LaunchTestService:
         return action
 
     def add_test_action(self, launch_description: Any, action: _Action) -> _Action:
-        """Add an action that is a test.
+        """Add an action that is itself a test to a launch description.
 
         A process passes if it exits with 0. Any other action passes if it completes without an exception.
         """
@@ -83,7 +83,7 @@ class LaunchTestService:
             handler = OnExecutionComplete(target_action=action, on_completion=on_completion)
         launch_description.add_action(RegisterEventHandler(handler))
         launch_description.add_action(action)
-        self._tests[test] = _RUNS
+        self._tests[test] = _RUNNING
         return action
 
     def add_output_test(
@@ -95,32 +95,32 @@ class LaunchTestService:
         output_filter: Callable[[bytes], bytes] | None = None,
         side_effect: str | None = None,
     ) -> _Action:
-        """Add a test of the output of a process in the description.
+        """Add a test of the output of a process to a launch description.
 
         Args:
-            launch_description: the description with the process.
+            launch_description: the description that contains the process.
             action: the action of the process.
-            output_test: a test from `linkwright.launch.standins.launch_testing_api.legacy_output`.
-            test_suffix: a suffix that distinguishes several tests of one process.
+            output_test: the result of a function of `linkwright.launch.standins.launch_testing_api.legacy_output`.
+            test_suffix: a suffix of the test's name, which distinguishes several tests of one process.
             output_filter: a function that filters the output.
-            side_effect: ``shutdown`` ends the launch once the test has passed.
+            side_effect: ``shutdown`` to end the launch when the test has passed.
         """
         test = f"test_{id(action)}_{test_suffix}"
         written, collate, matches, patterns = output_test
-        missing = list(patterns)
-        self._tests[test] = _RUNS
+        missing_patterns = list(patterns)
+        self._tests[test] = _RUNNING
 
         def on_stdout(event: Any) -> Any:
             nonlocal written
             written = collate(written, output_filter(event.text) if output_filter else event.text)
-            missing[:] = [text for text in missing if not matches(written, text)]
-            return None if missing else self._handle_pass(test, side_effect)
+            missing_patterns[:] = [text for text in missing_patterns if not matches(written, text)]
+            return None if missing_patterns else self._handle_pass(test, side_effect)
 
         def on_exit(*_: Any) -> Any:
-            return self._ended(test) if missing else None  # output may arrive after the exit
+            return self._handle_end(test) if missing_patterns else None  # output may arrive after the exit
 
         def on_shutdown(*_: Any) -> None:
-            if missing:
+            if missing_patterns:
                 self._failed(test, f"not all {_name(action)} output matched!")
 
         for handler in (
@@ -132,7 +132,7 @@ class LaunchTestService:
         return action
 
     def run(self, launch_service: Any, *args: Any, **kwargs: Any) -> int:
-        """Run a launch service, and return its status.
+        """Run a launch service and return its status, or that of the first failed test if the launch succeeds.
 
         If this status is 0, return the status of the first failed test.
         """
@@ -143,17 +143,17 @@ class LaunchTestService:
         self._tests[test] = _PASSED
         if side_effect == "shutdown":
             return [_shutdown("shutdown after test")]
-        return self._ended(test)
+        return self._handle_end(test)
 
     def _failed(self, test: str, reason: str) -> Any:
-        self._tests = {name: _DROPPED if state == _RUNS else state for name, state in self._tests.items()}
+        self._tests = {name: _DROPPED if state == _RUNNING else state for name, state in self._tests.items()}
         self._tests[test] = _FAILED
         return [_shutdown(reason)]
 
-    def _ended(self, test: str) -> Any:
-        """End the launch if no other test is running."""
-        others = [state for name, state in self._tests.items() if name != test]
-        return None if _RUNS in others else [_shutdown("all tests finished")]
+    def _handle_end(self, test: str) -> Any:
+        """Return an action that ends the launch, or None if another test is still running."""
+        other_states = [state for name, state in self._tests.items() if name != test]
+        return None if _RUNNING in other_states else [_shutdown("all tests finished")]
 
 
 def _shutdown(reason: str) -> Any:

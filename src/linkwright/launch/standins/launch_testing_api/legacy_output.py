@@ -25,7 +25,7 @@ def create_output_lines_filter(
     filtered_patterns: Sequence[bytes] | None = None,
     filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # ours writes nothing
 ) -> Callable[[bytes], bytes]:
-    """Return a function that removes lines with certain prefixes or patterns from an output."""
+    """Return a function that removes the lines with certain prefixes or patterns from an output."""
     prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())
     patterns = [
         re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or get_default_filtered_patterns()
@@ -44,12 +44,12 @@ def create_output_lines_filter(
 
 def create_output_lines_test(expected_lines: Sequence[bytes]) -> _OutputTest:
     """Return a test that passes when each expected text occurs within a line of the output."""
-    return b"", _joined, lambda output, text: any(text in line for line in output.splitlines()), expected_lines
+    return b"", _join, lambda output, text: any(text in line for line in output.splitlines()), expected_lines
 
 
 def create_output_regex_test(expected_patterns: Sequence[re.Pattern[bytes]]) -> _OutputTest:
     """Return a test that passes when each expected pattern matches in the output."""
-    return b"", _joined, lambda output, pattern: pattern.search(output) is not None, expected_patterns
+    return b"", _join, lambda output, pattern: pattern.search(output) is not None, expected_patterns
 
 
 def create_output_test_from_file(output_file: str) -> _OutputTest:
@@ -72,5 +72,5 @@ def _create_pattern_test(texts: Sequence[bytes]) -> _OutputTest:
     return create_output_regex_test([re.compile(text) for text in texts])
 
 
-def _joined(output: bytes, more: bytes) -> bytes:
-    return output + more
+def _join(output: bytes, chunk: bytes) -> bytes:
+    return output + chunk

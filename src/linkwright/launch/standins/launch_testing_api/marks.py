@@ -33,10 +33,10 @@ def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[.
         @functools.wraps(function)
         def descriptions() -> Iterator[tuple[Callable[..., Any], dict[str, Any]]]:
             for value in values:
-                given = dict(zip(names, value, strict=False))
-                made = functools.partial(function, **given)
-                functools.update_wrapper(made, function)
-                yield made, given
+                arguments = dict(zip(names, value, strict=False))
+                description_function = functools.partial(function, **arguments)
+                functools.update_wrapper(description_function, function)
+                yield description_function, arguments
 
         setattr(descriptions, PARAMETRIZED, True)
         return descriptions
@@ -136,25 +136,25 @@ def _forget_failures(test: Any) -> None:
 
 
 class ReadyAggregator:
-    """Calls a function after its method `ready_fn` has been called a number of times.
+    """Calls a function once `ready_fn` has been called a certain number of times.
 
     Args:
-        ready_fn: the function to call.
-        num_to_aggregate: the number of calls.
+        ready_fn: the function to call at the end.
+        num_to_aggregate: the number of calls of the method `ready_fn` to wait for.
     """
 
     def __init__(self, ready_fn: Callable[[], object], num_to_aggregate: int) -> None:
         self._ready = ready_fn
-        self._missing = num_to_aggregate
+        self._remaining_calls = num_to_aggregate
         self._lock = threading.Lock()
 
     def ready_fn(self) -> None:
-        """Count a call.
+        """Count a call, and call the function on the last one.
 
         This method may be called from any thread.
         """
         with self._lock:
-            self._missing -= 1
-            is_last = self._missing == 0
+            self._remaining_calls -= 1
+            is_last = self._remaining_calls == 0
         if is_last:
             self._ready()

@@ -10,9 +10,11 @@ from linkwright.launch.model.actions.execute import ExecuteLocal, ExecuteProcess
 from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
 NO_CMD_ARGS: Any = object()
-"""Selects commands without arguments."""
+"""Selects processes whose command has no arguments."""
 
-_WAIT = "import signal, threading; signal.signal(signal.SIGINT, lambda *_: exit(0)); threading.Event().wait()"
+_KEEP_ALIVE_SCRIPT = (
+    "import signal, threading; signal.signal(signal.SIGINT, lambda *_: exit(0)); threading.Event().wait()"
+)
 
 
 class NoMatchingProcessException(Exception):
@@ -20,7 +22,7 @@ class NoMatchingProcessException(Exception):
 
 
 class ProcessRecords(Protocol):
-    """The interface of records by process."""
+    """The interface of records that are stored by process."""
 
     def processes(self) -> Collection[ExecuteLocal]:
         """Return the actions of the processes."""
@@ -31,7 +33,7 @@ class ProcessRecords(Protocol):
 
 def KeepAliveProc() -> ExecuteProcess:
     """Return a process that does nothing but keeps the launch running until the tests end."""
-    return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
+    return ExecuteProcess(cmd=[sys.executable, "-c", _KEEP_ALIVE_SCRIPT])
 
 
 def resolveProcesses(
@@ -55,37 +57,37 @@ def resolveProcesses(
         Exception: several processes match the name.
         TypeError: `process` has another type.
     """
-    known = list(info_obj.processes())
+    actions = list(info_obj.processes())
     if process is None:
-        if not known:
+        if not actions:
             raise NoMatchingProcessException("No data recorded for any process")
-        return known
+        return actions
     if isinstance(process, ExecuteLocal):
-        if process not in known:
-            raise NoMatchingProcessException(f"No data recorded for proc {_called(process)}")
+        if process not in actions:
+            raise NoMatchingProcessException(f"No data recorded for proc {_format_process(process)}")
         return [process]
     if not isinstance(process, str):
         raise TypeError(f"proc argument must be 'ExecuteProcess' or 'str' not {type(process)}")
-    words = [cmd_args] if isinstance(cmd_args, str) else cmd_args
-    found = [
+    arguments = [cmd_args] if isinstance(cmd_args, str) else cmd_args
+    matching_actions = [
         execute_local
-        for execute_local in known
-        if process in name_of(execute_local) and _has_arguments(execute_local, words)
+        for execute_local in actions
+        if process in name_of(execute_local) and _has_arguments(execute_local, arguments)
     ]
-    if found and not (strict_proc_matching and len(found) > 1):
-        return found
-    names = ", ".join(sorted(map(_called, known)))
-    if not found:
+    if matching_actions and not (strict_proc_matching and len(matching_actions) > 1):
+        return matching_actions
+    names = ", ".join(sorted(map(_format_process, actions)))
+    if not matching_actions:
         raise NoMatchingProcessException(
-            f"Did not find any processes matching name '{process}' and args '{words}'. Procs: {names}"
+            f"Did not find any processes matching name '{process}' and args '{arguments}'. Procs: {names}"
         )
     raise Exception(  # noqa: TRY002 - launch_testing raises it
-        f"Found multiple processes matching name '{process}' and cmd_args '{words}'. Procs: {names}"
+        f"Found multiple processes matching name '{process}' and cmd_args '{arguments}'. Procs: {names}"
     )
 
 
 def name_of(action: ExecuteLocal) -> str:
-    """Return the log name of an action's process, or an empty text if it is not known yet."""
+    """Return the name of an action's process in the log, or an empty text if it has none yet."""
     return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
 
 
@@ -95,20 +97,20 @@ def _has_arguments(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
         return True
     if words is NO_CMD_ARGS:
         return len(command) == 1
-    return all(word in command[1:] for word in words)
+    return all(argument in command[1:] for argument in words)
 
 
-def _called(action: ExecuteLocal) -> str:
+def _format_process(action: ExecuteLocal) -> str:
     """Return the name and arguments of a process for messages."""
     details = action.process_details
     if details:
         return " ".join([details["name"], *details["cmd"][1:]])
-    words = [_plain(parts) for parts in action.process_description.cmd]
-    known = [word for word in words if word is not None]
-    return " ".join(known) if len(known) == len(words) else "Unknown - Process not launched yet"
+    arguments = [_as_plain_text(parts) for parts in action.process_description.cmd]
+    plain_arguments = [argument for argument in arguments if argument is not None]
+    return " ".join(plain_arguments) if len(plain_arguments) == len(arguments) else "Unknown - Process not launched yet"
 
 
-def _plain(parts: Iterable[Substitution]) -> str | None:
+def _as_plain_text(substitutions: Iterable[Substitution]) -> str | None:
     """Return a command-line argument as plain text, or None if it contains substitutions."""
-    texts = [part.text for part in parts if isinstance(part, TextSubstitution)]
-    return "".join(texts) if len(texts) == len(list(parts)) else None
+    texts = [substitution.text for substitution in substitutions if isinstance(substitution, TextSubstitution)]
+    return "".join(texts) if len(texts) == len(list(substitutions)) else None

@@ -17,8 +17,8 @@ from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandle
 class Outcome:
     """The result of a wait, with the output up to the end of the wait.
 
-    Args:
-        is_true: whether the wait was successful.
+    is_true: whether the wait succeeded before its timeout.
+        output: the output of the process up to the end of the wait; None if it was not read.
         output: the output.
     """
 
@@ -38,7 +38,7 @@ class ProcessProxy:
 
     Args:
         process_action: the action that starts the process.
-        proc_info: the records of starts and exits.
+        proc_info: the records of the starts and exits of processes.
         proc_output: the output of the processes.
         output_filter: a function that filters the output.
 
@@ -109,7 +109,7 @@ class ProcessProxy:
             return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
 
     def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
-        """Wait for output of the process.
+        """Wait for output of the process, and return whether it arrived in time, with the output so far.
 
         Return whether the output arrived in time, with the output so far.
 
@@ -128,13 +128,13 @@ class ProcessProxy:
             return condition is None or bool(condition(written))
 
         with self._proc_output.io_event:
-            found = self._proc_output.io_event.wait_for(is_there, timeout=timeout)
-            return Outcome(found, written)
+            has_succeeded = self._proc_output.io_event.wait_for(is_there, timeout=timeout)
+            return Outcome(has_succeeded, written)
 
     @property
     def _event(self) -> object:
-        known = self._proc_info.processes()
-        return self._proc_info[self._process_action] if self._process_action in known else None
+        actions = self._proc_info.processes()
+        return self._proc_info[self._process_action] if self._process_action in actions else None
 
     def _text(self, stream: str | None) -> str:
         text = text_of(self._proc_output[self._process_action], stream)
@@ -151,7 +151,7 @@ def launch_process(
 ) -> Iterator[ProcessProxy]:
     """Start a process in a running launch for the duration of a context.
 
-    If the process is still running at the end of the context, it is ended.
+    At the end of the context, the process is shut down if it is still running.
 
     Args:
         launch_service: the service that runs the launch.

@@ -1,7 +1,7 @@
 """The pytest plugin of ``launch_testing``.
 
-A marked file of launch tests is a single test for pytest. In such a file, ``generate_test_description`` has the mark
-``@pytest.mark.launch_test``, or ``@pytest.mark.rostest`` of launch_testing_ros.
+pytest collects a marked file of launch tests as a single test. In such a file, ``generate_test_description`` has the
+mark ``@pytest.mark.launch_test``, or ``@pytest.mark.rostest`` of launch_testing_ros.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class LaunchTestFailure(Exception):
 
     Attributes:
         message: the error message.
-        results: launch -> results of its tests.
+        results: maps each launch to the results of its tests.
     """
 
     def __init__(self, message: str, results: dict[TestRun, Any]) -> None:
@@ -42,21 +42,21 @@ class LaunchTestFailure(Exception):
 
     @property
     def report(self) -> str:
-        """The messages of the failed tests."""
-        parts = []
+        """The failure messages of all failed tests, each below its name."""
+        sections = []
         for result in self.results.values():
             for case, text in (*result.errors, *result.failures):
                 name = case.id() if hasattr(case, "id") else str(case)
-                line = "=" * max(len(name) + 6, 3)
-                parts.append(f"{line}\nFAIL: {name}\n{'-' * len(line)}\n{text}")
-        return "\n".join(parts)
+                separator = "=" * max(len(name) + 6, 3)
+                sections.append(f"{separator}\nFAIL: {name}\n{'-' * len(separator)}\n{text}")
+        return "\n".join(sections)
 
 
 class LaunchTestItem(pytest.Item):
     """All tests of a file, with their launches.
 
     Attributes:
-        load: a function that loads the tests again, for plugins that run a test several times.
+        load: a function that loads the tests again, for plugins that run an item several times.
         runner_cls: the class that runs the tests.
     """
 
@@ -72,10 +72,10 @@ class LaunchTestItem(pytest.Item):
         load: Callable[[], list[TestRun]],
         runner_cls: type[LaunchTestRunner] = LaunchTestRunner,
     ) -> LaunchTestItem:
-        """Create the item through pytest's interface for the creation of nodes."""
-        made: LaunchTestItem = super().from_parent(parent, name=name)
-        made.load, made.runner_cls = load, runner_cls
-        return made
+        """Create the item, as pytest creates its nodes."""
+        item: LaunchTestItem = super().from_parent(parent, name=name)
+        item.load, item.runner_cls = load, runner_cls
+        return item
 
     def runtest(self) -> None:
         """Run all tests of the file.
@@ -83,7 +83,9 @@ class LaunchTestItem(pytest.Item):
         Raises:
             LaunchTestFailure: a test has failed.
         """
-        words = [word for words in self.config.getoption("--launch-args") for word in words]
+        words = [
+            argument for launch_arguments in self.config.getoption("--launch-args") for argument in launch_arguments
+        ]
         runner = self.runner_cls(self.load(), words, debug=self.config.get_verbosity() > 1)
         runner.validate()
         results = runner.run()
@@ -91,7 +93,7 @@ class LaunchTestItem(pytest.Item):
             raise LaunchTestFailure("some test cases have failed", results)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *args: Any, **kwargs: Any) -> Any:
-        """Return the text of a failure, which consists of the tests' messages."""
+        """Return the messages of the failed tests, or pytest's text for another exception."""
         if isinstance(excinfo.value, LaunchTestFailure):
             return excinfo.value.report
         return super().repr_failure(excinfo, *args, **kwargs)
@@ -121,16 +123,16 @@ def collect_marked(path: Path, parent: pytest.Collector) -> LaunchTestModule | N
 
     The result is None if the file has no such tests or cannot be imported.
     """
-    usual = pytest.Module.from_parent(parent, path=path)
+    python_module = pytest.Module.from_parent(parent, path=path)
     try:
-        module = usual.obj
-    except (usual.CollectError, pytest.skip.Exception):
+        module = python_module.obj
+    except (python_module.CollectError, pytest.skip.Exception):
         return None  # pytest reports the failed import on collection
     marks = list(getattr(getattr(module, "generate_test_description", None), "pytestmark", ()))
     if not any(mark.name in MARKS for mark in marks):
         return None
-    made = LaunchTestModule.from_parent(parent, path=path)
-    made.module = module
+    launch_module = LaunchTestModule.from_parent(parent, path=path)
+    launch_module.module = module
     for mark in marks:
-        made.add_marker(getattr(pytest.mark, mark.name).with_args(*mark.args, **mark.kwargs))
-    return made
+        launch_module.add_marker(getattr(pytest.mark, mark.name).with_args(*mark.args, **mark.kwargs))
+    return launch_module

@@ -9,12 +9,12 @@ from linkwright.launch.model.process_event_handlers import OnProcessIO
 
 
 class StdoutReadyListener(OnProcessIO):
-    """Visits actions when a process writes a text to standard output.
+    """Executes actions when a process writes a text to standard output.
 
     Args:
-        target_action: the action of the process; all processes by default.
+        target_action: the action of the process; None for all processes.
         ready_txt: the text to wait for.
-        actions: the actions to visit.
+        actions: the actions to execute.
     """
 
     def __init__(self, *, target_action: Any = None, ready_txt: str, actions: Any) -> None:
@@ -26,5 +26,5 @@ class StdoutReadyListener(OnProcessIO):
         super().__init__(target_action=target_action, on_stdout=react)
 
     def describe(self) -> tuple[str, Any]:
-        """Return a line for listings, and the actions."""
+        """Return a description of the handler for listings, and its actions."""
         return super().describe()[0], self._actions

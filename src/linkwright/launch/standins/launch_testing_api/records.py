@@ -1,7 +1,7 @@
 """Records of the output and exits of processes in a launch, for tests.
 
-These are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch, and support
-waiting. Each active handler contains a plain handler, which is for tests that run after the launch.
+These are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch; they can
+wait for records. Each active handler contains a plain handler, which is for tests that run after the launch.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class IoHandler:
 
     def processes(self) -> list[Any]:
         """Return the actions of the processes with output."""
-        return [written[0].action for written in self._by_name.values() if written]
+        return [output_events[0].action for output_events in self._by_name.values() if output_events]
 
     def process_names(self) -> list[str]:
         """Return the names of all registered processes, with or without output."""
@@ -187,10 +187,10 @@ class ActiveIoHandler:
             return True
 
         with self.io_event:
-            found = self.io_event.wait_for(is_there, timeout=timeout)
-            if not found:
+            has_arrived = self.io_event.wait_for(is_there, timeout=timeout)
+            if not has_arrived:
                 resolveProcesses(self._io_handler, process=process, cmd_args=cmd_args, strict_proc_matching=False)
-        return found
+        return has_arrived
 
 
 class ActiveProcInfoHandler:
@@ -265,10 +265,10 @@ class ActiveProcInfoHandler:
 
         def has_happened() -> bool:
             try:
-                (found,) = resolveProcesses(handler, process=process, cmd_args=cmd_args)
+                (action,) = resolveProcesses(handler, process=process, cmd_args=cmd_args)
             except NoMatchingProcessException:
                 return False
-            return isinstance(handler[found], kind)
+            return isinstance(handler[action], kind)
 
         with self.proc_event:
             if not self.proc_event.wait_for(has_happened, timeout=timeout):

@@ -1,4 +1,4 @@
-"""The results of tests, and their XML form for CI servers.
+"""The results of tests, and their JUnit XML form for CI servers.
 
 This module replaces ``launch_testing.test_result`` and ``launch_testing.junitxml``.
 """
@@ -14,54 +14,54 @@ from xml.etree import ElementTree as ET
 Case = unittest.TestCase
 
 
-class _Run(Protocol):
+class _TestCases(Protocol):
     def all_cases(self) -> Iterable[Case]:
         """Return the tests of a run."""
 
 
 class TestResult(unittest.TextTestResult):
-    """The results of tests that ran, with the tests and their durations."""
+    """The results of tests that ran, with the duration of each test."""
 
     __test__ = False  # keeps pytest from collecting the class as a test
 
     def __init__(self, stream: Any = None, descriptions: Any = None, verbosity: Any = None, **kwargs: Any) -> None:
         super().__init__(stream, descriptions, verbosity, **kwargs)
-        self._seconds: dict[Any, float] = {}
-        self._begun: dict[Any, float] = {}
+        self._durations: dict[Any, float] = {}
+        self._start_times: dict[Any, float] = {}
 
     @property
     def testCases(self) -> Collection[Any]:
         """The tests that ran."""
-        return list(self._begun)
+        return list(self._start_times)
 
     @property
     def testTimes(self) -> dict[Any, float]:
         """The duration of each test in seconds."""
-        return {case: self._seconds.get(case, 0.0) for case in self._begun}
+        return {case: self._durations.get(case, 0.0) for case in self._start_times}
 
     def startTest(self, test: Case) -> None:
         """Record the start of a test."""
-        self._begun[test] = time.monotonic()
+        self._start_times[test] = time.monotonic()
         super().startTest(test)
 
     def stopTest(self, test: Case) -> None:
         """Record the duration of a test."""
-        self._seconds[test] = time.monotonic() - self._begun[test]
+        self._durations[test] = time.monotonic() - self._start_times[test]
         super().stopTest(test)
 
     def append(self, results: TestResult) -> None:
         """Add the results of further tests."""
-        self._begun.update(results._begun)
-        self._seconds.update(results._seconds)
+        self._start_times.update(results._start_times)
+        self._durations.update(results._durations)
         self.testsRun += results.testsRun
         for name in ("failures", "errors", "skipped", "expectedFailures", "unexpectedSuccesses"):
             getattr(self, name).extend(getattr(results, name))
 
 
-class _UnrunResult(unittest.TestResult):
+class _NotRunResult(unittest.TestResult):
     """The results of tests that did not run."""
 
-    def __init__(self, test_run: _Run) -> None:
+    def __init__(self, test_run: _TestCases) -> None:
         super().__init__()
         self.testCases = list(test_run.all_cases())
         self.testsRun = len(self.testCases)
@@ -72,7 +72,7 @@ class _UnrunResult(unittest.TestResult):
         return dict.fromkeys(self.testCases, 0)
 
 
-class FailResult(_UnrunResult):
+class FailResult(_NotRunResult):
     """The results of tests whose launch ended before the tests finished: all of them failed.
 
     Args:
@@ -80,7 +80,7 @@ class FailResult(_UnrunResult):
         message: the reason for the failure.
     """
 
-    def __init__(self, test_run: _Run, message: str) -> None:
+    def __init__(self, test_run: _TestCases, message: str) -> None:
         super().__init__(test_run)
         for case in self.testCases:
             self.addFailure(case, (Exception, Exception(message), None))  # type: ignore[arg-type]  # no traceback
@@ -90,15 +90,15 @@ class FailResult(_UnrunResult):
         return False
 
 
-class SkipResult(_UnrunResult):
+class SkipResult(_NotRunResult):
     """The results of tests whose launch was skipped.
 
     Args:
         test_run: the test run.
-        skip_reason: the reason.
+        skip_reason: the reason for the skip.
     """
 
-    def __init__(self, test_run: _Run, skip_reason: str = "") -> None:
+    def __init__(self, test_run: _TestCases, skip_reason: str = "") -> None:
         super().__init__(test_run)
         for case in self.testCases:
             self.addSkip(case, skip_reason)
@@ -107,11 +107,11 @@ class SkipResult(_UnrunResult):
 def unittestResultsToXml(
     *, name: str = "launch_test", test_results: Mapping[Any, Any] | None = None
 ) -> ET.ElementTree[ET.Element]:
-    """Return an XML document ``testsuites`` with the results of several launches.
+    """Return an XML document with a root ``testsuites`` that contains the results of several launches.
 
     Args:
         name: the name of the document.
-        test_results: launch (or its name) -> results of its tests.
+        test_results: maps each launch, or its name, to the results of its tests.
     """
     results = test_results or {}
     seconds = sum(sum(result.testTimes.values()) for result in results.values())
@@ -120,7 +120,7 @@ def unittestResultsToXml(
         counts["tests"] += result.testsRun
         counts["failures"] += len(result.failures)
         counts["errors"] += len(result.errors)
-    root = ET.Element("testsuites", {"name": name, **_texts(counts), "time": _seconds(seconds)})
+    root = ET.Element("testsuites", {"name": name, **_format_counts(counts), "time": _format_seconds(seconds)})
     root.extend(unittestResultToXml(str(run), outcome) for run, outcome in results.items())
     return ET.ElementTree(root)
 
@@ -133,8 +133,8 @@ def unittestResultToXml(name: str, test_result: Any) -> ET.Element:
         "errors": len(test_result.errors),
         "skipped": len(test_result.skipped),
     }
-    seconds = _seconds(sum(test_result.testTimes.values()))
-    suite = ET.Element("testsuite", {"name": name, **_texts(counts), "time": seconds})
+    seconds = _format_seconds(sum(test_result.testTimes.values()))
+    suite = ET.Element("testsuite", {"name": name, **_format_counts(counts), "time": seconds})
     suite.extend(unittestCaseToXml(test_result, case) for case in test_result.testCases)
     return suite
 
@@ -142,25 +142,25 @@ def unittestResultToXml(name: str, test_result: Any) -> ET.Element:
 def unittestCaseToXml(test_result: Any, test_case: Any) -> ET.Element:
     """Return an XML element ``testcase`` for a single test."""
     method, _, qualifiers = test_case.id().partition(" ")
-    owner, _, called = method.rpartition(".")
+    class_name, _, test_name = method.rpartition(".")
     attributes = {
-        "classname": owner,
-        "name": f"{called} {qualifiers}".strip(),
-        "time": _seconds(test_result.testTimes[test_case]),
+        "classname": class_name,
+        "name": f"{test_name} {qualifiers}".strip(),
+        "time": _format_seconds(test_result.testTimes[test_case]),
     }
-    found = ET.Element("testcase", attributes)
-    for tag, listed in (
+    testcase = ET.Element("testcase", attributes)
+    for tag, outcomes in (
         ("failure", test_result.failures),
         ("error", test_result.errors),
         ("skipped", test_result.skipped),
     ):
-        found.extend(ET.Element(tag, message=str(text)) for case, text in listed if case == test_case)
-    return found
+        testcase.extend(ET.Element(tag, message=str(text)) for case, text in outcomes if case == test_case)
+    return testcase
 
 
-def _texts(counts: Mapping[str, int]) -> dict[str, str]:
+def _format_counts(counts: Mapping[str, int]) -> dict[str, str]:
     return {name: str(count) for name, count in counts.items()}
 
 
-def _seconds(value: float) -> str:
+def _format_seconds(value: float) -> str:
     return str(round(value, 3))

@@ -21,9 +21,9 @@ from linkwright.standins.rclpy_api.node import Node
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _SPIN_SECONDS = 0.1
-_STOP_SECONDS = 5.0
+_STOP_TIMEOUT_SECONDS = 5.0
 
 
 class LaunchTestRunner(_LaunchTestRunner):
@@ -56,7 +56,7 @@ class WaitForTopics:
         self.messages_received_buffer_length = messages_received_buffer_length
         self._trigger = trigger
         self._received: dict[str, deque[Any]] = {}
-        self._all_there = threading.Condition()
+        self._arrival = threading.Condition()
         self._context = Context()
         self._context.init(args=[])
         name = f"_test_node_{uuid.uuid4().hex[:10]}"
@@ -71,17 +71,17 @@ class WaitForTopics:
 
         The arguments are passed to the trigger.
         """
-        with self._all_there:
+        with self._arrival:
             for messages in self._received.values():
                 messages.clear()
-        for name, kind in self.topic_tuples:
+        for name, message_type in self.topic_tuples:
             if name not in self._received:
                 self._received[name] = deque(maxlen=self.messages_received_buffer_length)
-                self._node.create_subscription(kind, name, self._listener(name), _DEPTH)
+                self._node.create_subscription(message_type, name, self._listener(name), _QUEUE_DEPTH)
         if self._trigger is not None:
             self._trigger(self._node, *args, **kwargs)
-        with self._all_there:
-            return self._all_there.wait_for(lambda: not self.topics_not_received(), timeout=self.timeout)
+        with self._arrival:
+            return self._arrival.wait_for(lambda: not self.topics_not_received(), timeout=self.timeout)
 
     def shutdown(self) -> None:
         """Stop receiving messages, and destroy the node."""
@@ -101,7 +101,7 @@ class WaitForTopics:
         """Return the stored messages of a topic, oldest first.
 
         Raises:
-            KeyError: the name is not one of the topics.
+            KeyError: no subscription to the topic was created.
         """
         if topic_name not in self._received:
             raise KeyError("No messages received for topic: " + topic_name)
@@ -109,9 +109,9 @@ class WaitForTopics:
 
     def __enter__(self) -> Self:
         if not self.wait():
-            missing = self.topics_not_received()
+            missing_topics = self.topics_not_received()
             self.shutdown()
-            raise RuntimeError("Did not receive messages on these topics: ", missing)
+            raise RuntimeError("Did not receive messages on these topics: ", missing_topics)
         return self
 
     def __exit__(
@@ -121,9 +121,9 @@ class WaitForTopics:
 
     def _listener(self, name: str) -> Callable[[Any], None]:
         def heard(message: Any) -> None:
-            with self._all_there:
+            with self._arrival:
                 self._received[name].append(message)
-                self._all_there.notify_all()
+                self._arrival.notify_all()
 
         return heard
 
@@ -143,7 +143,7 @@ class MessagePump:
     def __init__(self, node: Any, context: Any = None) -> None:
         self._node = node
         self._context = context
-        self._stopping = threading.Event()
+        self._stop_requested = threading.Event()
         self._thread = threading.Thread(target=self._pump, name="msg_pump_thread", daemon=True)
 
     def start(self) -> None:
@@ -156,15 +156,15 @@ class MessagePump:
         Raises:
             Exception: a callback does not return in time.
         """
-        self._stopping.set()
-        self._thread.join(timeout=_STOP_SECONDS)
+        self._stop_requested.set()
+        self._thread.join(timeout=_STOP_TIMEOUT_SECONDS)
         if self._thread.is_alive():
             raise Exception("Timed out waiting for message pump to stop")  # noqa: TRY002 - launch_testing_ros raises it
 
     def _pump(self) -> None:
         executor = SingleThreadedExecutor(context=self._context)
         executor.add_node(self._node)
-        while not self._stopping.is_set():
+        while not self._stop_requested.is_set():
             executor.spin_once(timeout_sec=_SPIN_SECONDS)
 
 
@@ -186,8 +186,8 @@ class DataRepublisher:
         self._transform = transform_fn
         self._count = 0
         self._republished: list[Any] = []
-        self._publisher = node.create_publisher(msg_type, publish_topic, _DEPTH)
-        self._subscription = node.create_subscription(msg_type, listen_topic, self._handle, _DEPTH)
+        self._publisher = node.create_publisher(msg_type, publish_topic, _QUEUE_DEPTH)
+        self._subscription = node.create_subscription(msg_type, listen_topic, self._handle, _QUEUE_DEPTH)
 
     def shutdown(self) -> None:
         """Destroy the subscription and the publisher."""
@@ -208,14 +208,14 @@ class DataRepublisher:
 
     def _handle(self, message: Any) -> None:
         self._count += 1
-        made = self._transform(message)
-        if made:
+        output = self._transform(message)
+        if output:
             self._republished.append(message)
-            self._publisher.publish(made)
+            self._publisher.publish(output)
 
 
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
-    """Return the prefixes or patterns of lines that an rmw implementation lets tests ignore.
+    """Return the prefixes or patterns of lines that tests ignore in the output of an rmw implementation.
 
     Args:
         rmw_implementation: the package of the rmw implementation.
@@ -224,13 +224,13 @@ def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str
     Raises:
         TypeError: there is no such filter type.
     """
-    kinds = ["prefixes", "patterns"]
-    if filter_type not in kinds:
-        raise TypeError(f'Unsupported filter_type "{filter_type}". Supported types: {kinds}')
-    resource = f"rmw_output_{filter_type}"
-    if not has_resource(resource, rmw_implementation):
+    filter_types = ["prefixes", "patterns"]
+    if filter_type not in filter_types:
+        raise TypeError(f'Unsupported filter_type "{filter_type}". Supported types: {filter_types}')
+    resource_type = f"rmw_output_{filter_type}"
+    if not has_resource(resource_type, rmw_implementation):
         return []
-    content, _ = get_resource(resource, rmw_implementation)
+    content, _ = get_resource(resource_type, rmw_implementation)
     return content.splitlines()
 
 

@@ -27,7 +27,7 @@ from linkwright.launch.standins.launch_testing_api.test_runs import TestRun
 
 
 class _LaunchDiedError(Exception):
-    """Raised when the launch ended before its tests had finished."""
+    """Raised when a launch has ended before its tests finished."""
 
 
 class _RunnerWorker:
@@ -51,7 +51,7 @@ class _RunnerWorker:
         self._preamble = list(test_run_preamble)
         self._arguments = dict(parse_launch_arguments(launch_file_arguments))
         self._launch_service: LaunchService = ProcessLaunchService(debug=debug)
-        self._processes_launched = threading.Event()
+        self._ready = threading.Event()
         self._tests_completed = threading.Event()
         self._results: Any = None
         self._proc_info = ActiveProcInfoHandler()
@@ -61,10 +61,11 @@ class _RunnerWorker:
         """Launch the description, run the tests, and return the results of the tests.
 
         Raises:
-            _LaunchDiedError: the launch ended before its tests had finished. unittest.SkipTest: the launch is skipped.
+            _LaunchDiedError: the launch ended before its tests finished.
+            unittest.SkipTest: the launch is skipped.
         """
         run = self._test_run
-        description, context = run.normalized_test_description(ready_fn=self._processes_launched.set)
+        description, context = run.normalized_test_description(ready_fn=self._ready.set)
         self._bind({**context, **run.param_args})
         self._launch_service.include_launch_description(self._with_recorders(description))
         threading.Thread(target=self._run_test, name="test_runner_thread", daemon=True).start()
@@ -78,25 +79,25 @@ class _RunnerWorker:
         return results
 
     def _bind(self, context: Mapping[str, Any]) -> None:
-        """Pass the context of the description and the records of processes to the tests."""
-        beside: dict[str, Any] = {
+        """Pass the attributes and arguments of the launch to the tests during it and after it."""
+        attributes_during: dict[str, Any] = {
             "launch_service": self._launch_service,
             "proc_info": self._proc_info,
             "proc_output": self._proc_output,
             "test_args": self._arguments,
         }
-        after: dict[str, Any] = {
+        attributes_after: dict[str, Any] = {
             "proc_info": self._proc_info._proc_info_handler,
             "proc_output": self._proc_output._io_handler,
             "test_args": self._arguments,
         }
-        self._test_run.bind(self._test_run.pre_shutdown_tests, beside, {**context, **beside})
-        self._test_run.bind(self._test_run.post_shutdown_tests, after, {**context, **after})
+        self._test_run.bind(self._test_run.pre_shutdown_tests, attributes_during, {**context, **attributes_during})
+        self._test_run.bind(self._test_run.post_shutdown_tests, attributes_after, {**context, **attributes_after})
 
     def _with_recorders(self, description: LaunchDescription) -> LaunchDescription:
-        """Return a launch description that includes another one and records its processes.
+        """Return a launch description that includes another one, and records its processes.
 
-        The arguments of the launch are passed to the included description.
+        The included description receives the arguments of the launch.
         """
         info, output = self._proc_info, self._proc_output
 
@@ -118,7 +119,7 @@ class _RunnerWorker:
 
     def _run_test(self) -> None:
         """Run the tests once the launch is ready, and then end the launch."""
-        if not self._processes_launched.wait(self._test_run.timeout):
+        if not self._ready.wait(self._test_run.timeout):
             print("Timed out waiting for processes to start up")
             self._launch_service.shutdown()
             return
@@ -134,9 +135,9 @@ class _RunnerWorker:
             if getattr(event, "returncode", 0) == 0:
                 continue
             name = event.process_name
-            head = f"##### '{name}' output #####"
-            print(f"Process '{name}' exited with {event.returncode}", head, sep="\n")  # type: ignore[attr-defined]  # checked
-            print(text_of(self._proc_output[name]), "#" * len(head), sep="\n")
+            heading = f"##### '{name}' output #####"
+            print(f"Process '{name}' exited with {event.returncode}", heading, sep="\n")  # type: ignore[attr-defined]  # checked
+            print(text_of(self._proc_output[name]), "#" * len(heading), sep="\n")
 
 
 class LaunchTestRunner:
@@ -163,9 +164,9 @@ class LaunchTestRunner:
         return []
 
     def run(self) -> dict[TestRun, unittest.TestResult]:
-        """Run the launches in order, and return the test results of each.
+        """Run the launches in order, and return the test results of each one.
 
-        The first launch that ends before its tests have finished stops the run.
+        If a launch ends before its tests have finished, the remaining launches do not run.
         """
         results: dict[TestRun, unittest.TestResult] = {}
         for run in self._test_runs:
@@ -189,8 +190,8 @@ class LaunchTestRunner:
             Exception: a parameter is missing or unexpected.
         """
         for run in self._test_runs:
-            asked = inspect.getfullargspec(inspect.unwrap(run._test_description_function))
-            names = [*asked.args, *asked.kwonlyargs]
+            parameters = inspect.getfullargspec(inspect.unwrap(run._test_description_function))
+            names = [*parameters.args, *parameters.kwonlyargs]
             for name in run.param_args:
                 if name not in names:
                     raise Exception(  # noqa: TRY002 - launch_testing raises it

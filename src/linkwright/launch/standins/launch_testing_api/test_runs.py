@@ -13,17 +13,17 @@ from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
 
 _READY_SECONDS = 15.0
-"""The default seconds that a launch may take until its tests may start."""
+"""The default for the maximum seconds from the start of a launch until its tests may start."""
 
-Described = tuple[LaunchDescription, dict[str, Any]]
+NormalizedDescription = tuple[LaunchDescription, dict[str, Any]]
 
 
 class TestRun:
-    """The tests that belong to one launch.
+    """One launch and the tests that belong to it.
 
     Attributes:
         name: the name of the tests.
-        param_args: the arguments of a parametrized description.
+        param_args: the arguments of the parametrized description; empty if it has no parameters.
         pre_shutdown_tests: the tests that run during the launch.
         post_shutdown_tests: the tests that run after the launch has ended.
         timeout: the maximum time in seconds from the start of the launch until the tests may start.
@@ -45,7 +45,10 @@ class TestRun:
         self.post_shutdown_tests = post_shutdown_tests
         self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_SECONDS)
         self._test_description_function = test_description_function
-        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop finished tests
+        self._cases = [
+            *_iterate_cases(pre_shutdown_tests),
+            *_iterate_cases(post_shutdown_tests),
+        ]  # suites drop finished tests
         if self.param_args:
             for case in self._cases:
                 _rename(case, case._testMethodName + self._format_arguments())
@@ -53,11 +56,11 @@ class TestRun:
     @property
     def markers(self) -> dict[str, Any]:
         """The marks of the function that creates the launch description."""
-        found: dict[str, Any] = getattr(self._test_description_function, MARKERS, {})
-        return found
+        markers: dict[str, Any] = getattr(self._test_description_function, MARKERS, {})
+        return markers
 
-    def normalized_test_description(self, *, ready_fn: Callable[[], object]) -> Described:
-        """Return the launch description, and the context of the tests.
+    def normalized_test_description(self, *, ready_fn: Callable[[], object]) -> NormalizedDescription:
+        """Return the launch description, and the named values that it provides to its tests.
 
         Args:
             ready_fn: called when the tests may start.
@@ -65,8 +68,8 @@ class TestRun:
         Raises:
             Exception: the description has no `ReadyToTest`.
         """
-        made = self._test_description_function()
-        description, context = made if isinstance(made, tuple) else (made, {})
+        description_value = self._test_description_function()
+        description, context = description_value if isinstance(description_value, tuple) else (description_value, {})
         action = next(find_ready_actions(description.entities), None)
         if action is None:
             raise Exception(  # noqa: TRY002 - launch_testing raises it
@@ -86,26 +89,26 @@ class TestRun:
         injected_attributes: Mapping[str, Any] | None = None,
         injected_args: Mapping[str, Any] | None = None,
     ) -> None:
-        """Pass arguments and attributes to tests.
+        """Pass attributes and arguments to tests.
 
         Args:
             tests: the suite of tests.
-            injected_attributes: name -> value of attributes to set on the class of each test.
-            injected_args: name -> value of arguments, for tests and their fixtures that have a parameter with this
-                name.
+            injected_attributes: maps names to values that are set as attributes on the class of each test.
+            injected_args: maps names to values that are passed to the tests and fixtures with a parameter of
+                that name.
         """
-        cases = list(_cases(tests))
-        for kind in {type(case) for case in cases}:
+        cases = list(_iterate_cases(tests))
+        for test_class in {type(case) for case in cases}:
             for name, value in (injected_attributes or {}).items():
-                setattr(kind, name, value)
+                setattr(test_class, name, value)
             for name in ("setUpClass", "tearDownClass"):
-                setattr(kind, name, staticmethod(_bound(getattr(kind, name), injected_args or {})))
+                setattr(test_class, name, staticmethod(_bind_arguments(getattr(test_class, name), injected_args or {})))
         for case in cases:
             for name in (case._testMethodName, "setUp", "tearDown"):
-                setattr(case, name, _bound(getattr(case, name), injected_args or {}))
+                setattr(case, name, _bind_arguments(getattr(case, name), injected_args or {}))
 
     def all_cases(self) -> Iterator[unittest.TestCase]:
-        """Yield all tests, including finished ones."""
+        """Return an iterator over all tests, including finished ones."""
         return iter(self._cases)
 
     def __str__(self) -> str:
@@ -122,8 +125,8 @@ def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> lis
         module: the module, which must have a function ``generate_test_description``.
         name: the name of the tests.
     """
-    made = module.generate_test_description
-    descriptions = made() if hasattr(made, PARAMETRIZED) else [(made, {})]
+    create_description = module.generate_test_description
+    create_functions = create_description() if hasattr(create_description, PARAMETRIZED) else [(create_description, {})]
     return [
         TestRun(
             name,
@@ -132,7 +135,7 @@ def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> lis
             PreShutdownTestLoader().loadTestsFromModule(module),
             PostShutdownTestLoader().loadTestsFromModule(module),
         )
-        for description, arguments in descriptions
+        for description, arguments in create_functions
     ]
 
 
@@ -144,12 +147,12 @@ class _Loader(unittest.TestLoader):
     def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
         """Load the tests of a class through a new subclass.
 
-        Each launch has its own subclass, because the attributes of the launch are set on the class.
+        Each launch has its own subclass, because attributes of the launch are set on the class.
         """
         if getattr(testCaseClass, AFTER_SHUTDOWN, False) != self.is_after:
             return unittest.TestSuite()
-        own = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__})
-        return super().loadTestsFromTestCase(own)
+        subclass = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__})
+        return super().loadTestsFromTestCase(subclass)
 
 
 class PreShutdownTestLoader(_Loader):
@@ -162,11 +165,11 @@ class PostShutdownTestLoader(_Loader):
     is_after = True
 
 
-def _cases(tests: Iterable[Any]) -> Iterator[Any]:
-    """Yield the tests in suites, which may be nested."""
+def _iterate_cases(tests: Iterable[Any]) -> Iterator[Any]:
+    """Yield the tests in test suites, which may be nested."""
     for test in tests:
         if isinstance(test, Iterable):
-            yield from _cases(test)
+            yield from _iterate_cases(test)
         else:
             yield test
 
@@ -176,7 +179,7 @@ def _rename(case: Any, name: str) -> None:
     case._testMethodName = name
 
 
-def _bound(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
-    """Bind the given arguments for which a function has a parameter."""
-    asked = inspect.signature(function).parameters
-    return functools.partial(function, **{name: value for name, value in given.items() if name in asked})
+def _bind_arguments(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
+    """Return a function with those of the given arguments bound that it has parameters for."""
+    parameters = inspect.signature(function).parameters
+    return functools.partial(function, **{name: value for name, value in given.items() if name in parameters})

@@ -12,10 +12,10 @@ from linkwright.standins.terminal_color import remove_ansi_escape_sequences
 
 T = TypeVar("T")
 Range = tuple[int, int]
-"""The start and end of a match."""
+"""The start and end index of a match: in a text, or in a list of lines."""
 
 Match = Callable[..., "Range | None"]
-"""A function of a text, or of lines, and a start: the position of the match, or None."""
+"""Takes a text or lines, and an optional start index; returns the range of the match, or None."""
 
 
 def normalize_lineseps(lines: str) -> str:
@@ -24,14 +24,14 @@ def normalize_lineseps(lines: str) -> str:
 
 
 def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
-    """Return a function that finds an expectation in a text.
+    """Return a function that finds an expected text in a text.
 
     Args:
         expected_text: a text, a regular expression, or several of them in order.
-        strict: whether the text must match completely; for several expectations, whether they must be adjacent.
+        strict: whether the whole text must match. For several expectations: whether the matches must be adjacent.
 
     Raises:
-        ValueError: the expectation has another type.
+        ValueError: `expected_text` has another type.
     """
 
     def find(text: str, start: int = 0) -> Range | None:
@@ -39,27 +39,27 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
         if isinstance(expected_text, str):
             if strict:
                 return (start, start + len(expected_text)) if text[start:] == expected_text else None
-            at = text.find(expected_text, start)
-            return None if at < 0 else (at, at + len(expected_text))
-        found = (expected_text.match if strict else expected_text.search)(text, start)
-        return None if found is None else found.span()
+            position = text.find(expected_text, start)
+            return None if position < 0 else (position, position + len(expected_text))
+        match = (expected_text.match if strict else expected_text.search)(text, start)
+        return None if match is None else match.span()
 
     if isinstance(expected_text, str) or (hasattr(expected_text, "search") and hasattr(expected_text, "match")):
         return find
     if isinstance(expected_text, Iterable):
-        return _in_order([build_text_match(part) for part in expected_text], strict=strict)
+        return _in_order([build_text_match(expectation) for expectation in expected_text], strict=strict)
     raise ValueError("Unknown format for expected text")
 
 
 def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
-    """Return a function that finds an expectation in lines.
+    """Return a function that finds expected lines in a list of lines.
 
     Args:
         expected_lines: a part of a line, a regular expression for the beginning of a line, or several of them in order.
-        strict: whether every line must match; for several expectations, whether they must be adjacent.
+        strict: whether every line must match. For several expectations: whether the matches must be adjacent.
 
     Raises:
-        ValueError: the expectation has another type.
+        ValueError: `expected_lines` has another type.
     """
 
     def fits(line: str) -> bool:
@@ -68,10 +68,10 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
         return bool(expected_lines.match(line))
 
     def find(lines: Sequence[str], start: int = 0) -> Range | None:
-        rest = range(start, len(lines))
+        indices = range(start, len(lines))
         if strict:
-            return (start, len(lines)) if all(fits(lines[at]) for at in rest) else None
-        return next(((at, at + 1) for at in rest if fits(lines[at])), None)
+            return (start, len(lines)) if all(fits(lines[index]) for index in indices) else None
+        return next(((at, at + 1) for at in indices if fits(lines[at])), None)
 
     if isinstance(expected_lines, str) or hasattr(expected_lines, "match"):
         return find
@@ -80,20 +80,20 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
     raise ValueError("Unknown format for expected lines")
 
 
-def _in_order(matches: Sequence[Match], *, strict: bool) -> Match:
+def _in_order(match_functions: Sequence[Match], *, strict: bool) -> Match:
     """Return a function that finds several expectations in order.
 
-    If `strict` is set, the matches must be adjacent; otherwise, other text may be between them.
+    If `strict` is set, the matches must be adjacent. If not, other text may be between them.
     """
 
-    def find(written: Any, start: int = 0) -> Range | None:
-        begin, end = None, start
-        for match in matches:
-            found = match(written, end)
-            if found is None or (strict and found[0] != end):
+    def find(output: Any, start: int = 0) -> Range | None:
+        match_start, end = None, start
+        for match_function in match_functions:
+            match_range = match_function(output, end)
+            if match_range is None or (strict and match_range[0] != end):
                 return None
-            begin, end = found[0] if begin is None else begin, found[1]
-        return (start if begin is None else begin), end
+            match_start, end = match_range[0] if match_start is None else match_start, match_range[1]
+        return (start if match_start is None else match_start), end
 
     return find
 
@@ -107,7 +107,7 @@ def expect_output(
     strip_ansi_escape_sequences: bool = True,
     strict: bool = False,
 ) -> bool:
-    """Return whether an output contains an expectation.
+    """Return whether an output contains an expected text or expected lines.
 
     Args:
         text: the output as text; alternatively, `lines`.
@@ -124,12 +124,12 @@ def expect_output(
         raise ValueError("Either lines or text, but not both, must be specified")
     if (expected_text is None) == (expected_lines is None):
         raise ValueError("Either expected lines or text, but not both, must be specified")
-    written = text if text is not None else "\n".join(lines or ())
+    output = text if text is not None else "\n".join(lines or ())
     if strip_ansi_escape_sequences:
-        written = remove_ansi_escape_sequences(written)
+        output = remove_ansi_escape_sequences(output)
     if expected_text is not None:
-        return build_text_match(expected_text, strict=strict)(written) is not None
-    return build_line_match(expected_lines, strict=strict)(written.splitlines()) is not None
+        return build_text_match(expected_text, strict=strict)(output) is not None
+    return build_line_match(expected_lines, strict=strict)(output.splitlines()) is not None
 
 
 def expected_output_from_file(path: str, encoding: str | None = None) -> list[Any]:
@@ -138,10 +138,10 @@ def expected_output_from_file(path: str, encoding: str | None = None) -> list[An
     Raises:
         RuntimeError: neither file exists.
     """
-    for ending, made in ((".txt", str), (".regex", re.compile)):
-        file = Path(path + ending)
+    for suffix, parse_line in ((".txt", str), (".regex", re.compile)):
+        file = Path(path + suffix)
         if file.is_file():
-            return [made(line) for line in file.read_text(encoding=encoding).splitlines()]
+            return [parse_line(line) for line in file.read_text(encoding=encoding).splitlines()]
     raise RuntimeError(f"could not find output check file: {path}")
 
 
@@ -169,7 +169,9 @@ def basic_output_filter(
 
     def without_them(output: str) -> str:
         lines = output.splitlines(keepends=True)
-        kept = (line for line in lines if not line.startswith(prefixes) and not any(p.match(line) for p in patterns))
-        return "".join(kept)
+        remaining_lines = (
+            line for line in lines if not line.startswith(prefixes) and not any(p.match(line) for p in patterns)
+        )
+        return "".join(remaining_lines)
 
     return without_them

@@ -17,15 +17,15 @@ from linkwright.navigation.estimation.readings import GRAVITY, Used
 from linkwright.nodes.settings import bad_value, positive
 
 KINDS = ("odom", "pose", "twist", "imu")
-"""The sensors, in the order in which they are asked for: ``odom0``, ``odom1``, ..., ``pose0``, ..."""
+"""The kinds of sensors, in the order of their parameters: ``odom0``, ``odom1``, ..., ``pose0``, ..."""
 
-_GIVES = {
+_PROVIDED_QUANTITIES = {
     "odom": (True, True, False),
     "pose": (True, False, False),
     "twist": (False, True, False),
     "imu": (True, True, True),
 }
-"""Whether a kind of sensor gives a pose, a twist and an acceleration."""
+"""Whether a kind of sensor provides a pose, a twist and an acceleration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,14 +50,14 @@ class SensorSettings:
         name: the name, such as ``odom0``.
         kind: one of `KINDS`.
         topic: the topic of the sensor's messages.
-        used: which of the 15 values of the state the sensor provides.
+        used: whether the sensor provides each of the 15 values of the state.
         differential: whether the sensor's poses are used as velocities.
-        relative: whether the sensor's poses are relative to the first one.
+        relative: whether the sensor's poses are relative to the first pose.
         queue_size: the depth of the subscription.
-        pose_threshold: the deviation in standard deviations above which a pose is rejected.
+        pose_threshold: a pose is rejected if it deviates by more than this number of standard deviations.
         twist_threshold: the same for twists.
         acceleration_threshold: the same for accelerations.
-        remove_gravity: whether accelerations contain gravity.
+        remove_gravity: whether to subtract gravity from the measured accelerations.
     """
 
     name: str
@@ -77,7 +77,7 @@ class SensorSettings:
 class Configuration:
     """The parameters of a node.
 
-    Times are in nanoseconds if the name ends in ``_ns``, else in seconds.
+    Times are in nanoseconds if the name ends in ``_ns``, and in seconds otherwise.
     """
 
     frequency: float
@@ -100,17 +100,17 @@ def configuration_of(node: Node) -> Configuration:
     """Declare and read the parameters of a node.
 
     Raises:
-        LinkwrightError: NODE433, a value is invalid; NODE441, a list has the wrong length; NODE442, the frames are not
-            different.
+        LinkwrightError: NODE433, a value is invalid; NODE441, a list has the wrong length; NODE442, two frames are the
+            same.
     """
     declare = node.declare_parameter
     frequency = positive(node, "frequency", declare("frequency", 30.0).value)
     timeout: float = declare("sensor_timeout", 1.0 / frequency).value
-    smooth: bool = declare("smooth_lagged_data", False).value
-    history: float = declare("history_length", 0.0).value
+    smooths_lagged_data: bool = declare("smooth_lagged_data", False).value
+    history_seconds: float = declare("history_length", 0.0).value
     for name, default in (("debug", False), ("debug_out_file", "robot_localization_debug.txt")):
         declare(name, default)
-    declare("transform_timeout", 0.0)  # Lookups never wait here.
+    declare("transform_timeout", 0.0)  # The parameter has no effect, because lookups never wait.
     sensors = tuple(_sensors(node))
     return Configuration(
         frequency=frequency,
@@ -127,7 +127,7 @@ def configuration_of(node: Node) -> Configuration:
         timing=Timing(
             sensor_timeout_ns=_nanoseconds(timeout),
             predict_to_now=declare("predict_to_current_time", False).value,
-            history_ns=_nanoseconds(abs(history)) if smooth else None,
+            history_ns=_nanoseconds(abs(history_seconds)) if smooths_lagged_data else None,
         ),
         filter=Settings(
             noise=_covariance(node, "process_noise_covariance", Settings().noise),
@@ -152,7 +152,7 @@ def _frames(node: Node) -> Frames:
             Diagnostic(
                 "NODE442",
                 phrase(
-                    "map_frame '{map}', odom_frame '{odom}' and base_link_frame '{base}' must differ",
+                    "map_frame '{map}', odom_frame '{odom}' and base_link_frame '{base}' must be different frames",
                     map=frames.map,
                     odom=frames.odom,
                     base=frames.base,
@@ -180,16 +180,16 @@ def _sensors(node: Node) -> Iterator[SensorSettings]:
 
 
 def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
-    pose, twist, acceleration = _GIVES[kind]
+    pose, twist, acceleration = _PROVIDED_QUANTITIES[kind]
 
     def declare(suffix: str, default: bool | float) -> bool | float:
         value: bool | float = node.declare_parameter(f"{name}_{suffix}", default).value
         return value
 
     used = _flags(node, f"{name}_config", SIZE) or (False,) * SIZE
-    gives = (*[pose] * 6, *[twist] * 6, *[acceleration] * 3)
+    provided_flags = (*[pose] * 6, *[twist] * 6, *[acceleration] * 3)
     if kind == "imu":
-        gives = (*[False] * 3, *[True] * 3, *[False] * 3, *[True] * 6)
+        provided_flags = (*[False] * 3, *[True] * 3, *[False] * 3, *[True] * 6)
     differential = bool(declare("differential", False)) if pose else False
     relative = bool(declare("relative", False)) if pose else False
     if differential and relative:
@@ -202,7 +202,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
         name=name,
         kind=kind,
         topic=topic,
-        used=tuple(bool(flag and can) for flag, can in zip(used, gives, strict=True)),
+        used=tuple(bool(flag and is_provided) for flag, is_provided in zip(used, provided_flags, strict=True)),
         differential=differential,
         relative=relative,
         queue_size=int(declare("queue_size", 10)),
@@ -220,7 +220,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
 
 
 _CONTROL_TIMEOUT = 0.2
-"""Seconds, as documented; the code of robot_localization has 0, which ignores every command."""
+"""The documented default in seconds; the code of robot_localization has 0, which ignores every command."""
 _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 
@@ -229,15 +229,15 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
 
     All parameters are declared even if unused, so that they are not reported as unknown.
     """
-    use: bool = node.declare_parameter("use_control", False).value
+    uses_control: bool = node.declare_parameter("use_control", False).value
     timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
     node.declare_parameter("stamped_control", False)
     used = _flags(node, "control_config", 6)
-    limits = _numbers(node, "acceleration_limits", (6,)) or [1.0] * 6
-    gains = _numbers(node, "acceleration_gains", (6,)) or [1.0] * 6
-    slower = _numbers(node, "deceleration_limits", (6,)) or limits
-    slower_gains = _numbers(node, "deceleration_gains", (6,)) or gains
-    if not use:
+    acceleration_limits = _numbers(node, "acceleration_limits", (6,)) or [1.0] * 6
+    acceleration_gains = _numbers(node, "acceleration_gains", (6,)) or [1.0] * 6
+    deceleration_limits = _numbers(node, "deceleration_limits", (6,)) or acceleration_limits
+    deceleration_gains = _numbers(node, "deceleration_gains", (6,)) or acceleration_gains
+    if not uses_control:
         return None
     for index, axis in enumerate("XYZ"):
         if used is not None and used[index] and any(sensor.used[12 + index] for sensor in sensors):
@@ -250,11 +250,18 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
             "use_control is set to true, but control_config has no true value. No control term will be used."
         )
         return None
-    return Control(used, _nanoseconds(timeout), tuple(limits), tuple(gains), tuple(slower), tuple(slower_gains))
+    return Control(
+        used,
+        _nanoseconds(timeout),
+        tuple(acceleration_limits),
+        tuple(acceleration_gains),
+        tuple(deceleration_limits),
+        tuple(deceleration_gains),
+    )
 
 
 def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
-    """Return a covariance from a parameter with all 225 or the 15 diagonal numbers."""
+    """Return a covariance from a parameter, which has all 225 numbers or the 15 numbers of the diagonal."""
     numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
     if numbers is None:
         return default
@@ -263,20 +270,20 @@ def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
 
 def _numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | None:
     node.declare_parameter(name, ParameterType.DOUBLE_ARRAY)
-    given = node.get_parameter_or(name, Parameter(name)).value
-    if given is None:
+    numbers = node.get_parameter_or(name, Parameter(name)).value
+    if numbers is None:
         return None
-    check_length(name, len(given), lengths)
-    return [float(number) for number in given]
+    check_length(name, len(numbers), lengths)
+    return [float(number) for number in numbers]
 
 
 def _flags(node: Node, name: str, length: int) -> Used | None:
     node.declare_parameter(name, ParameterType.BOOL_ARRAY)
-    given = node.get_parameter_or(name, Parameter(name)).value
-    if given is None:
+    flags = node.get_parameter_or(name, Parameter(name)).value
+    if flags is None:
         return None
-    check_length(name, len(given), (length,))
-    return tuple(bool(flag) for flag in given)
+    check_length(name, len(flags), (length,))
+    return tuple(bool(flag) for flag in flags)
 
 
 def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
@@ -286,9 +293,12 @@ def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
         LinkwrightError: NODE441, the length is wrong.
     """
     if length not in lengths:
-        known = " / ".join(str(length) for length in lengths)
+        permitted_lengths = " / ".join(str(length) for length in lengths)
         message = phrase(
-            "parameter '{name}' must have {known} values, but has {length}", name=name, known=known, length=length
+            "parameter '{name}' must have {known} values, but it has {length}",
+            name=name,
+            known=permitted_lengths,
+            length=length,
         )
         raise LinkwrightError(Diagnostic("NODE441", message))
 

@@ -2,9 +2,9 @@
 
 The nodes follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
 
-- When simulated time jumps back, such as on the reset of a world, the filter restarts whatever ``reset_on_time_jump``
-  is set to; the original would wait until time has caught up.
-- A sensor that provides no acceleration (or no position) does not measure it as 0 where its ``_config`` is true.
+- When simulated time jumps back, such as on the reset of a world, the filter restarts even if ``reset_on_time_jump`` is
+  false; the original would wait until time has caught up.
+- If a sensor provides no acceleration (or no position), a true value in its ``_config`` does not measure it as 0.
 - Lookups of transforms never wait, so ``transform_timeout`` has no effect. Neither has ``debug``.
 - ``process_noise_covariance`` and ``initial_estimate_covariance`` may be the 15 numbers of the diagonal.
 - Sensors and their rules: see `linkwright.navigation.estimation.readings`.
@@ -30,8 +30,8 @@ from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown
 
-_POSE_VARIANCE = 1e-6
-"""The variance of a set pose where its message has none."""
+_INITIAL_VARIANCE = 1e-6
+"""The initial variance of the quantities that ``set_pose`` does not set."""
 
 
 class EkfNode(SingleNode):
@@ -39,7 +39,7 @@ class EkfNode(SingleNode):
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201) or the wrong number of values (NODE441),
-            or the frames are not different (NODE442).
+            or two frames are the same (NODE442).
     """
 
     DEFAULT_NAME: ClassVar[str] = "ekf_filter_node"
@@ -51,9 +51,9 @@ class EkfNode(SingleNode):
             self._filter = self._make_filter()
             log_unknown(self._node)
         self._estimator = Estimator(self._filter, self._configuration.timing)
-        self._enabled = self._configuration.enabled
-        self._toggled_on = True
-        self._published_ns = -1
+        self._is_enabled = self._configuration.enabled
+        self._is_toggled_on = True
+        self._last_published_ns = -1
         self._clock = self._node.get_clock()
         self._around = Surroundings(self._node, self._configuration, self._estimator, self._on_old_message)
         self._sources = [Source(sensor, self._around) for sensor in self._configuration.sensors]
@@ -72,27 +72,29 @@ class EkfNode(SingleNode):
         if self._configuration.diagnostics:
             DiagnosticUpdater(node, "Filter diagnostic updater", self._health)
         if self._configuration.filter.control is not None:
-            stamped: bool = node.get_parameter("stamped_control").value
-            kind = get_message(f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}")
-            node.create_subscription(kind, "cmd_vel", self._on_stamped_command if stamped else self._commanded, 1)
+            is_stamped: bool = node.get_parameter("stamped_control").value
+            kind = get_message(f"geometry_msgs/msg/Twist{'Stamped' if is_stamped else ''}")
+            node.create_subscription(kind, "cmd_vel", self._on_stamped_command if is_stamped else self._on_command, 1)
         node.create_subscription(pose, "set_pose", self._set_pose, 1)
         node.create_service(get_service("robot_localization/srv/SetPose"), "set_pose", self._on_set_pose)
         node.create_service(get_service("robot_localization/srv/ToggleFilterProcessing"), "toggle", self._on_toggle)
         node.create_service(get_service("std_srvs/srv/Empty"), "enable", self._on_enable)
-        backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        # Clocks are set in the thread that receives /clock, but the filter may only be reset in the node's thread.
-        jumped = node.create_guard_condition(self._time_jumped)
-        self._jumps = self._clock.create_jump_callback(backwards, post_callback=lambda _: jumped.trigger())
+        backward_jump = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
+        # Another thread receives /clock and sets the clock, but the filter may only be reset in the node's thread.
+        jump_guard = node.create_guard_condition(self._on_time_jump)
+        self._jump_handle = self._clock.create_jump_callback(
+            backward_jump, post_callback=lambda _: jump_guard.trigger()
+        )
         node.create_timer(1.0 / self._configuration.frequency, self._update)
 
     def close(self) -> None:
         """Unregister the jump callback, and close the node."""
-        self._jumps.unregister()
+        self._jump_handle.unregister()
         super().close()
 
     # --- time --------------------------------------------------------------------------------------------------------
 
-    def _time_jumped(self) -> None:
+    def _on_time_jump(self) -> None:
         if self._filter.initialized:
             self._node.get_logger().warning("Time has jumped: the filter restarts.")
         self._reset()
@@ -106,19 +108,19 @@ class EkfNode(SingleNode):
         self._filter.reset()
         self._around.poses.buffer.clear()
         self._around.ignored_until_ns = -1
-        self._published_ns = -1
+        self._last_published_ns = -1
         for source in self._sources:
             source.forget(time=True)
 
     def _update(self) -> None:
         now_ns = self._clock.now_ns()
-        if not self._enabled:
+        if not self._is_enabled:
             self._node.get_logger().info(
                 f"Filter is disabled. To enable it call the {self._node.resolve_service_name('enable')} service",
                 once=True,
             )
             return
-        if self._toggled_on:
+        if self._is_toggled_on:
             self._estimator.advance(now_ns)
         else:
             self._estimator.clear()
@@ -137,17 +139,17 @@ class EkfNode(SingleNode):
             )
             self._reset()
             return
-        if kalman.time_ns <= self._published_ns and not configuration.permit_corrected:
+        if kalman.time_ns <= self._last_published_ns and not configuration.permit_corrected:
             return
-        self._published_ns = kalman.time_ns
+        self._last_published_ns = kalman.time_ns
         roll, pitch, yaw = (float(angle) for angle in kalman.state[ANGLES])
         x, y, z = (float(coordinate) for coordinate in kalman.state[POSITION])
         pose: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
         if configuration.publish_tf:
             self._publish_transform(pose)
-        self._publisher.publish(self._odometry(pose))
+        self._publisher.publish(self._odometry_message(pose))
         if configuration.publish_acceleration:
-            self._acceleration_publisher.publish(self._acceleration())
+            self._acceleration_publisher.publish(self._acceleration_message())
 
     def _publish_transform(self, base_in_world: Transform) -> None:
         frames = self._configuration.frames
@@ -165,7 +167,7 @@ class EkfNode(SingleNode):
         batch = TransformBatch((parent,), (child,), stamp_ns, np.array([pose]))
         self._tf_publisher.publish(TFMessage(batch=batch))
 
-    def _odometry(self, pose: Transform) -> Any:
+    def _odometry_message(self, pose: Transform) -> Any:
         kalman, frames = self._filter, self._configuration.frames
         message = get_message("nav_msgs/msg/Odometry")()
         message.header.stamp = Time.from_nanoseconds(kalman.time_ns)
@@ -178,7 +180,7 @@ class EkfNode(SingleNode):
         message.twist.covariance = kalman.covariance[TWIST, TWIST].reshape(36)
         return message
 
-    def _acceleration(self) -> Any:
+    def _acceleration_message(self) -> Any:
         kalman = self._filter
         message = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")()
         message.header.stamp = Time.from_nanoseconds(kalman.time_ns)
@@ -197,7 +199,7 @@ class EkfNode(SingleNode):
 
     # --- commands ----------------------------------------------------------------------------------------------------
 
-    def _commanded(self, message: Any) -> None:
+    def _on_command(self, message: Any) -> None:
         self._follow(message, self._clock.now_ns())
 
     def _on_stamped_command(self, message: Any) -> None:
@@ -223,8 +225,8 @@ class EkfNode(SingleNode):
         if sensor is None:
             return
         position, orientation = message.pose.pose.position, message.pose.pose.orientation
-        turn = normalized(orientation.x, orientation.y, orientation.z, orientation.w)
-        pose: Transform = (position.x, position.y, position.z, *turn)
+        quaternion = normalized(orientation.x, orientation.y, orientation.z, orientation.w)
+        pose: Transform = (position.x, position.y, position.z, *quaternion)
         if not all(isfinite(number) for number in pose):
             self._node.get_logger().error("set_pose: the pose has values that are not finite, so it is ignored")
             return
@@ -237,7 +239,7 @@ class EkfNode(SingleNode):
             source.forget(time=False)
         self._around.ignored_until_ns = stamp_ns
         self._filter.state = reading.values
-        self._filter.covariance = np.eye(SIZE) * _POSE_VARIANCE
+        self._filter.covariance = np.eye(SIZE) * _INITIAL_VARIANCE
         self._filter.covariance[POSE, POSE] = reading.covariance[POSE, POSE]
         self._filter.time_ns = self._clock.now_ns()
 
@@ -246,9 +248,9 @@ class EkfNode(SingleNode):
         return response
 
     def _on_toggle(self, request: Any, response: Any) -> Any:
-        response.status = bool(request.on) != self._toggled_on
+        response.status = bool(request.on) != self._is_toggled_on
         if response.status:
-            self._toggled_on = bool(request.on)
+            self._is_toggled_on = bool(request.on)
             self._node.get_logger().info(f"Toggling filter measurement filtering to {'On' if request.on else 'Off'}.")
         else:
             self._node.get_logger().warning(
@@ -257,13 +259,13 @@ class EkfNode(SingleNode):
         return response
 
     def _on_enable(self, request: Any, response: Any) -> Any:
-        if self._enabled:
+        if self._is_enabled:
             self._node.get_logger().warning(
                 "Asking for enabling filter service, but the filter was already enabled! Use param disabled_at_startup."
             )
         else:
             self._node.get_logger().info("Enabling filter...")
-            self._enabled = True
+            self._is_enabled = True
         return response
 
 

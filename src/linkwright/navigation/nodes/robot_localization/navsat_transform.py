@@ -1,9 +1,9 @@
 """navsat_transform_node of robot_localization, which converts satellite fixes to odometry and back.
 
-The node follows robot_localization 3.5 (ROS 2 Humble). The map's origin and rotation on the earth are taken from the
-first fix, with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate differences:
-the offset of the receiver on the robot is removed with the orientation of the odometry instead of a lookup; ``delay``
-does not block.
+The node follows robot_localization 3.5 (ROS 2 Humble). The origin and rotation of the map on the earth come from a
+datum, or from the first fix, the first odometry and the heading of an IMU (0 is east). Deliberate differences: the
+offset of the receiver on the robot is removed with the orientation of the odometry instead of a lookup; ``delay`` does
+not block.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from linkwright.nodes.settings import bad_value, log_unknown, positive
 
 _KNOWN_COVARIANCE, _GBAS_FIX, _NO_FIX = 3, 2, -1
 _ZONE_LETTERS = "CDEFGHJKLMNPQRSTUVWXX"
-"""The letters of UTM's bands of latitude, 8 degrees each from -80 on."""
+"""The letters of UTM's latitude bands, each of 8 degrees, from -80 degrees to the north."""
 
 
 class NavsatTransformNode(SingleNode):
@@ -62,36 +62,36 @@ class NavsatTransformNode(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            datum = self._declare()
+            datum = self._declare_parameters()
             log_unknown(self._node)
         self._poses = FramePoses(self._node, "Could not obtain transform:")
         self._zone: Zone | None = None
         self._plane: TangentPlane | None = None
-        self._map: Transform | None = None
+        self._grid_in_map: Transform | None = None
         """The pose of the earth's grid in the map; None until it is known."""
         self._first_fix: Vector3 | None = None
         self._first_pose: Transform | None = None
         self._heading: Quaternion | None = None
         self._fix: Any = None
         self._odometry: Any = None
-        self._new_fix = self._new_odometry = False
+        self._has_new_fix = self._has_new_odometry = False
         self._world_frame, self._base_frame = "odom", "base_link"
         self._open()
-        if self._manual and datum is not None:
+        if self._has_datum and datum is not None:
             self._set_datum(datum[0], datum[1], 0.0, quaternion_from_rpy((0.0, 0.0, datum[2])))
 
-    def _declare(self) -> list[float] | None:
+    def _declare_parameters(self) -> list[float] | None:
         node, declare = self._node, self._node.declare_parameter
         self._yaw_offset: float = declare("magnetic_declination_radians", 0.0).value + declare("yaw_offset", 0.0).value
-        old: bool = declare("broadcast_utm_transform", False).value
+        old_broadcast: bool = declare("broadcast_utm_transform", False).value
         old_parent: bool = declare("broadcast_utm_transform_as_parent_frame", False).value
-        self._broadcast: bool = declare("broadcast_cartesian_transform", old).value
-        self._as_parent: bool = declare("broadcast_cartesian_transform_as_parent_frame", old_parent).value
-        self._flat: bool = declare("zero_altitude", False).value
-        self._publish_fixes: bool = declare("publish_filtered_gps", True).value
-        self._odometry_yaw: bool = declare("use_odometry_yaw", False).value
+        self._broadcasts_transform: bool = declare("broadcast_cartesian_transform", old_broadcast).value
+        self._grid_is_parent: bool = declare("broadcast_cartesian_transform_as_parent_frame", old_parent).value
+        self._zero_altitude: bool = declare("zero_altitude", False).value
+        self._publishes_fixes: bool = declare("publish_filtered_gps", True).value
+        self._uses_odometry_yaw: bool = declare("use_odometry_yaw", False).value
         self._local: bool = declare("use_local_cartesian", False).value
-        self._manual: bool = declare("wait_for_datum", False).value
+        self._has_datum: bool = declare("wait_for_datum", False).value
         self._frequency = positive(node, "frequency", declare("frequency", 10.0).value)
         for name in ("delay", "transform_timeout"):
             declare(name, 0.0)
@@ -107,53 +107,51 @@ class NavsatTransformNode(SingleNode):
     def _open(self) -> None:
         node = self._node
         self._publisher = node.create_publisher(get_message("nav_msgs/msg/Odometry"), "odometry/gps", 10)
-        if self._publish_fixes:
+        if self._publishes_fixes:
             kind = get_message("sensor_msgs/msg/NavSatFix")
             self._fix_publisher = node.create_publisher(kind, "gps/filtered", 10)
-        if self._broadcast:
+        if self._broadcasts_transform:
             self._tf_publisher = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
-        node.create_subscription(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", self._receive_odometry, 10)
-        node.create_subscription(
-            get_message("sensor_msgs/msg/NavSatFix"), "gps/fix", self._receive_fix, SENSOR_DATA_QOS
-        )
-        if not self._odometry_yaw and not self._manual:
-            node.create_subscription(get_message("sensor_msgs/msg/Imu"), "imu", self._receive_imu, SENSOR_DATA_QOS)
-        for name, service, answer in (
+        node.create_subscription(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", self._on_odometry, 10)
+        node.create_subscription(get_message("sensor_msgs/msg/NavSatFix"), "gps/fix", self._on_fix, SENSOR_DATA_QOS)
+        if not self._uses_odometry_yaw and not self._has_datum:
+            node.create_subscription(get_message("sensor_msgs/msg/Imu"), "imu", self._on_imu, SENSOR_DATA_QOS)
+        for name, service, callback in (
             ("datum", "SetDatum", self._on_datum),
             ("fromLL", "FromLL", self._on_from_ll),
             ("fromLLArray", "FromLLArray", self._on_from_ll_array),
             ("toLL", "ToLL", self._on_to_ll),
             ("setUTMZone", "SetUTMZone", self._on_zone),
         ):
-            node.create_service(get_service(f"robot_localization/srv/{service}"), name, answer)
+            node.create_service(get_service(f"robot_localization/srv/{service}"), name, callback)
         node.create_timer(1.0 / self._frequency, self._update)
 
     # --- input -------------------------------------------------------------------------------------------------------
 
-    def _receive_odometry(self, message: Any) -> None:
+    def _on_odometry(self, message: Any) -> None:
         self._world_frame = message.header.frame_id or self._world_frame
         self._base_frame = message.child_frame_id or self._base_frame
-        self._odometry, self._new_odometry = message, True
-        if self._map is None and not self._manual:
+        self._odometry, self._has_new_odometry = message, True
+        if self._grid_in_map is None and not self._has_datum:
             self._first_pose = _pose(message)
-            if self._odometry_yaw:
+            if self._uses_odometry_yaw:
                 self._heading = self._first_pose[3:]
 
-    def _receive_fix(self, message: Any) -> None:
-        place = (message.latitude, message.longitude, message.altitude)
-        if message.status.status == _NO_FIX or not all(isfinite(number) for number in place):
+    def _on_fix(self, message: Any) -> None:
+        position = (message.latitude, message.longitude, message.altitude)
+        if message.status.status == _NO_FIX or not all(isfinite(number) for number in position):
             return
         if not message.header.frame_id:
             self._node.get_logger().error(
                 "NavSatFix message has empty frame_id. Will assume navsat device is mounted at robot's origin.",
                 once=True,
             )
-        self._fix, self._new_fix = message, True
-        if self._map is None and not self._manual:
-            self._first_fix = place
+        self._fix, self._has_new_fix = message, True
+        if self._grid_in_map is None and not self._has_datum:
+            self._first_fix = position
 
-    def _receive_imu(self, message: Any) -> None:
-        if self._map is not None or self._odometry is None:  # Odometry provides the body frame.
+    def _on_imu(self, message: Any) -> None:
+        if self._grid_in_map is not None or self._odometry is None:  # Odometry provides the body frame.
             return
         mounting = self._poses.pose(
             self._base_frame, message.header.frame_id or self._base_frame, message.header.stamp.nanoseconds
@@ -164,8 +162,8 @@ class NavsatTransformNode(SingleNode):
     # --- georeferencing ----------------------------------------------------------------------------------------------
 
     def _set_datum(self, latitude: float, longitude: float, altitude: float, heading: Quaternion) -> None:
-        self._manual = True
-        self._map = None
+        self._has_datum = True
+        self._grid_in_map = None
         self._first_fix, self._first_pose, self._heading = (latitude, longitude, altitude), IDENTITY, heading
         self._place_map()
 
@@ -177,37 +175,37 @@ class NavsatTransformNode(SingleNode):
         if self._first_fix is None or self._first_pose is None or self._heading is None:
             return
         latitude, longitude, altitude = self._first_fix
-        turned = self._yaw_offset
+        yaw_correction = self._yaw_offset
         if self._local:
             self._plane = TangentPlane(latitude, longitude, altitude)
         else:
             self._zone = self._zone or zone_from_degrees(latitude, longitude)
-            turned += convergence(latitude, longitude, self._zone)
-        x, y, z = self._grid(self._first_fix)
+            yaw_correction += convergence(latitude, longitude, self._zone)
+        x, y, z = self._grid_from_geodetic(self._first_fix)
         roll, pitch, yaw = rpy_from_quaternion(self._heading)
-        if not self._manual:
-            ox, oy, oz = rotate(quaternion_from_rpy((roll, pitch, yaw + turned)), self._receiver())
+        if not self._has_datum:
+            ox, oy, oz = rotate(quaternion_from_rpy((roll, pitch, yaw + yaw_correction)), self._receiver_position())
             x, y, z = x - ox, y - oy, z - oz
-        base_in_grid: Transform = (x, y, z, *quaternion_from_rpy((0.0, 0.0, yaw + turned)))
-        self._map = compose(self._first_pose, invert(base_in_grid))
+        base_in_grid: Transform = (x, y, z, *quaternion_from_rpy((0.0, 0.0, yaw + yaw_correction)))
+        self._grid_in_map = compose(self._first_pose, invert(base_in_grid))
         self._node.get_logger().info(
             f"Datum (latitude, longitude, altitude) is ({latitude:.6f}, {longitude:.6f}, {altitude:.2f}); "
-            f"the heading is {yaw + turned:.4f} rad from the east"
+            f"the heading is {yaw + yaw_correction:.4f} rad from the east"
         )
-        if self._broadcast:
+        if self._broadcasts_transform:
             self._send_transform()
 
     def _send_transform(self) -> None:
-        assert self._map is not None, "it was placed"
-        parent, child, pose = self._world_frame, "local_enu" if self._local else "utm", self._map
-        if self._as_parent:
+        assert self._grid_in_map is not None, "it was placed"
+        parent, child, pose = self._world_frame, "local_enu" if self._local else "utm", self._grid_in_map
+        if self._grid_is_parent:
             parent, child, pose = child, parent, invert(pose)
-        x, y, z, *turn = pose
-        row = np.array([[x, y, 0.0 if self._flat else z, *turn]])
+        x, y, z, *rotation = pose
+        row = np.array([[x, y, 0.0 if self._zero_altitude else z, *rotation]])
         batch = TransformBatch((parent,), (child,), self._node.get_clock().now_ns(), row)
         self._tf_publisher.publish(TFMessage(batch=batch))
 
-    def _receiver(self) -> Vector3:
+    def _receiver_position(self) -> Vector3:
         """Return the position of the receiver in the body frame, or the origin if it is unknown."""
         frame = self._fix.header.frame_id if self._fix is not None else ""
         if not frame:
@@ -215,7 +213,7 @@ class NavsatTransformNode(SingleNode):
         pose = self._poses.pose(self._base_frame, frame, self._fix.header.stamp.nanoseconds)
         return (0.0, 0.0, 0.0) if pose is None else pose[:3]
 
-    def _grid(self, place: Vector3) -> Vector3:
+    def _grid_from_geodetic(self, place: Vector3) -> Vector3:
         """Convert a geodetic position (degrees and metres) to a point of the grid, in metres."""
         if self._plane is not None:
             return self._plane.point_from_geodetic(*place)
@@ -226,43 +224,45 @@ class NavsatTransformNode(SingleNode):
     def _place(self, point: Vector3) -> Vector3:
         """Convert a point of the grid, in metres, to a geodetic position (degrees and metres)."""
         if self._plane is not None:
-            return self._plane.place_of(point)
+            return self._plane.geodetic_from_point(point)
         assert self._zone is not None, "it comes with the first place"
         latitude, longitude = degrees_from_utm(point[0], point[1], self._zone)
         return latitude, longitude, point[2]
 
-    def _in_map(self, place: Vector3) -> Vector3:
-        assert self._map is not None, "it was placed"
-        return compose(self._map, (*self._grid(place), 0.0, 0.0, 0.0, 1.0))[:3]
+    def _map_from_geodetic(self, place: Vector3) -> Vector3:
+        assert self._grid_in_map is not None, "it was placed"
+        return compose(self._grid_in_map, (*self._grid_from_geodetic(place), 0.0, 0.0, 0.0, 1.0))[:3]
 
     def _geodetic_from_map(self, point: Vector3) -> Vector3:
-        assert self._map is not None, "it was placed"
-        return self._place(compose(invert(self._map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
+        assert self._grid_in_map is not None, "it was placed"
+        return self._place(compose(invert(self._grid_in_map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
 
     # --- output ------------------------------------------------------------------------------------------------------
 
     def _update(self) -> None:
-        if self._map is None:
+        if self._grid_in_map is None:
             self._place_map()
             return
-        if self._new_fix and self._new_odometry:
-            self._publisher.publish(self._fix_as_odometry(self._map))
-        if self._publish_fixes and self._new_odometry:
-            self._fix_publisher.publish(self._odometry_as_fix(self._map))
-            self._new_odometry = False
-        self._new_fix = False
+        if self._has_new_fix and self._has_new_odometry:
+            self._publisher.publish(self._fix_as_odometry(self._grid_in_map))
+        if self._publishes_fixes and self._has_new_odometry:
+            self._fix_publisher.publish(self._odometry_as_fix(self._grid_in_map))
+            self._has_new_odometry = False
+        self._has_new_fix = False
 
     def _fix_as_odometry(self, grid_in_map: Transform) -> Any:
         fix = self._fix
-        x, y, z = self._in_map((fix.latitude, fix.longitude, fix.altitude))
-        ox, oy, oz = rotate(_pose(self._odometry)[3:], self._receiver())
+        x, y, z = self._map_from_geodetic((fix.latitude, fix.longitude, fix.altitude))
+        ox, oy, oz = rotate(_pose(self._odometry)[3:], self._receiver_position())
         message = get_message("nav_msgs/msg/Odometry")()
         message.header.stamp, message.header.frame_id = fix.header.stamp, self._world_frame
         position = message.pose.pose.position
-        position.x, position.y, position.z = x - ox, y - oy, 0.0 if self._flat else z - oz
+        position.x, position.y, position.z = x - ox, y - oy, 0.0 if self._zero_altitude else z - oz
         message.pose.pose.orientation.w = 1.0
         covariance = np.zeros((6, 6))
-        covariance[:3, :3] = _turned(grid_in_map, np.asarray(fix.position_covariance, dtype=np.float64).reshape(3, 3))
+        covariance[:3, :3] = _rotated_covariance(
+            grid_in_map, np.asarray(fix.position_covariance, dtype=np.float64).reshape(3, 3)
+        )
         message.pose.covariance = covariance.reshape(36)
         return message
 
@@ -272,7 +272,7 @@ class NavsatTransformNode(SingleNode):
         message.header.stamp, message.header.frame_id = odometry.header.stamp, self._base_frame
         message.latitude, message.longitude, message.altitude = self._geodetic_from_map(_pose(odometry)[:3])
         covariance = np.asarray(odometry.pose.covariance, dtype=np.float64).reshape(6, 6)[:3, :3]
-        message.position_covariance = _turned(invert(grid_in_map), covariance).reshape(9)
+        message.position_covariance = _rotated_covariance(invert(grid_in_map), covariance).reshape(9)
         message.position_covariance_type = _KNOWN_COVARIANCE
         message.status.status = _GBAS_FIX
         return message
@@ -287,44 +287,46 @@ class NavsatTransformNode(SingleNode):
         return response
 
     def _on_from_ll(self, request: Any, response: Any) -> Any:
-        response.map_point = self._point(request.ll_point)
+        response.map_point = self._point_message(request.ll_point)
         return response
 
     def _on_from_ll_array(self, request: Any, response: Any) -> Any:
-        response.map_points = [self._point(ll_point) for ll_point in request.ll_points]
+        response.map_points = [self._point_message(ll_point) for ll_point in request.ll_points]
         return response
 
-    def _point(self, place: Any) -> Any:
+    def _point_message(self, place: Any) -> Any:
         point = get_message("geometry_msgs/msg/Point")()
         if self._ready():
-            point.x, point.y, point.z = self._in_map((place.latitude, place.longitude, place.altitude))
+            point.x, point.y, point.z = self._map_from_geodetic((place.latitude, place.longitude, place.altitude))
         return point
 
     def _on_to_ll(self, request: Any, response: Any) -> Any:
         if self._ready():
-            point, place = request.map_point, response.ll_point
-            place.latitude, place.longitude, place.altitude = self._geodetic_from_map((point.x, point.y, point.z))
+            point, position = request.map_point, response.ll_point
+            position.latitude, position.longitude, position.altitude = self._geodetic_from_map(
+                (point.x, point.y, point.z)
+            )
         return response
 
     def _on_zone(self, request: Any, response: Any) -> Any:
-        zone = _zone_of_text(request.utm_zone)
+        zone = _parse_zone(request.utm_zone)
         response.status = zone is not None
         if zone is not None:
             self._zone = zone
-            if self._map is not None:
-                self._map = None
+            if self._grid_in_map is not None:
+                self._grid_in_map = None
                 self._place_map()
         else:
             self._node.get_logger().error(f"'{request.utm_zone}' is not a UTM zone, such as 31U")
         return response
 
     def _ready(self) -> bool:
-        if self._map is None:
+        if self._grid_in_map is None:
             self._node.get_logger().error("No transform available (yet)", throttle_duration_sec=5.0)
-        return self._map is not None
+        return self._grid_in_map is not None
 
 
-def _zone_of_text(text: str) -> Zone | None:
+def _parse_zone(text: str) -> Zone | None:
     number, letter = text[:-1], text[-1:].upper()
     if not number.isdecimal() or not 1 <= int(number) <= 60 or letter not in _ZONE_LETTERS or not letter:
         return None
@@ -340,7 +342,7 @@ def _orientation(message: Any) -> Quaternion:
     return normalized(message.x, message.y, message.z, message.w)
 
 
-def _turned(pose: Transform, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
-    turn = rotation_matrix(pose[3:])
-    turned: NDArray[np.float64] = turn @ covariance @ turn.T
-    return turned
+def _rotated_covariance(pose: Transform, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+    rotation = rotation_matrix(pose[3:])
+    rotated: NDArray[np.float64] = rotation @ covariance @ rotation.T
+    return rotated

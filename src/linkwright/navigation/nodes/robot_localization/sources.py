@@ -1,4 +1,4 @@
-"""Sensors of ekf_node, whose messages are converted to measurements in the filter's frames."""
+"""The sensors of ekf_node, which convert their messages to measurements in the filter's frames."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ _TYPES = {
     "imu": "sensor_msgs/msg/Imu",
 }
 _NOT_MEASURED = -1.0
-"""The first number of a covariance of an IMU that does not measure the quantity."""
+"""The first number of a covariance for a quantity that the IMU does not measure."""
 
 
 class Surroundings:
-    """The node, configuration and estimator that sensors share.
+    """The node, configuration and estimator that the sensors share.
 
     Args:
         node: the node of the filter.
         configuration: the parameters of the node.
         estimator: receives the measurements of the sensors.
-        jumped_back: called when a message is older than the previous one.
+        on_old_message: called when a message is older than the previous message of its sensor.
     """
 
     def __init__(
@@ -55,19 +55,19 @@ class Surroundings:
         node: Node,
         configuration: Configuration,
         estimator: Estimator,
-        jumped_back: Callable[[], None],
+        on_old_message: Callable[[], None],
     ) -> None:
         self.node = node
         self.configuration = configuration
         self.estimator = estimator
-        self.jumped_back = jumped_back
+        self.on_old_message = on_old_message
         self.poses = FramePoses(node, "Could not obtain transform:")
         self.ignored_until_ns = -1
-        """Messages up to this stamp belong to the time before the pose was set."""
+        """Messages with this stamp or an earlier one are ignored, because they precede a set pose."""
 
     @property
     def filter(self) -> KalmanFilter:
-        """The filter, whose estimate is needed to convert some measurements."""
+        """The filter; its estimate is needed to convert some measurements."""
         return self.estimator.filter
 
 
@@ -86,46 +86,51 @@ class Source:
         self._pose = PoseReader(settings.used, settings.differential, settings.relative, two_d)
         self._two_d = two_d
         self._frames = surroundings.configuration.frames
-        self._last_ns = -1
+        self._latest_ns = -1
         if any(settings.used):
-            hear = {"odom": self._odometry, "pose": self._pose_message, "twist": self._twist_message, "imu": self._imu}
+            readers = {
+                "odom": self._read_odometry,
+                "pose": self._read_pose_message,
+                "twist": self._read_twist_message,
+                "imu": self._read_imu,
+            }
             surroundings.node.create_subscription(
                 get_message(_TYPES[settings.kind]),
                 settings.topic,
-                lambda message: self._receive(message, hear[settings.kind]),
+                lambda message: self._receive(message, readers[settings.kind]),
                 QoSProfile(settings.queue_size, ReliabilityPolicy.BEST_EFFORT),
             )
 
     def forget(self, *, time: bool) -> None:
-        """Treat the next pose as the first one; if `time` is set, also accept older stamps."""
+        """Treat the next pose as the first pose; if `accept_older` is set, also accept older stamps."""
         self._pose.forget()
         if time:
-            self._last_ns = -1
+            self._latest_ns = -1
 
     def _receive(self, message: Any, read: Callable[[Any, int], None]) -> None:
         stamp_ns: int = message.header.stamp.nanoseconds
         if stamp_ns <= self._around.ignored_until_ns:
             return
-        if stamp_ns < self._last_ns:
-            self._around.jumped_back()
-            if stamp_ns < self._last_ns:
+        if stamp_ns < self._latest_ns:
+            self._around.on_old_message()
+            if stamp_ns < self._latest_ns:
                 self._around.node.get_logger().warning(
                     f"The {self._settings.name} message has a timestamp before that of the previous message received, "
                     "this message will be ignored. This may indicate a bad timestamp.",
                     throttle_duration_sec=5.0,
                 )
                 return
-        self._last_ns = stamp_ns
+        self._latest_ns = stamp_ns
         read(message, stamp_ns)
 
-    def _odometry(self, message: Any, stamp_ns: int) -> None:
+    def _read_odometry(self, message: Any, stamp_ns: int) -> None:
         self._read_pose(message.pose, message.header.frame_id, stamp_ns)
         self._read_twist(message.twist, message.child_frame_id, stamp_ns)
 
-    def _pose_message(self, message: Any, stamp_ns: int) -> None:
+    def _read_pose_message(self, message: Any, stamp_ns: int) -> None:
         self._read_pose(message.pose, message.header.frame_id, stamp_ns)
 
-    def _twist_message(self, message: Any, stamp_ns: int) -> None:
+    def _read_twist_message(self, message: Any, stamp_ns: int) -> None:
         self._read_twist(message.twist, message.header.frame_id, stamp_ns)
 
     def _read_pose(self, message: Any, frame: str, stamp_ns: int) -> None:
@@ -143,9 +148,9 @@ class Source:
     def _read_twist(self, message: Any, frame: str, stamp_ns: int) -> None:
         if any(self._settings.used[TWIST]):
             linear, angular = message.twist.linear, message.twist.angular
-            self._twist(_vector(linear), _vector(angular), _matrix(message.covariance, 6), frame, stamp_ns)
+            self._add_twist(_vector(linear), _vector(angular), _matrix(message.covariance, 6), frame, stamp_ns)
 
-    def _twist(
+    def _add_twist(
         self,
         linear: NDArray[np.float64],
         angular: NDArray[np.float64],
@@ -159,7 +164,7 @@ class Source:
             reading = read_twist(linear, angular, covariance, mounting, rates, used, two_d=self._two_d)
             self._add(reading, "twist", stamp_ns, self._settings.twist_threshold)
 
-    def _imu(self, message: Any, stamp_ns: int) -> None:
+    def _read_imu(self, message: Any, stamp_ns: int) -> None:
         used, frame = self._settings.used, message.header.frame_id
         if any(used[ANGLES]) and _is_measured(message.orientation_covariance):
             mounting = self._mounting(frame, stamp_ns)
@@ -172,11 +177,11 @@ class Source:
         if any(used[RATES]) and _is_measured(message.angular_velocity_covariance):
             covariance = np.zeros((6, 6))
             covariance[3:, 3:] = _matrix(message.angular_velocity_covariance, 3)
-            self._twist(np.zeros(3), _vector(message.angular_velocity), covariance, frame, stamp_ns)
+            self._add_twist(np.zeros(3), _vector(message.angular_velocity), covariance, frame, stamp_ns)
         if any(used[12:]) and _is_measured(message.linear_acceleration_covariance):
-            self._acceleration(message, stamp_ns)
+            self._read_acceleration(message, stamp_ns)
 
-    def _acceleration(self, message: Any, stamp_ns: int) -> None:
+    def _read_acceleration(self, message: Any, stamp_ns: int) -> None:
         mounting = self._mounting(message.header.frame_id, stamp_ns)
         if mounting is None:
             return
@@ -189,7 +194,7 @@ class Source:
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
 
     def _attitude(self, message: Any, mounting: Transform) -> Quaternion:
-        """Return the measured orientation of an IMU, or else the filter's orientation."""
+        """Return the orientation that an IMU measured, or the estimated orientation if it measures none."""
         if _is_measured(message.orientation_covariance):
             return _orientation(message.orientation)
         roll, pitch, yaw = (float(angle) for angle in self._around.filter.state[ANGLES])
@@ -199,13 +204,13 @@ class Source:
         base = self._frames.base
         return self._around.poses.pose(base, frame or base, stamp_ns)
 
-    def _add(self, reading: Reading | None, what: str, stamp_ns: int, threshold: float) -> None:
+    def _add(self, reading: Reading | None, quantity: str, stamp_ns: int, threshold: float) -> None:
         if reading is None or not any(reading.used):
             return
         kalman = self._around.filter
         self._around.estimator.add(
             Measurement(
-                f"{self._settings.name}_{what}",
+                f"{self._settings.name}_{quantity}",
                 stamp_ns,
                 reading.values,
                 reading.covariance,

@@ -8,8 +8,8 @@ from typing import Any
 from linkwright.messages import get_message
 from linkwright.navigation.slam.pose_graph import PoseGraph
 
-_BALL = 0.1
-_LINE = 0.02
+_SPHERE_DIAMETER = 0.1
+_LINE_WIDTH = 0.02
 
 
 def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
@@ -21,24 +21,34 @@ def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
     point = get_message("geometry_msgs/msg/Point")
     points = [point(x=x, y=y) for x, y in graph.poses[:, :2].tolist()]
     edges = list(zip(graph.first, graph.second, strict=True))
-    in_a_row = [(first, second) for first, second in edges if second == first + 1]
-    others = [(first, second) for first, second in edges if second != first + 1]
+    consecutive_edges = [(first, second) for first, second in edges if second == first + 1]
+    other_edges = [(first, second) for first, second in edges if second != first + 1]
     kind = get_message("visualization_msgs/msg/Marker")
-    for number, (shape, size, colour, where) in enumerate(
+    for number, (shape, size, colour, marker_points) in enumerate(
         (
-            (kind.SPHERE_LIST, _BALL, (1.0, 0.0, 0.0), points),
-            (kind.LINE_LIST, _LINE, (0.0, 0.0, 1.0), [points[index] for index in chain.from_iterable(in_a_row)]),
-            (kind.LINE_LIST, _LINE, (0.0, 0.8, 0.0), [points[index] for index in chain.from_iterable(others)]),
+            (kind.SPHERE_LIST, _SPHERE_DIAMETER, (1.0, 0.0, 0.0), points),
+            (
+                kind.LINE_LIST,
+                _LINE_WIDTH,
+                (0.0, 0.0, 1.0),
+                [points[index] for index in chain.from_iterable(consecutive_edges)],
+            ),
+            (
+                kind.LINE_LIST,
+                _LINE_WIDTH,
+                (0.0, 0.8, 0.0),
+                [points[index] for index in chain.from_iterable(other_edges)],
+            ),
         )
     ):
         marker = kind()
         marker.header.frame_id, marker.header.stamp = frame, stamp
         marker.ns, marker.id, marker.type = "slam_toolbox", number, shape
-        marker.action = kind.ADD if where else kind.DELETE
+        marker.action = kind.ADD if marker_points else kind.DELETE
         marker.pose.orientation.w = 1.0
         marker.scale.x = marker.scale.y = marker.scale.z = size
         marker.color.r, marker.color.g, marker.color.b = colour
         marker.color.a = 1.0
-        marker.points = where
+        marker.points = marker_points
         array.markers.append(marker)
     return array

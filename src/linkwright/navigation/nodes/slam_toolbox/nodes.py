@@ -1,15 +1,15 @@
 """The executables of slam_toolbox: async, sync, localization, and map_and_localization.
 
-The nodes follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are
-managed; ``ROS_DISTRO`` selects the version. Jazzy's nodes activate themselves if ``autostart_node`` is true, as in our
-launch files. The mapper is Linkwright's own (`linkwright.navigation.slam`). Differences:
+``ROS_DISTRO`` selects the version that the nodes follow: slam_toolbox 2.6 (Humble) or 2.8 (Jazzy). Nodes of 2.6 work as
+soon as they start; nodes of 2.8 are managed, and activate themselves if ``autostart_node`` is true, as in Linkwright's
+launch files. The mapper is `linkwright.navigation.slam`. Differences:
 
 - One solver replaces all solver plugins: Gauss-Newton on sparse matrices. Each match is refined by least squares, so
   ``fine_search_angle_offset`` has no effect. Neither has ``use_scan_barycenter``.
 - A rotation by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
 - Moving scans by hand (``enable_interactive_mode``), merging maps and lifelong mapping are not supported: there is no
   ``lifelong_slam_toolbox_node``. The motion of the robot during a scan is ignored.
-- A graph is saved in Linkwright's own format, in one file; files of slam_toolbox cannot be read.
+- A graph is saved in one file, in a format of Linkwright; files of slam_toolbox cannot be read.
 - When simulated time jumps back, such as on the reset of a world, the map starts from scratch.
 """
 
@@ -23,12 +23,12 @@ from linkwright.navigation.nodes.managed import ManagedNode
 from linkwright.navigation.nodes.slam_toolbox.parameters import settings_of
 from linkwright.navigation.nodes.slam_toolbox.services import ToolboxServices
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_of, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_with_class, starting
 from linkwright.nodes.settings import log_unknown
 
 
 class _Managed(ManagedNode):
-    """The node as a managed node, as in Jazzy."""
+    """A slam_toolbox node as a managed node, as in Jazzy."""
 
     kind: type[AsyncSlamToolbox]
 
@@ -78,9 +78,9 @@ class AsyncSlamToolbox(SingleNode):
         self._work: tuple[Toolbox, ToolboxServices] | None = None
         if not is_before_iron():
             kind = type("Managed", (_Managed,), {"kind": type(self)})
-            node, _ = create_node_of(kind, graph, options, self.DEFAULT_NAME)
+            node, _ = create_node_with_class(kind, graph, options, self.DEFAULT_NAME)
             self._node = node
-            node.start_itself()
+            node.autostart()
             return
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
@@ -94,7 +94,7 @@ class AsyncSlamToolbox(SingleNode):
     def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
         """Read the parameters of a node, and create its toolbox and services."""
         toolbox = Toolbox(node, settings_of(node), keeps_all=cls.KEEPS_ALL, localizes=cls.LOCALIZES)
-        return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, switches=cls.SWITCHES)
+        return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, can_switch=cls.SWITCHES)
 
     def close(self) -> None:
         """Close the node."""

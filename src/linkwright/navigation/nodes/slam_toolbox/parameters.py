@@ -32,7 +32,7 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
     "ceres_dogleg_type": "TRADITIONAL_DOGLEG",
     "ceres_loss_function": "None",
 }
-"""Parameters that files have and that have no effect here, because there is one method for each choice."""
+"""Parameters that parameter files contain and that have no effect, with their defaults."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +47,8 @@ class Settings:
         map_name: the topic of the map; its metadata is published with the suffix ``_metadata``.
         resolution: the side of a cell.
         ranges: the minimum and maximum range of a reading.
-        throttle_scans: process every n-th scan.
-        transform_timeout_ns: how long a scan waits for its transform, and how far published transforms are stamped
-            ahead.
+        throttle_scans: n, if every n-th scan is processed.
+        transform_timeout_ns: how long a scan waits for its transform; also added to the stamps of published transforms.
         transform_period: the seconds between published transforms; 0 to publish none.
         map_update_interval: the seconds between published maps.
         tf_buffer_ns: how long transforms are kept.
@@ -84,7 +83,7 @@ class Settings:
 
 
 class _ParameterReader:
-    """The parameters of a node, each of which is declared when it is first read."""
+    """A reader of a node's parameters, which declares each parameter when it is first read."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -101,7 +100,7 @@ class _ParameterReader:
     def number(self, name: str, default: float) -> float:
         return float(self._value(name, default))
 
-    def more_than_nothing(self, name: str, default: float) -> float:
+    def positive_number(self, name: str, default: float) -> float:
         return positive(self._node, name, self.number(name, default))
 
     def text(self, name: str, default: str) -> str:
@@ -110,7 +109,7 @@ class _ParameterReader:
     def frame(self, name: str, default: str) -> str:
         return self.text(name, default).removeprefix("/")
 
-    def without_effect(self) -> None:
+    def declare_without_effect(self) -> None:
         for name, default in _WITHOUT_EFFECT.items():
             self._value(name, default)
 
@@ -121,57 +120,57 @@ def settings_of(node: Node) -> Settings:
     Raises:
         LinkwrightError: NODE433, a value is invalid; GRAPH201, a value has the wrong type.
     """
-    declared = _ParameterReader(node)
-    declared.without_effect()
-    declared.flag("paused_new_measurements", False)
-    _log_replaced(node)
-    resolution = declared.number("resolution", 0.05)
+    reader = _ParameterReader(node)
+    reader.declare_without_effect()
+    reader.flag("paused_new_measurements", False)
+    _log_unsupported(node)
+    resolution = reader.number("resolution", 0.05)
     if resolution <= 0.0:
         node.get_logger().warning(
             "You've set resolution of map to be zero or negative, this isn't allowed so it will be set to default "
             "value 0.05."
         )
         resolution = 0.05
-    throttle = declared.whole("throttle_scans", 1)
+    throttle = reader.whole("throttle_scans", 1)
     if throttle <= 0:
         node.get_logger().warning(
             "You've set throttle_scans to be zero, this isn't allowed so it will be set to default value 1."
         )
         throttle = 1
     return Settings(
-        odom_frame=declared.frame("odom_frame", "odom"),
-        map_frame=declared.frame("map_frame", "map"),
-        base_frame=declared.frame("base_frame", "base_footprint"),
-        scan_topic=declared.text("scan_topic", "/scan"),
-        map_name=declared.text("map_name", "/map"),
+        odom_frame=reader.frame("odom_frame", "odom"),
+        map_frame=reader.frame("map_frame", "map"),
+        base_frame=reader.frame("base_frame", "base_footprint"),
+        scan_topic=reader.text("scan_topic", "/scan"),
+        map_name=reader.text("map_name", "/map"),
         resolution=resolution,
-        ranges=(declared.number("min_laser_range", 0.0), declared.more_than_nothing("max_laser_range", 25.0)),
+        ranges=(reader.number("min_laser_range", 0.0), reader.positive_number("max_laser_range", 25.0)),
         throttle_scans=throttle,
-        transform_timeout_ns=round(declared.number("transform_timeout", 0.5) * 1e9),
-        transform_period=declared.number("transform_publish_period", 0.05),
-        map_update_interval=declared.more_than_nothing("map_update_interval", 10.0),
-        tf_buffer_ns=round(declared.number("tf_buffer_duration", 30.0) * 1e9),
-        position_covariance_scale=declared.number("position_covariance_scale", 1.0),
-        yaw_covariance_scale=declared.number("yaw_covariance_scale", 1.0),
-        min_pass_through=declared.whole("min_pass_through", 2),
-        occupancy_threshold=declared.number("occupancy_threshold", 0.1),
-        map_file_name=declared.text("map_file_name", ""),
-        start=_start(node),
-        mapper=_mapper(declared),
+        transform_timeout_ns=round(reader.number("transform_timeout", 0.5) * 1e9),
+        transform_period=reader.number("transform_publish_period", 0.05),
+        map_update_interval=reader.positive_number("map_update_interval", 10.0),
+        tf_buffer_ns=round(reader.number("tf_buffer_duration", 30.0) * 1e9),
+        position_covariance_scale=reader.number("position_covariance_scale", 1.0),
+        yaw_covariance_scale=reader.number("yaw_covariance_scale", 1.0),
+        min_pass_through=reader.whole("min_pass_through", 2),
+        occupancy_threshold=reader.number("occupancy_threshold", 0.1),
+        map_file_name=reader.text("map_file_name", ""),
+        start=_start_pose(node),
+        mapper=_mapper_settings(reader),
     )
 
 
-def _log_replaced(node: Node) -> None:
+def _log_unsupported(node: Node) -> None:
     solver: str = node.get_parameter("solver_plugin").value
     node.get_logger().info(f"Using Linkwright's sparse Gauss-Newton solver in place of solver plugin {solver}")
     if node.get_parameter("enable_interactive_mode").value:
         node.get_logger().info("enable_interactive_mode is not supported: scans cannot be moved by hand")
 
 
-def _start(node: Node) -> Floats | None:
+def _start_pose(node: Node) -> Floats | None:
     """Return the initial pose in a saved map, or None for the pose of its first scan.
 
-    Unusual values are logged, as in slam_toolbox.
+    A wrong number of values is logged, as in slam_toolbox.
     """
     for name, kind in (("map_start_pose", ParameterType.DOUBLE_ARRAY), ("map_start_at_dock", ParameterType.BOOL)):
         if not node.has_parameter(name):
@@ -188,22 +187,22 @@ def _start(node: Node) -> Floats | None:
     return np.array(pose, dtype=np.float64)
 
 
-def _mapper(declared: _ParameterReader) -> MapperSettings:
-    number, positive_number = declared.number, declared.more_than_nothing
+def _mapper_settings(reader: _ParameterReader) -> MapperSettings:
+    number, positive_number = reader.number, reader.positive_number
     angle_offset = number("coarse_search_angle_offset", 0.349)
     angle_resolution = positive_number("coarse_angle_resolution", 0.0349)
     return MapperSettings(
-        use_scan_matching=declared.flag("use_scan_matching", True),
+        use_scan_matching=reader.flag("use_scan_matching", True),
         minimum_time_interval=number("minimum_time_interval", 0.5),
         minimum_travel_distance=number("minimum_travel_distance", 0.5),
         minimum_travel_heading=number("minimum_travel_heading", 0.5),
-        scan_buffer_size=max(1, declared.whole("scan_buffer_size", 10)),
+        scan_buffer_size=max(1, reader.whole("scan_buffer_size", 10)),
         scan_buffer_maximum_scan_distance=number("scan_buffer_maximum_scan_distance", 10.0),
         link_match_minimum_response_fine=number("link_match_minimum_response_fine", 0.1),
         link_scan_maximum_distance=number("link_scan_maximum_distance", 1.5),
-        do_loop_closing=declared.flag("do_loop_closing", True),
+        do_loop_closing=reader.flag("do_loop_closing", True),
         loop_search_maximum_distance=number("loop_search_maximum_distance", 3.0),
-        loop_match_minimum_chain_size=declared.whole("loop_match_minimum_chain_size", 10),
+        loop_match_minimum_chain_size=reader.whole("loop_match_minimum_chain_size", 10),
         loop_match_maximum_variance_coarse=number("loop_match_maximum_variance_coarse", 3.0),
         loop_match_minimum_response_coarse=number("loop_match_minimum_response_coarse", 0.35),
         loop_match_minimum_response_fine=number("loop_match_minimum_response_fine", 0.45),
@@ -227,5 +226,5 @@ def _mapper(declared: _ParameterReader) -> MapperSettings:
             distance_variance_penalty=inf,
             angle_variance_penalty=inf,
         ),
-        use_response_expansion=declared.flag("use_response_expansion", True),
+        use_response_expansion=reader.flag("use_response_expansion", True),
     )

@@ -22,13 +22,13 @@ class ToolboxServices:
     Args:
         toolbox: executes the requests.
         has_queue: whether to offer ``clear_queue``.
-        switches: whether to offer ``set_localization_mode``.
+        can_switch: whether to offer ``set_localization_mode``.
     """
 
-    def __init__(self, toolbox: Toolbox, *, has_queue: bool, switches: bool) -> None:
+    def __init__(self, toolbox: Toolbox, *, has_queue: bool, can_switch: bool) -> None:
         self._toolbox = toolbox
         self._logger = toolbox.node.get_logger()
-        offered = [
+        services = [
             ("dynamic_map", "nav_msgs/srv/GetMap", self._on_get_map),
             ("pause_new_measurements", "slam_toolbox/srv/Pause", self._on_pause),
             ("serialize_map", "slam_toolbox/srv/SerializePoseGraph", self._on_serialize),
@@ -38,21 +38,22 @@ class ToolboxServices:
             ("clear_changes", "slam_toolbox/srv/Clear", self._on_clear_changes),
         ]
         if has_queue:
-            offered.append(("clear_queue", "slam_toolbox/srv/ClearQueue", self._on_clear_queue))
-        if switches:
-            offered.append(("set_localization_mode", "std_srvs/srv/SetBool", self._on_switch))
+            services.append(("clear_queue", "slam_toolbox/srv/ClearQueue", self._on_clear_queue))
+        if can_switch:
+            services.append(("set_localization_mode", "std_srvs/srv/SetBool", self._on_switch))
         node = toolbox.node
-        self._parts: list[Any] = [
-            node.create_service(get_service(kind), f"slam_toolbox/{name}", callback) for name, kind, callback in offered
+        self._endpoints: list[Any] = [
+            node.create_service(get_service(kind), f"slam_toolbox/{name}", callback)
+            for name, kind, callback in services
         ]
-        if toolbox.localizes or switches:
+        if toolbox.localizes or can_switch:
             kind = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
-            self._parts.append(node.create_subscription(kind, "/initialpose", self._on_initial_pose, 1))
+            self._endpoints.append(node.create_subscription(kind, "/initialpose", self._on_initial_pose, 1))
 
     def close(self) -> None:
         """Remove the services."""
-        for part in self._parts:
-            part.destroy()
+        for endpoint in self._endpoints:
+            endpoint.destroy()
 
     def _refuse(self, reason: str) -> None:
         self._logger.error(reason)
@@ -67,10 +68,10 @@ class ToolboxServices:
         return response
 
     def _on_pause(self, _request: Any, response: Any) -> Any:
-        paused = not self._toolbox.node.get_parameter("paused_new_measurements").value
-        self._toolbox.pause(paused)
-        doing = "pause taking new measurements." if paused else "actively taking new measurements."
-        self._logger.info(f"SlamToolbox: Toggled to {doing}")
+        is_paused = not self._toolbox.node.get_parameter("paused_new_measurements").value
+        self._toolbox.pause(is_paused)
+        state_text = "pause taking new measurements." if is_paused else "actively taking new measurements."
+        self._logger.info(f"SlamToolbox: Toggled to {state_text}")
         response.status = True
         return response
 
@@ -88,19 +89,19 @@ class ToolboxServices:
 
     def _on_deserialize(self, request: Any, response: Any) -> Any:
         toolbox = self._toolbox
-        localize = request.match_type == request.LOCALIZE_AT_POSE
+        requests_localization = request.match_type == request.LOCALIZE_AT_POSE
         if request.match_type == request.UNSET:
             self._logger.error("deserialize_map: match_type is not set; nothing was read")
-        elif localize != toolbox.localizes:
+        elif requests_localization != toolbox.localizes:
             mode = "localization" if toolbox.localizes else "non-localization"
             self._logger.error(f"deserialize_map: match_type {request.match_type} is not valid in {mode} mode")
         elif not request.filename:
             self._logger.warning("deserialize_map: no filename is given; nothing was read")
         else:
             pose = request.initial_pose
-            at_first = request.match_type == request.START_AT_FIRST_NODE
+            starts_at_first_node = request.match_type == request.START_AT_FIRST_NODE
             try:
-                toolbox.load(request.filename, None if at_first else np.array((pose.x, pose.y, pose.theta)))
+                toolbox.load(request.filename, None if starts_at_first_node else np.array((pose.x, pose.y, pose.theta)))
             except LinkwrightError as error:
                 self._report(error)
         return response
@@ -155,8 +156,8 @@ class ToolboxServices:
         if frame not in ("", expected):
             self._logger.error(f"initialpose: the pose is in frame '{frame}' and must be in '{expected}'")
             return
-        position, turned = message.pose.pose.position, message.pose.pose.orientation
-        yaw = rpy_from_quaternion(normalized(turned.x, turned.y, turned.z, turned.w))[2]
+        position, orientation = message.pose.pose.position, message.pose.pose.orientation
+        yaw = rpy_from_quaternion(normalized(orientation.x, orientation.y, orientation.z, orientation.w))[2]
         pose = np.array((position.x, position.y, yaw))
         if not np.isfinite(pose).all():
             self._logger.error("initialpose: the pose has values that are not finite, so it is ignored")

@@ -1,8 +1,8 @@
-"""The mapping and localization behind slam_toolbox's nodes.
+"""The mapping and localization of slam_toolbox's nodes.
 
 A `Toolbox` processes scans, and publishes the map, the pose and the transform of odometry. Long computations run in
-steps of some milliseconds, between which other callbacks run. A scan that arrives meanwhile is dropped, unless the node
-is the synchronous one.
+steps of some milliseconds, between which other callbacks run. A scan that arrives during a computation is dropped,
+except by the synchronous node.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from linkwright.navigation.slam.scan import PlanarScan, planar_scan
 from linkwright.navigation.slam.steps import Steps
 from linkwright.navigation.slam.storage import load_graph, path_of
 
-_LOOK_PERIOD = 0.05
-"""Seconds between looks for a transform that a scan waits for, where no transforms are published."""
-_LONG_QUEUE = 10
-_COMPLAINTS = 5.0
+_LOOKUP_PERIOD = 0.05
+"""The seconds between lookups of a transform that a scan waits for, if no transforms are published."""
+_MAX_QUIET_QUEUE = 10
+_WARNING_PERIOD = 5.0
 
 
 class Toolbox:
@@ -65,20 +65,20 @@ class Toolbox:
     """
 
     def __init__(self, node: Node, settings: Settings, *, keeps_all: bool, localizes: bool) -> None:
-        for part in ("ndimage", "sparse", "sparse.linalg", "spatial"):
-            load_scipy(part)  # Raise NAV101 now if SciPy is missing, not at the first scan.
+        for subpackage in ("ndimage", "sparse", "sparse.linalg", "spatial"):
+            load_scipy(subpackage)  # If SciPy is missing, NAV101 is raised here and not at the first scan.
         self.node, self.settings, self.localizes = node, settings, localizes
         self.mapper = self._new_mapper()
         self.queue: deque[tuple[PlanarScan, Floats]] = deque()
         self._keeps_all = keeps_all
-        self._pending: tuple[Any, int] | None = None
+        self._pending_scan: tuple[Any, int] | None = None
         self._work: Steps[Outcome | None] | None = None
-        self._taken: Floats | None = None
+        self._processed_odometry: Floats | None = None
         self._map_to_odom: Floats = np.zeros(3)
-        self._stamp_ns: int | None = None
-        self._seen = 0
+        self._latest_stamp_ns: int | None = None
+        self._scan_count = 0
         self._active: list[Any] = []
-        self._published = False
+        self._has_published = False
         if settings.map_file_name:
             self.load(settings.map_file_name, settings.start)
         self._buffer = BufferCore(
@@ -86,38 +86,42 @@ class Toolbox:
         )
         self._listener = TransformListener(self._buffer, node)
         message, name = get_message, settings.map_name
-        self._poses = node.create_publisher(message("geometry_msgs/msg/PoseWithCovarianceStamped"), "pose", 10)
-        self._maps = node.create_publisher(message("nav_msgs/msg/OccupancyGrid"), name, LATCHED_QOS)
-        self._sizes = node.create_publisher(message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", LATCHED_QOS)
+        self._pose_publisher = node.create_publisher(message("geometry_msgs/msg/PoseWithCovarianceStamped"), "pose", 10)
+        self._map_publisher = node.create_publisher(message("nav_msgs/msg/OccupancyGrid"), name, LATCHED_QOS)
+        self._metadata_publisher = node.create_publisher(
+            message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", LATCHED_QOS
+        )
         kind = message("visualization_msgs/msg/MarkerArray")
-        self._graphs = node.create_publisher(kind, "slam_toolbox/graph_visualization", 1)
+        self._graph_publisher = node.create_publisher(kind, "slam_toolbox/graph_visualization", 1)
         self._transforms = node.create_publisher(TFMessage, "/tf", TF_QOS)
-        self._next_step = node.create_guard_condition(self._step)
-        self._jumped = node.create_guard_condition(self._time_jumped)
+        self._step_guard = node.create_guard_condition(self._step)
+        self._jump_guard = node.create_guard_condition(self._on_time_jump)
 
     def start(self) -> None:
         """Subscribe to scans, and start publishing."""
         node, settings = self.node, self.settings
-        scans = get_message("sensor_msgs/msg/LaserScan")
+        scan_type = get_message("sensor_msgs/msg/LaserScan")
         self._active = [
-            node.create_subscription(scans, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS),
-            node.create_timer(settings.transform_period or _LOOK_PERIOD, self._tick),
+            node.create_subscription(scan_type, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS),
+            node.create_timer(settings.transform_period or _LOOKUP_PERIOD, self._on_timer),
             node.create_timer(settings.map_update_interval, self.publish_map),
         ]
-        backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        # Clocks are set in the thread that receives /clock, but the map may only be reset in the node's thread.
-        self._jumps = node.get_clock().create_jump_callback(backwards, post_callback=lambda _: self._jumped.trigger())
+        backward_jump = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
+        # Another thread receives /clock and sets the clock, but the map may only be reset in the node's thread.
+        self._jump_handle = node.get_clock().create_jump_callback(
+            backward_jump, post_callback=lambda _: self._jump_guard.trigger()
+        )
         if self.mapper.scans and self._work is None:
-            self._begin(self._drawn())
+            self._begin(self._redraw())
 
     def stop(self) -> None:
         """Stop mapping; the map is kept."""
         if self._active:
-            self._jumps.unregister()
-        for part in self._active:
-            part.destroy()
+            self._jump_handle.unregister()
+        for endpoint in self._active:
+            endpoint.destroy()
         self._active = []
-        self._pending = None
+        self._pending_scan = None
         self.queue.clear()
 
     def close(self) -> None:
@@ -125,9 +129,17 @@ class Toolbox:
         self.stop()
         self._drop_work()
         self._listener.unregister()
-        parts = (self._poses, self._maps, self._sizes, self._graphs, self._transforms, self._next_step, self._jumped)
-        for part in parts:
-            part.destroy()
+        endpoints = (
+            self._pose_publisher,
+            self._map_publisher,
+            self._metadata_publisher,
+            self._graph_publisher,
+            self._transforms,
+            self._step_guard,
+            self._jump_guard,
+        )
+        for endpoint in endpoints:
+            endpoint.destroy()
 
     def _new_mapper(self) -> Mapper:
         settings = self.settings
@@ -139,14 +151,14 @@ class Toolbox:
     def reset(self) -> None:
         """Start a new map, or restart localization in the same map."""
         self._drop_work()
-        self._pending = None
+        self._pending_scan = None
         self.queue.clear()
         if self.localizes:
             self.mapper.begin_session(self.settings.start)
         else:
             self.mapper = self._new_mapper()
         self._map_to_odom = np.zeros(3)
-        self._published = False
+        self._has_published = False
 
     def load(self, name: str, start: Floats | None) -> None:
         """Load a saved graph, and start at a pose in it.
@@ -163,9 +175,9 @@ class Toolbox:
         mapper.begin_session(start)
         self._drop_work()
         self.queue.clear()
-        self.mapper, self._published = mapper, False
+        self.mapper, self._has_published = mapper, False
         if self._active:
-            self._begin(self._drawn())
+            self._begin(self._redraw())
 
     def place(self, pose: Floats) -> None:
         """Start a session at a pose in the map, of shape (3,); the next scan is matched around it."""
@@ -183,8 +195,8 @@ class Toolbox:
         if grid is None:
             return None
         stamp = (
-            Time.from_nanoseconds(self._stamp_ns)
-            if self._stamp_ns is not None
+            Time.from_nanoseconds(self._latest_stamp_ns)
+            if self._latest_stamp_ns is not None
             else self.node.get_clock().now().to_msg()
         )
         return occupancy_message(grid, self.settings.map_frame, stamp)
@@ -192,51 +204,51 @@ class Toolbox:
     # --- scans -------------------------------------------------------------------------------------------------------
 
     def _on_scan(self, message: Any) -> None:
-        self._seen += 1
-        self._stamp_ns = message.header.stamp.nanoseconds
-        if self._seen % self.settings.throttle_scans == 0 and self._pending is None:
-            self._pending = (message, self.node.get_clock().now_ns())
+        self._scan_count += 1
+        self._latest_stamp_ns = message.header.stamp.nanoseconds
+        if self._scan_count % self.settings.throttle_scans == 0 and self._pending_scan is None:
+            self._pending_scan = (message, self.node.get_clock().now_ns())
             self._accept_scan()
 
     def _accept_scan(self) -> None:
         """Queue the pending scan if its transform is available, or drop the scan after the timeout."""
-        if self._pending is None:
+        if self._pending_scan is None:
             return
-        message, since_ns = self._pending
+        message, received_ns = self._pending_scan
         settings, stamp_ns = self.settings, message.header.stamp.nanoseconds
         try:
             base, _ = self._buffer.lookup(settings.odom_frame, settings.base_frame, stamp_ns)
             laser, _ = self._buffer.lookup(settings.base_frame, message.header.frame_id, 0)
         except TransformException as error:
-            if self.node.get_clock().now_ns() - since_ns >= settings.transform_timeout_ns:
-                self._pending = None
+            if self.node.get_clock().now_ns() - received_ns >= settings.transform_timeout_ns:
+                self._pending_scan = None
                 self.node.get_logger().warning(
-                    f"Failed to compute odom pose, scans are dropped: {error}", throttle_duration_sec=_COMPLAINTS
+                    f"Failed to compute odom pose, scans are dropped: {error}", throttle_duration_sec=_WARNING_PERIOD
                 )
             return
-        self._pending = None
-        self._queue_scan(message, _planar(base), laser)
+        self._pending_scan = None
+        self._queue_scan(message, _planar_pose(base), laser)
 
     def _queue_scan(self, message: Any, odometry: Floats, laser: Transform) -> None:
-        if self._taken is not None and self.node.get_parameter("paused_new_measurements").value:
+        if self._processed_odometry is not None and self.node.get_parameter("paused_new_measurements").value:
             return
-        busy = self._work is not None
-        if busy and not self._keeps_all:
+        is_busy = self._work is not None
+        if is_busy and not self._keeps_all:
             return
-        since = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
-        if not self.mapper.should_process(odometry, message.header.stamp.nanoseconds, since):
+        last_queued = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
+        if not self.mapper.should_process(odometry, message.header.stamp.nanoseconds, last_queued):
             return
-        self.queue.append((self._scan_of(message, laser), odometry))
-        if len(self.queue) > _LONG_QUEUE:
+        self.queue.append((self._planar_scan(message, laser), odometry))
+        if len(self.queue) > _MAX_QUIET_QUEUE:
             self.node.get_logger().warning(
                 f"Queue size has grown to: {len(self.queue)}. Recommend stopping until message is gone if online "
                 "mapping.",
-                throttle_duration_sec=_COMPLAINTS,
+                throttle_duration_sec=_WARNING_PERIOD,
             )
-        if not busy:
-            self._begin_next()
+        if not is_busy:
+            self._process_next_scan()
 
-    def _scan_of(self, message: Any, laser: Transform) -> PlanarScan:
+    def _planar_scan(self, message: Any, laser: Transform) -> PlanarScan:
         ranges = np.array(message.ranges, dtype=np.float64)
         angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
         mounting = np.array(rotation_matrix(laser[3:])), np.array(laser[:3])
@@ -246,22 +258,22 @@ class Toolbox:
 
     # --- processing in steps -----------------------------------------------------------------------------------------
 
-    def _begin_next(self) -> None:
+    def _process_next_scan(self) -> None:
         if not self.queue:
             return
         scan, odometry = self.queue.popleft()
         if self.localizes and not self.mapper.scans:
             self.node.get_logger().error(
                 "There is no map to localise in: give map_file_name, or call slam_toolbox/deserialize_map",
-                throttle_duration_sec=_COMPLAINTS,
+                throttle_duration_sec=_WARNING_PERIOD,
             )
             return
-        self._taken = odometry
+        self._processed_odometry = odometry
         self._begin(self.mapper.localize(scan, odometry) if self.localizes else self.mapper.process(scan, odometry))
 
     def _begin(self, work: Steps[Any]) -> None:
         self._work = work
-        self._next_step.trigger()
+        self._step_guard.trigger()
 
     def _drop_work(self) -> None:
         if self._work is not None:
@@ -276,39 +288,39 @@ class Toolbox:
         except StopIteration as done:
             self._work = None
             if done.value is not None:
-                self._done(done.value)
-            elif not self._published:
+                self._publish_outcome(done.value)
+            elif not self._has_published:
                 self.publish_map()
             if self._work is None:
-                self._begin_next()
+                self._process_next_scan()
             return
-        self._next_step.trigger()
+        self._step_guard.trigger()
 
-    def _drawn(self) -> Steps[None]:
+    def _redraw(self) -> Steps[None]:
         yield from self.mapper.redraw()
 
-    def _done(self, outcome: Outcome) -> None:
-        assert self._taken is not None, "a scan was taken"
-        self._map_to_odom = compose(outcome.pose, inverse(self._taken))
+    def _publish_outcome(self, outcome: Outcome) -> None:
+        assert self._processed_odometry is not None, "a scan was taken"
+        self._map_to_odom = compose(outcome.pose, inverse(self._processed_odometry))
         if outcome.loops:
             self.node.get_logger().info(
-                f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_COMPLAINTS
+                f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_WARNING_PERIOD
             )
         message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
         message.header.frame_id = self.settings.map_frame
         message.header.stamp = Time.from_nanoseconds(self.mapper.latest_ns)
         position, orientation = message.pose.pose.position, message.pose.pose.orientation
         position.x, position.y = float(outcome.pose[0]), float(outcome.pose[1])
-        turn = quaternion_from_rpy((0.0, 0.0, float(outcome.pose[2])))
-        orientation.x, orientation.y, orientation.z, orientation.w = turn
+        quaternion = quaternion_from_rpy((0.0, 0.0, float(outcome.pose[2])))
+        orientation.x, orientation.y, orientation.z, orientation.w = quaternion
         cos, sin = np.cos(outcome.pose[2]), np.sin(outcome.pose[2])
         axes = np.array(((cos, -sin), (sin, cos)))
         covariance = np.zeros((6, 6))
         covariance[:2, :2] = axes @ outcome.covariance[:2, :2] @ axes.T * self.settings.position_covariance_scale
         covariance[5, 5] = outcome.covariance[2, 2] * self.settings.yaw_covariance_scale
         message.pose.covariance = covariance.reshape(36)
-        self._poses.publish(message)
-        if not self._published:
+        self._pose_publisher.publish(message)
+        if not self._has_published:
             self.publish_map()
 
     # --- periodic publishing ------------------------------------------------------------------------------------------
@@ -318,27 +330,29 @@ class Toolbox:
         message = self.map_message()
         if message is None:
             return
-        self._published = True
-        self._maps.publish(message)
-        self._sizes.publish(message.info)
-        if self._graphs.get_subscription_count():
-            self._graphs.publish(graph_markers(self.mapper.graph, self.settings.map_frame, message.header.stamp))
+        self._has_published = True
+        self._map_publisher.publish(message)
+        self._metadata_publisher.publish(message.info)
+        if self._graph_publisher.get_subscription_count():
+            self._graph_publisher.publish(
+                graph_markers(self.mapper.graph, self.settings.map_frame, message.header.stamp)
+            )
 
-    def _tick(self) -> None:
+    def _on_timer(self) -> None:
         self._accept_scan()
-        if self._stamp_ns is None or not self.settings.transform_period:
+        if self._latest_stamp_ns is None or not self.settings.transform_period:
             return
         x, y, yaw = (float(value) for value in self._map_to_odom)
         pose: Transform = (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw)))
-        settings, stamp_ns = self.settings, self._stamp_ns + self.settings.transform_timeout_ns
+        settings, stamp_ns = self.settings, self._latest_stamp_ns + self.settings.transform_timeout_ns
         batch = TransformBatch((settings.map_frame,), (settings.odom_frame,), stamp_ns, np.array([pose]))
         self._transforms.publish(TFMessage(batch=batch))
 
-    def _time_jumped(self) -> None:
-        if self._stamp_ns is not None:
+    def _on_time_jump(self) -> None:
+        if self._latest_stamp_ns is not None:
             self.node.get_logger().warning("Time has jumped back: the map starts from scratch.")
         self._buffer.clear()
-        self._stamp_ns, self._taken = None, None
+        self._latest_stamp_ns, self._processed_odometry = None, None
         self.reset()
 
     def pause(self, paused: bool) -> None:
@@ -346,6 +360,6 @@ class Toolbox:
         self.node.set_parameters([Parameter("paused_new_measurements", value=paused)])
 
 
-def _planar(pose: Transform) -> Floats:
+def _planar_pose(pose: Transform) -> Floats:
     """Convert a pose in space to x, y and yaw."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

@@ -12,7 +12,7 @@ from linkwright.diagnostics import Span
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Selection, Text, resolve, split_mark
 
-_LAUNCH = "launch:"
+_LAUNCH_PREFIX = "launch:"
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class XacroCall:
         path: the path of the description.
         arguments: name -> value of the xacro arguments.
         span: the location of the call.
-        is_command: whether the call is a command line, from whose arguments quotes are removed.
+        is_command: whether the call is a command line; if so, quotes are removed from its arguments.
     """
 
     path: Text
@@ -67,31 +67,31 @@ class CallingFile:
 
         The package is None if the path does not begin with the share folder of a package.
         """
-        found: list[tuple[str | None, str, Inclusion]] = []
+        inclusions: list[tuple[str | None, str, Inclusion]] = []
         for inclusion in self.inclusions:
-            last = inclusion.path[-1] if inclusion.path and isinstance(inclusion.path[-1], str) else ""
-            package, rest = split_mark(resolve(inclusion.path, self.choices, Selection()) or last)
-            found.append((package, rest.rpartition("/")[2], inclusion))
-        return found
+            last_piece = inclusion.path[-1] if inclusion.path and isinstance(inclusion.path[-1], str) else ""
+            package, rest = split_mark(resolve(inclusion.path, self.choices, Selection()) or last_piece)
+            inclusions.append((package, rest.rpartition("/")[2], inclusion))
+        return inclusions
 
-    def declare(self, name: str, default: Text | None, others: tuple[Text, ...] = ()) -> None:
+    def declare(self, name: str, default: Text | None, other_values: tuple[Text, ...] = ()) -> None:
         """Record a launch argument with its default and its other possible values."""
-        values = dict.fromkeys((*(() if default is None else (default,)), *others))
-        known = self.choices.get(_LAUNCH + name)
-        if values and (known is None or len(known.rows) < len(values)):
-            self.choices[_LAUNCH + name] = Choice(tuple((value,) for value in values))
+        values = dict.fromkeys((*(() if default is None else (default,)), *other_values))
+        existing = self.choices.get(_LAUNCH_PREFIX + name)
+        if values and (existing is None or len(existing.rows) < len(values)):
+            self.choices[_LAUNCH_PREFIX + name] = Choice(tuple((value,) for value in values))
 
 
 def launch_argument(name: str) -> Open:
     """Return the placeholder for the value of a launch argument."""
-    return Open(_LAUNCH + name)
+    return Open(_LAUNCH_PREFIX + name)
 
 
 def launch_choice(name: str) -> str:
     """Return the name of the choice for a launch argument."""
-    return _LAUNCH + name
+    return _LAUNCH_PREFIX + name
 
 
 def launch_names(choices: Mapping[str, Choice]) -> dict[str, str]:
     """Return the choices that are launch arguments: name of the choice -> name of the argument."""
-    return {name: name.removeprefix(_LAUNCH) for name in choices if name.startswith(_LAUNCH)}
+    return {name: name.removeprefix(_LAUNCH_PREFIX) for name in choices if name.startswith(_LAUNCH_PREFIX)}

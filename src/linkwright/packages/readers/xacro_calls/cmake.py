@@ -15,7 +15,7 @@ from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_com
 from linkwright.packages.readers.xacro_calls.texts import Text, joined, literal
 
 _MACROS = frozenset({"xacro_add_xacro_file", "xacro_add_files"})
-_RUNNING = frozenset({"add_custom_command", "add_custom_target", "execute_process"})
+_RUN_COMMANDS = frozenset({"add_custom_command", "add_custom_target", "execute_process"})
 _KEYWORDS = frozenset({"INORDER", "FORMAT", "REMAP", "INSTALL", "DESTINATION", "OUTPUT", "TARGET", "DEPENDS"})
 
 
@@ -28,7 +28,7 @@ def read_cmake_calls(source: SourceText, package: Path) -> CallingFile:
     """
     file = CallingFile(source.name)
     for command in CMakeProgram(package).run(source):
-        if command.name in _MACROS or command.name in _RUNNING:
+        if command.name in _MACROS or command.name in _RUN_COMMANDS:
             for path, arguments in _calls(command, package):
                 first = command.arguments[0]
                 file.calls.append(XacroCall(path, arguments, first.source.span(first.start, first.end)))
@@ -42,24 +42,24 @@ def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Te
         keyword = ""
         for word in command.words:
             keyword = word if word in _KEYWORDS else keyword
-            name, sign, value = word.partition(":=")
-            if sign:
+            name, separator, value = word.partition(":=")
+            if separator:
                 arguments[name] = literal(value)
             elif not keyword:
                 files.append(word)
         files = files[:1] if command.name == "xacro_add_xacro_file" else files
         for file in files:
-            yield literal(_path(file, command, package)), arguments
+            yield literal(_description_path(file, command, package)), arguments
         return
     words = command.words
     if "COMMAND" in words:
         line = words[words.index("COMMAND") + 1 :]
-        found = parse_xacro_command(joined(literal(f"{_path(word, command, package)} ") for word in line))
-        if found is not None:
-            yield found
+        call = parse_xacro_command(joined(literal(f"{_description_path(word, command, package)} ") for word in line))
+        if call is not None:
+            yield call
 
 
-def _path(word: str, command: Command, package: Path) -> str:
+def _description_path(word: str, command: Command, package: Path) -> str:
     """Return the path of the robot description that an argument names.
 
     Other arguments are returned unchanged.

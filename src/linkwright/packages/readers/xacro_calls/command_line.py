@@ -9,33 +9,33 @@ from linkwright.packages.readers.xacro_calls.texts import Open, Share, Text, joi
 
 _PROGRAM = lazy_pattern(r"(^|/)xacro(\.py)?$")
 _NAME = lazy_pattern(r"[A-Za-z_][\w.-]*:=")
-_END = lazy_pattern(r"^(\d?>.*|[|;]|&&)$")
-_WITH_VALUE = frozenset({"-o", "--output"})
+_COMMAND_END = lazy_pattern(r"^(\d?>.*|[|;]|&&)$")
+_OPTIONS_WITH_VALUE = frozenset({"-o", "--output"})
 
 
 def parse_xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
     """Return the file and the arguments of a command line that calls xacro.
 
-    The result is None for other command lines. Unknown words become an argument without a name.
+    The result is None for other command lines. Words with unknown contents become an argument without a name.
     """
     words = list(_words(line))
-    start = next((at for at, word in enumerate(words) if _is_program(word)), None)
+    start = next((index for index, word in enumerate(words) if _is_program(word)), None)
     if start is None:
         return None
     path: Text | None = None
     arguments: dict[str, Text] = {}
-    rest = iter(words[start + 1 :])
-    for word in rest:
+    word_iterator = iter(words[start + 1 :])
+    for word in word_iterator:
         first = word[0] if word and isinstance(word[0], str) else ""
-        if _END.match(first):
+        if _COMMAND_END.match(first):
             break
-        if first in _WITH_VALUE:
-            next(rest, None)
+        if first in _OPTIONS_WITH_VALUE:
+            next(word_iterator, None)
         elif _NAME.match(first):
             name, _, value = first.partition(":=")
-            arguments[name] = _unquoted((*literal(value), *word[1:]))
+            arguments[name] = _unquote((*literal(value), *word[1:]))
         elif word and not first.startswith("-") and path is None and not _is_program(word):
-            path = _unquoted(word)
+            path = _unquote(word)
         elif word and not isinstance(word[0], str):
             arguments[""] = (*arguments.get("", ()), *word, " ")
     return None if path is None else (path, arguments)
@@ -58,35 +58,35 @@ def _words(line: Text) -> Iterator[Text]:
             word.append((piece,))
             continue
         start = 0
-        for at, letter in enumerate(piece):
+        for index, letter in enumerate(piece):
             if quote:
                 quote = "" if letter == quote else quote
             elif letter in "\"'":
                 quote = letter
             elif letter.isspace():
-                word.append(literal(piece[start:at]))
-                start = at + 1
+                word.append(literal(piece[start:index]))
+                start = index + 1
                 if any(word):
-                    yield _joined(word)
+                    yield _join_pieces(word)
                 word = []
         word.append(literal(piece[start:]))
     if any(word):
-        yield _joined(word)
+        yield _join_pieces(word)
 
 
-def _joined(parts: Iterable[Text]) -> Text:
+def _join_pieces(parts: Iterable[Text]) -> Text:
     """Concatenate texts, and merge adjacent strings."""
-    found: list[str | Share | Open] = []
+    pieces: list[str | Share | Open] = []
     for piece in joined(parts):
-        last = found[-1] if found else None
-        if isinstance(piece, str) and isinstance(last, str):
-            found[-1] = last + piece
+        previous = pieces[-1] if pieces else None
+        if isinstance(piece, str) and isinstance(previous, str):
+            pieces[-1] = previous + piece
         else:
-            found.append(piece)
-    return tuple(found)
+            pieces.append(piece)
+    return tuple(pieces)
 
 
-def _unquoted(word: Text) -> Text:
+def _unquote(word: Text) -> Text:
     """Return a word without the quotes around it, which a shell would remove."""
     if not word:
         return word

@@ -14,9 +14,9 @@ from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_com
 from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal
 from linkwright.xmltree import Element, parse
 
-_WORD = lazy_pattern(r"\s*(\S+)\s*(.*)", re.DOTALL)
-_ARGUMENTS = frozenset({"var", "arg"})
-_SHARES = frozenset({"find-pkg-share", "find"})
+_TAG_AND_REST = lazy_pattern(r"\s*(\S+)\s*(.*)", re.DOTALL)
+_ARGUMENT_TAGS = frozenset({"var", "arg"})
+_SHARE_TAGS = frozenset({"find-pkg-share", "find"})
 
 
 def read_xml(source: SourceText) -> CallingFile:
@@ -31,12 +31,14 @@ def read_xml(source: SourceText) -> CallingFile:
         return file
     if root.tag != "launch":
         return file
-    inside = {id(child) for element in root.walk() if element.tag == "include" for child in element.elements()}
+    include_children = {
+        id(child) for element in root.walk() if element.tag == "include" for child in element.elements()
+    }
     for element in root.walk():
         values = {key: parse_markup_text(value, source.name) for key, value in element.attributes.items()}
-        if element.tag in ("arg", "let") and id(element) not in inside and "name" in element.attributes:
+        if element.tag in ("arg", "let") and id(element) not in include_children and "name" in element.attributes:
             default = values.get("default", values.get("value"))
-            file.declare(element.attributes["name"], default, tuple(_offered(element)))
+            file.declare(element.attributes["name"], default, tuple(_choice_values(element)))
         elif element.tag == "include" and "file" in values:
             arguments = {
                 child.attributes.get("name", ""): parse_markup_text(child.attributes["value"], source.name)
@@ -46,11 +48,11 @@ def read_xml(source: SourceText) -> CallingFile:
             file.inclusions.append(Inclusion(values["file"], arguments))
         for key, value in element.attributes.items():
             lines = [values[key]] if key == "command" else list(_commands(value, source.name))
-            _note(file, lines, element.attribute_span(key))
+            _record_calls(file, lines, element.attribute_span(key))
     return file
 
 
-def _offered(element: Element) -> Iterator[Text]:
+def _choice_values(element: Element) -> Iterator[Text]:
     for child in element.elements():
         if child.tag == "choice" and "value" in child.attributes:
             yield literal(child.attributes["value"])
@@ -83,20 +85,21 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
         attributes = value if isinstance(value, dict) else {}
         if tag in ("arg", "let") and "name" in attributes:
             default = attributes.get("default", attributes.get("value"))
-            offered = tuple(literal(str(mapping["value"])) for mapping in _mappings(attributes.get("choice"), "value"))
-            written = None if default is None else parse_markup_text(str(default), source.name)
-            file.declare(str(attributes["name"]), written, offered)
+            choices = tuple(literal(str(mapping["value"])) for mapping in _mappings(attributes.get("choice"), "value"))
+            default_text = None if default is None else parse_markup_text(str(default), source.name)
+            file.declare(str(attributes["name"]), default_text, choices)
             continue
         if tag == "include" and "file" in attributes:
-            given = _mappings(attributes.get("arg", attributes.get("let")), "name")
+            argument_entries = _mappings(attributes.get("arg", attributes.get("let")), "name")
             arguments = {
-                str(item["name"]): parse_markup_text(str(item.get("value", "")), source.name) for item in given
+                str(item["name"]): parse_markup_text(str(item.get("value", "")), source.name)
+                for item in argument_entries
             }
             file.inclusions.append(Inclusion(parse_markup_text(str(attributes["file"]), source.name), arguments))
         for text in _strings(value):
-            _note(file, list(_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
-        for inner in value if isinstance(value, list) else ():
-            _read_entity(inner, source, file)
+            _record_calls(file, list(_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
+        for nested_entity in value if isinstance(value, list) else ():
+            _read_entity(nested_entity, source, file)
 
 
 def _mappings(value: Any, key: str) -> list[dict[Any, Any]]:
@@ -111,11 +114,11 @@ def _strings(value: Any) -> Iterator[str]:
         yield from _strings(item)
 
 
-def _note(file: CallingFile, lines: list[Text], span: Span | None) -> None:
+def _record_calls(file: CallingFile, lines: list[Text], span: Span | None) -> None:
     for line in lines:
-        found = parse_xacro_command(line)
-        if found is not None and span is not None:
-            file.calls.append(XacroCall(*found, span, is_command=True))
+        call = parse_xacro_command(line)
+        if call is not None and span is not None:
+            file.calls.append(XacroCall(*call, span, is_command=True))
 
 
 def parse_markup_text(text: str, file: str) -> Text:
@@ -125,37 +128,37 @@ def parse_markup_text(text: str, file: str) -> Text:
         text: the text.
         file: the path of the launch file, for ``$(dirname)``.
     """
-    found: list[str | Share | Open] = []
-    at = 0
+    pieces: list[str | Share | Open] = []
+    position = 0
     for start, end in _substitutions(text):
-        found += literal(text[at:start])
-        found += _substituted(text[start + 2 : end - 1], file)
-        at = end
-    return (*found, *literal(text[at:]))
+        pieces += literal(text[position:start])
+        pieces += _substitution_text(text[start + 2 : end - 1], file)
+        position = end
+    return (*pieces, *literal(text[position:]))
 
 
 def _substitutions(text: str) -> Iterator[tuple[int, int]]:
     """Yield the start and end offsets of the outermost ``$(...)`` in a text."""
-    at = text.find("$(")
-    while at >= 0:
-        depth, end = 1, at + 2
+    start = text.find("$(")
+    while start >= 0:
+        depth, end = 1, start + 2
         while end < len(text) and depth:
             depth += (text[end] == "(") - (text[end] == ")")
             end += 1
         if depth:
             return
-        yield at, end
-        at = text.find("$(", end)
+        yield start, end
+        start = text.find("$(", end)
 
 
-def _substituted(inside: str, file: str) -> Text:
-    match = _WORD.match(inside)
+def _substitution_text(content: str, file: str) -> Text:
+    match = _TAG_AND_REST.match(content)
     if match is None:
         return (UNKNOWN,)
     tag, rest = match[1], match[2].strip().strip("'\"")
-    if tag in _ARGUMENTS:
+    if tag in _ARGUMENT_TAGS:
         return (launch_argument(rest),)
-    if tag in _SHARES:
+    if tag in _SHARE_TAGS:
         return (Share(parse_markup_text(rest, file)),)
     if tag == "dirname":
         return literal(os.path.dirname(file))  # noqa: PTH120 - a part of a path as text
@@ -170,15 +173,15 @@ def _substituted(inside: str, file: str) -> Text:
 def _commands(text: str, file: str) -> Iterator[Text]:
     """Yield the command lines in the ``$(command ...)`` of a text."""
     for start, end in _substitutions(text):
-        match = _WORD.match(text[start + 2 : end - 1])
+        match = _TAG_AND_REST.match(text[start + 2 : end - 1])
         if match is not None and match[1] == "command":
-            yield _line(match[2].strip(), file)
+            yield _command_line(match[2].strip(), file)
 
 
-def _line(written: str, file: str) -> Text:
+def _command_line(argument: str, file: str) -> Text:
     """Return the first argument of ``$(command ...)``, without the quotes around several words."""
-    quote = written[:1]
+    quote = argument[:1]
     if quote in ("'", '"'):
-        end = written.rfind(quote)
-        return parse_markup_text(written[1 : end if end > 0 else None], file)
-    return parse_markup_text(written, file)
+        end = argument.rfind(quote)
+        return parse_markup_text(argument[1 : end if end > 0 else None], file)
+    return parse_markup_text(argument, file)

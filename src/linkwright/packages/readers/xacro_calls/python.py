@@ -13,9 +13,9 @@ from linkwright.packages.readers.xacro_calls.python_scopes import Function, Scop
 from linkwright.packages.readers.xacro_calls.python_texts import UNKNOWN_ENTRIES, Entries, Items, PythonTexts, Value
 from linkwright.packages.readers.xacro_calls.texts import Selection, Text, joined, resolve
 
-_ENDINGS = (".xacro", ".urdf")
-_WITHOUT_ARGUMENTS = frozenset({"process_file", "process_doc", "process", "load_xacro", "Xacro"})
-_BUILDER = "MoveItConfigsBuilder"
+_DESCRIPTION_EXTENSIONS = (".xacro", ".urdf")
+_XACRO_FUNCTIONS = frozenset({"process_file", "process_doc", "process", "load_xacro", "Xacro"})
+_BUILDER_NAME = "MoveItConfigsBuilder"
 
 
 def read_python(source: SourceText) -> CallingFile:
@@ -53,7 +53,7 @@ class _Reader:
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
                 self._handled.update(
                     _assigned_expressions(node.args[0], scope)
-                )  # its items may be parts of command-line arguments
+                )  # its items may be fragments of command-line arguments
         for node, scope in self._nodes:
             if node in self._handled:
                 self._handled.update(ast.iter_child_nodes(node))
@@ -67,86 +67,94 @@ class _Reader:
     def _read_declaration(self, node: ast.Call, scope: Scope) -> None:
         name = self._texts.text(node.args[0] if node.args else argument_of(node, "name"), scope)
         default, choices = argument_of(node, "default_value"), argument_of(node, "choices")
-        others = self._texts.value(choices, scope) if choices is not None else Items(())
+        choice_values = self._texts.value(choices, scope) if choices is not None else Items(())
         if len(name) == 1 and isinstance(name[0], str):
             values = (
-                tuple(value for value in others.values if isinstance(value, tuple)) if isinstance(others, Items) else ()
+                tuple(value for value in choice_values.values if isinstance(value, tuple))
+                if isinstance(choice_values, Items)
+                else ()
             )
             self._file.declare(name[0], None if default is None else self._texts.text(default, scope), values)
 
     def _call(self, node: ast.Call, scope: Scope) -> None:
         name = called_name(node).rpartition(".")[2]
         if name == "Command":
-            written = node.args[0] if node.args else argument_of(node, "command")
-            self._note(parse_xacro_command(self._texts.text(written, scope)), node, is_command=True)
+            command = node.args[0] if node.args else argument_of(node, "command")
+            self._record_call(parse_xacro_command(self._texts.text(command, scope)), node, is_command=True)
             self._handled.update(ast.iter_child_nodes(node))
         elif name == "IncludeLaunchDescription":
             self._read_inclusion(node, scope)
         elif name == "robot_description" and isinstance(node.func, ast.Attribute):
             self._read_builder_call(node, scope)
         else:
-            self._expansion(node, name, scope)
+            self._read_expansion(node, name, scope)
 
     def _command(self, node: ast.JoinedStr | ast.BinOp | ast.Constant | ast.List, scope: Scope) -> None:
         """Record the call in a text, or in a list of arguments, if it is a command line of xacro."""
         value = self._texts.value(node, scope)
         if isinstance(value, Items):
-            words = [item for item in value.values if isinstance(item, tuple)]
-            line = joined((*word, " ") for word in words) if len(words) == len(value.values) else ()
+            tokens = [item for item in value.values if isinstance(item, tuple)]
+            line = joined((*token, " ") for token in tokens) if len(tokens) == len(value.values) else ()
         else:
             line = value if isinstance(value, tuple) else ()
         if any(isinstance(piece, str) and "xacro" in piece for piece in line):
-            self._note(parse_xacro_command(line), node, is_command=True)
+            self._record_call(parse_xacro_command(line), node, is_command=True)
         if not isinstance(node, ast.List):
             self._handled.update(ast.iter_child_nodes(node))
 
-    def _expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
+    def _read_expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
         """Record a call of any function that receives the path of a description and a mapping."""
         paths: list[Text] = []
         mapping: Mapping[str, Value] | None = None
-        for written in (*node.args, *(keyword.value for keyword in node.keywords)):
-            value = self._texts.value(written, scope)
+        for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
+            value = self._texts.value(argument, scope)
             if isinstance(value, tuple) and self._is_description(value):
                 paths.append(value)
             elif isinstance(value, Entries) and mapping is None:
                 mapping = value.values
-        if mapping is None and name in _WITHOUT_ARGUMENTS:
-            is_given = len(node.args) > 1 or argument_of(node, "mappings") is not None
-            mapping = UNKNOWN_ENTRIES if is_given else {}
+        if mapping is None and name in _XACRO_FUNCTIONS:
+            has_mappings = len(node.args) > 1 or argument_of(node, "mappings") is not None
+            mapping = UNKNOWN_ENTRIES if has_mappings else {}
         if paths and mapping is not None:
-            is_command = name == "Xacro" or name not in _WITHOUT_ARGUMENTS  # a helper may build a command line
-            self._note((paths[0], dict(_texts_of(mapping))), node, is_command=is_command)
+            is_command = name == "Xacro" or name not in _XACRO_FUNCTIONS  # a helper may build a command line
+            self._record_call((paths[0], dict(_entry_texts(mapping))), node, is_command=is_command)
 
     def _read_builder_call(self, node: ast.Call, scope: Scope) -> None:
         """Record a call ``MoveItConfigsBuilder(...).robot_description(...)``."""
-        builder = next((inner for inner in ast.walk(node.func) if _is_builder(inner)), None)
+        builder = next((descendant for descendant in ast.walk(node.func) if _is_builder(descendant)), None)
         if not isinstance(builder, ast.Call):
             return
         robot = self._texts.text(builder.args[0] if builder.args else argument_of(builder, "robot_name"), scope)
         package = argument_of(builder, "package_name")
-        written = argument_of(node, "file_path") or (node.args[0] if node.args else None)
+        file_path = argument_of(node, "file_path") or (node.args[0] if node.args else None)
         file = (
-            self._texts.text(written, scope) if written is not None else joined((("config/",), robot, (".urdf.xacro",)))
+            self._texts.text(file_path, scope)
+            if file_path is not None
+            else joined((("config/",), robot, (".urdf.xacro",)))
         )
         folder = self._texts.text(package, scope) if package is not None else (*robot, "_moveit_config")
         mappings = self._texts.value(
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
-        arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
-        self._note((_below_share(folder, file), arguments), node, is_command=True)  # arguments as from substitutions
+        arguments = dict(_entry_texts(mappings.values)) if isinstance(mappings, Entries) else {}
+        self._record_call(
+            (_share_path(folder, file), arguments), node, is_command=True
+        )  # arguments as from substitutions
 
     def _read_inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")
         if isinstance(source, ast.Call) and called_name(source).endswith("LaunchDescriptionSource"):
             source = source.args[0] if source.args else argument_of(source, "launch_file_path")
-        given = self._texts.value(argument_of(node, "launch_arguments"), scope)
+        launch_arguments = self._texts.value(argument_of(node, "launch_arguments"), scope)
         arguments: dict[str, Text] = {}
-        if isinstance(given, Entries):
-            arguments = dict(_texts_of(given.values))
-        elif isinstance(given, Items):
-            pairs = [value.values for value in given.values if isinstance(value, Items) and len(value.values) == 2]
+        if isinstance(launch_arguments, Entries):
+            arguments = dict(_entry_texts(launch_arguments.values))
+        elif isinstance(launch_arguments, Items):
+            pairs = [
+                value.values for value in launch_arguments.values if isinstance(value, Items) and len(value.values) == 2
+            ]
             arguments = dict(
-                _texts_of(
+                _entry_texts(
                     {resolve(key, {}, Selection()) or "": value for key, value in pairs if isinstance(key, tuple)}
                 )
             )
@@ -156,24 +164,26 @@ class _Reader:
         text = resolve(path, self._file.choices, Selection())
         if text is None:
             text = path[-1] if path and isinstance(path[-1], str) else ""
-        return text.endswith(_ENDINGS)
+        return text.endswith(_DESCRIPTION_EXTENSIONS)
 
-    def _note(self, call: tuple[Text, dict[str, Text]] | None, node: ast.expr, *, is_command: bool = False) -> None:
+    def _record_call(
+        self, call: tuple[Text, dict[str, Text]] | None, node: ast.expr, *, is_command: bool = False
+    ) -> None:
         if call is not None:
             self._file.calls.append(XacroCall(*call, self._python.span(node), is_command))
 
 
 def _assigned_expressions(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
-    """Yield the expressions that are assigned to a name."""
-    found = scope.find(node.id) if isinstance(node, ast.Name) else None
-    yield from (binding.value for binding in (found[1] if found else ()) if binding.value is not None)
+    """Yield the expressions that are assigned to a name; none for any other node."""
+    lookup = scope.find(node.id) if isinstance(node, ast.Name) else None
+    yield from (binding.value for binding in (lookup[1] if lookup else ()) if binding.value is not None)
 
 
 def _is_builder(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] == _BUILDER
+    return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] == _BUILDER_NAME
 
 
-def _texts_of(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
+def _entry_texts(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
     for name, value in entries.items():
         yield (
             name,
@@ -183,7 +193,7 @@ def _texts_of(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
         )
 
 
-def _below_share(package: Text, file: Text) -> Text:
+def _share_path(package: Text, file: Text) -> Text:
     from linkwright.packages.readers.xacro_calls.texts import Share, joined_path
 
     return joined_path([(Share(package),), file])

@@ -32,13 +32,13 @@ class Scope:
     """The names of a function, or of the module.
 
     Attributes:
-        around: the enclosing scope; None for the module.
+        enclosing: the enclosing scope; None for the module.
         function: the function; None for the module.
         names: name -> the bindings of the name.
         entries: name -> the keys and values in assignments ``name[key] = value``.
     """
 
-    around: Scope | None = None
+    enclosing: Scope | None = None
     function: Function | None = None
     names: dict[str, list[Binding]] = field(default_factory=dict)
     entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
@@ -49,7 +49,7 @@ class Scope:
         while scope is not None:
             if name in scope.names:
                 return scope, scope.names[name]
-            scope = scope.around
+            scope = scope.enclosing
         return None
 
 
@@ -58,23 +58,23 @@ def walk(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
 
     Outer nodes come first.
     """
-    found: list[tuple[ast.AST, Scope]] = []
-    waiting: list[tuple[ast.AST, Scope]] = [(tree, Scope())]
-    while waiting:
-        node, scope = waiting.pop()
-        found.append((node, scope))
-        inner = scope
+    nodes: list[tuple[ast.AST, Scope]] = []
+    pending: list[tuple[ast.AST, Scope]] = [(tree, Scope())]
+    while pending:
+        node, scope = pending.pop()
+        nodes.append((node, scope))
+        child_scope = scope
         if isinstance(node, Function):
-            inner = Scope(scope, node)
+            child_scope = Scope(scope, node)
             for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
-                inner.names[argument.arg] = []
+                child_scope.names[argument.arg] = []
         else:
-            _bind(node, scope)
-        waiting.extend((child, inner) for child in reversed(list(ast.iter_child_nodes(node))))
-    return found
+            _record_bindings(node, scope)
+        pending.extend((child, child_scope) for child in reversed(list(ast.iter_child_nodes(node))))
+    return nodes
 
 
-def _bind(node: ast.AST, scope: Scope) -> None:
+def _record_bindings(node: ast.AST, scope: Scope) -> None:
     if isinstance(node, ast.Assign):
         for target in node.targets:
             _bind_target(target, Binding(node.value), scope)
@@ -87,15 +87,15 @@ def _bind(node: ast.AST, scope: Scope) -> None:
     elif isinstance(node, ast.withitem) and node.optional_vars is not None:
         _bind_target(node.optional_vars, Binding(node.context_expr), scope)
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-        _bind_added(node.func, node.args, scope)
+        _record_addition(node.func, node.args, scope)
 
 
-def _bind_added(method: ast.Attribute, args: list[ast.expr], scope: Scope) -> None:
+def _record_addition(method: ast.Attribute, args: list[ast.expr], scope: Scope) -> None:
     """Record the items that ``append``, ``extend`` or ``update`` add to a name of a scope."""
     bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
     if bindings and len(args) == 1 and method.attr in ("append", "extend", "update"):
-        added = ast.copy_location(ast.List(args, ast.Load()), args[0]) if method.attr == "append" else args[0]
-        bindings.append(Binding(added, is_added=True))
+        value = ast.copy_location(ast.List(args, ast.Load()), args[0]) if method.attr == "append" else args[0]
+        bindings.append(Binding(value, is_added=True))
 
 
 def _bind_target(target: ast.expr, binding: Binding, scope: Scope) -> None:
@@ -104,9 +104,9 @@ def _bind_target(target: ast.expr, binding: Binding, scope: Scope) -> None:
     elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name) and binding.value is not None:
         scope.entries.setdefault(target.value.id, []).append((target.slice, binding.value))
     elif isinstance(target, (ast.Tuple, ast.List)):
-        for index, part in enumerate(target.elts):
-            inner = Binding(binding.value, (*binding.path, index), binding.is_item, binding.is_added)
-            _bind_target(part, inner, scope)
+        for index, element in enumerate(target.elts):
+            element_binding = Binding(binding.value, (*binding.path, index), binding.is_item, binding.is_added)
+            _bind_target(element, element_binding, scope)
 
 
 def parameters(function: Function) -> list[str]:

@@ -8,16 +8,16 @@ from itertools import combinations, islice
 from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.loading.lean_typing import Union
 
-_DEEPEST = 12
-_MOST_PATHS = 64
-_MARK = "\0"
-MOST_SETS = 24
-"""Of more sets of values than these, the others are left out."""
+_MAX_DEPTH = 12
+_MAX_SELECTIONS = 64
+_SHARE_DELIMITER = "\0"
+MAX_VARIATIONS = 24
+"""The maximum number of variations, and of pairs of variations; the rest are omitted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The share folder of a package, as a part of a text.
+    """A piece of a text that represents the share folder of a package.
 
     Attributes:
         package: the name of the package, which may itself contain placeholders.
@@ -28,23 +28,23 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Open:
-    """A placeholder in a text, whose value is determined when the program runs.
+    """A placeholder in a text; its value is determined when the program runs.
 
     Attributes:
         choice: the name of the `Choice` that determines the value.
         column: the index of the value in the selected row.
-        is_part: whether the placeholder begins a component of a path, where an absolute path replaces everything before
-            it.
+        starts_component: whether the placeholder begins a component of a path. If its value is an absolute path, the
+            value replaces everything before the placeholder.
     """
 
     choice: str
     column: int = 0
-    is_part: bool = False
+    starts_component: bool = False
 
 
 Text = tuple[Union[str, Share, Open], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
 UNKNOWN = Open("")
-"""A place whose value is not known."""
+"""A placeholder with an unknown value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +53,8 @@ class Choice:
 
     Attributes:
         rows: the alternatives; the first is the default.
-        is_certain: whether each row can occur with any rows of other choices. Otherwise, the choices may depend on each
-            other, like the branches of an `if`.
+        is_certain: whether each row can occur together with any rows of other choices. If not, the choices may depend
+            on each other, like the branches of an `if`.
     """
 
     rows: tuple[tuple[Text, ...], ...]
@@ -67,11 +67,11 @@ class Selection:
 
     Attributes:
         rows: choice -> index of the selected row; the first row if the choice is missing.
-        given: choice -> the text for its placeholders, which takes precedence over its rows.
+        fixed_texts: choice -> the text for its placeholders, which takes precedence over its rows.
     """
 
     rows: Mapping[str, int] = field(default_factory=dict)
-    given: Mapping[str, str] = field(default_factory=dict)
+    fixed_texts: Mapping[str, str] = field(default_factory=dict)
 
 
 def literal(text: str) -> Text:
@@ -98,7 +98,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
         if part and not (isinstance(path[-1], str) and path[-1].endswith("/")):
             path = (*path, "/")
         if isinstance(first, Open) and first != UNKNOWN:
-            part = (replace(first, is_part=True), *part[1:])
+            part = (replace(first, starts_component=True), *part[1:])
         path = (*path, *part)
     return path
 
@@ -108,27 +108,27 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
 
     A share folder is written as its `share_mark`.
     """
-    if depth > _DEEPEST:
+    if depth > _MAX_DEPTH:
         return None
-    found: list[str] = []
+    strings: list[str] = []
     for piece in text:
         if isinstance(piece, str):
-            found.append(piece)
+            strings.append(piece)
             continue
-        inner = piece.package if isinstance(piece, Share) else _chosen(piece, choices, selection)
-        value = inner if isinstance(inner, str) else inner and resolve(inner, choices, selection, depth + 1)
-        if value is None and inner != ():
+        content = piece.package if isinstance(piece, Share) else _selected_text(piece, choices, selection)
+        value = content if isinstance(content, str) else content and resolve(content, choices, selection, depth + 1)
+        if value is None and content != ():
             return None
-        filled = share_mark(value or "") if isinstance(piece, Share) else value or ""
-        if isinstance(piece, Open) and piece.is_part and filled.startswith(("/", _MARK)):
-            found.clear()
-        found.append(filled)
-    return "".join(found)
+        string = share_mark(value or "") if isinstance(piece, Share) else value or ""
+        if isinstance(piece, Open) and piece.starts_component and string.startswith(("/", _SHARE_DELIMITER)):
+            strings.clear()
+        strings.append(string)
+    return "".join(strings)
 
 
 def share_mark(package: str) -> str:
     """Return the text that represents a package's share folder in the result of `resolve`."""
-    return f"{_MARK}{package}{_MARK}"
+    return f"{_SHARE_DELIMITER}{package}{_SHARE_DELIMITER}"
 
 
 def split_mark(path: str) -> tuple[str | None, str]:
@@ -136,15 +136,15 @@ def split_mark(path: str) -> tuple[str | None, str]:
 
     The package is None for any other path, which is returned unchanged.
     """
-    if not path.startswith(_MARK):
+    if not path.startswith(_SHARE_DELIMITER):
         return None, path
-    package, _, rest = path[1:].partition(_MARK)
+    package, _, rest = path[1:].partition(_SHARE_DELIMITER)
     return package, rest
 
 
-def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
-    if place.choice in selection.given:
-        return selection.given[place.choice]
+def _selected_text(place: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
+    if place.choice in selection.fixed_texts:
+        return selection.fixed_texts[place.choice]
     choice = choices.get(place.choice)
     if choice is None or not choice.rows:
         return None
@@ -152,29 +152,31 @@ def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) ->
     return row[place.column] if place.column < len(row) else None
 
 
-def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> list[str]:
-    """Return the names of the choices that a text depends on, except names in `given`."""
-    found: dict[str, None] = {}
-    waiting: list[Text] = [text]
-    while waiting:
-        for piece in waiting.pop():
+def choices_in(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> list[str]:
+    """Return the names of the choices that a text depends on, except names in `fixed_texts`."""
+    names: dict[str, None] = {}
+    pending: list[Text] = [text]
+    while pending:
+        for piece in pending.pop():
             if isinstance(piece, Share):
-                waiting.append(piece.package)
-            elif isinstance(piece, Open) and piece.choice not in found and piece.choice not in given:
+                pending.append(piece.package)
+            elif isinstance(piece, Open) and piece.choice not in names and piece.choice not in fixed_texts:
                 choice = choices.get(piece.choice)
                 if choice is not None:
-                    found[piece.choice] = None
-                    waiting += [text for row in choice.rows for text in row]
-    return list(found)
+                    names[piece.choice] = None
+                    pending += [text for row in choice.rows for text in row]
+    return list(names)
 
 
-def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> Iterator[Selection]:
+def selections(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> Iterator[Selection]:
     """Yield the selections of rows for the placeholders of a text, up to a maximum number."""
-    combined: list[dict[str, int]] = [{}]
-    for name in choices_in(text, choices, given):
+    row_combinations: list[dict[str, int]] = [{}]
+    for name in choices_in(text, choices, fixed_texts):
         rows = range(len(choices[name].rows) or 1)
-        combined = [{**combination, name: row} for combination in combined for row in rows][:_MOST_PATHS]
-    return (Selection(rows, given) for rows in combined)
+        row_combinations = [{**combination, name: row} for combination in row_combinations for row in rows][
+            :_MAX_SELECTIONS
+        ]
+    return (Selection(rows, fixed_texts) for rows in row_combinations)
 
 
 def variations(
@@ -182,16 +184,16 @@ def variations(
 ) -> Iterator[tuple[Selection, bool]]:
     """Yield selections of rows for several texts, each with whether it is known to occur.
 
-    First, every row of every choice occurs, one choice at a time. Then pairs of rows follow, which may not occur
-    together. There would be too many combinations of all choices.
+    First, each row of each choice is selected, one choice at a time. Then pairs of rows follow, which might not occur
+    together. Larger combinations are omitted, because there would be too many.
     """
-    names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
-    free = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]
-    certain = all(choices[name].is_certain for name in free)
-    yield start, certain
-    others = [(name, row) for name in free for row in range(1, len(choices[name].rows))]
-    for name, row in others[:MOST_SETS]:
-        yield Selection({**start.rows, name: row}, start.given), certain
-    pairs = ((one, other) for one, other in combinations(others, 2) if one[0] != other[0])
-    for pair in islice(pairs, MOST_SETS):
-        yield Selection({**start.rows, **dict(pair)}, start.given), False
+    names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.fixed_texts))
+    unselected_names = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]
+    is_certain = all(choices[name].is_certain for name in unselected_names)
+    yield start, is_certain
+    alternatives = [(name, row) for name in unselected_names for row in range(1, len(choices[name].rows))]
+    for name, row in alternatives[:MAX_VARIATIONS]:
+        yield Selection({**start.rows, name: row}, start.fixed_texts), is_certain
+    pairs = ((one, other) for one, other in combinations(alternatives, 2) if one[0] != other[0])
+    for pair in islice(pairs, MAX_VARIATIONS):
+        yield Selection({**start.rows, **dict(pair)}, start.fixed_texts), False

@@ -30,7 +30,7 @@ from linkwright.rviz.frames.stream import FrameView, TimeControl
 
 
 class DisplayHost(Protocol):
-    """The visualization as its displays see it.
+    """The visualization that contains displays, as far as displays use it.
 
     Attributes:
         context: the viewer's node, files and pages.
@@ -45,21 +45,21 @@ class DisplayHost(Protocol):
     time: TimeControl
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a change of a display's robot; `gone` contains the frames that only the former robot had."""
+        """Handle a change of a display's robot; `gone` contains the frames that only the previous robot had."""
 
     def fading_changed(self) -> None:
         """Handle a change of a TF display's frame timeout or check box."""
 
 
 Pose = NDArray[np.float64]
-"""x, y, z (metres), qx, qy, qz, qw of a frame in the Fixed Frame; shape (7,)."""
+"""The pose of a frame in the Fixed Frame: x, y, z in metres, qx, qy, qz, qw; shape (7,)."""
 
-_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
+_LEVEL_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
-def worst(rows: list[StatusRow]) -> StatusLevel:
-    """Return the most severe level of status rows, which becomes the level of the display's own row."""
-    return max((row.level for row in rows), key=_RANK.__getitem__, default="ok")
+def worst_level(rows: list[StatusRow]) -> StatusLevel:
+    """Return the most severe level of status rows, which is also the level of the row of the display."""
+    return max((row.level for row in rows), key=_LEVEL_RANK.__getitem__, default="ok")
 
 
 class ViewerDisplay:
@@ -70,7 +70,7 @@ class ViewerDisplay:
 
     Args:
         host: the visualization that contains the display.
-        identity: the display's ID in the page, which does not change during the display's lifetime.
+        identity: the ID of the display in pages, which never changes.
         config: the display's entry in the .rviz file.
     """
 
@@ -78,9 +78,9 @@ class ViewerDisplay:
     SCHEMA: ClassVar[Schema] = ()
     SUPPORTED: ClassVar[bool] = True
     DRAWN_AS: ClassVar[str] = ""
-    """The RViz class whose drawing the page uses, for a display of a package without its own; empty for its own."""
+    """The RViz class that the page draws for this class; empty if the page can draw this class itself."""
     TOPIC: ClassVar[Path] = ("Topic",)
-    """The property that receives the topic when the display is added for a topic."""
+    """The property that is set to the topic when the display is added for a topic."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self.host = host
@@ -106,12 +106,12 @@ class ViewerDisplay:
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
-        """Return the value of the property `TOPIC` with which the display shows a topic."""
+        """Return the value to which the property `TOPIC` must be set to show a topic."""
         return topic
 
     @property
     def enabled(self) -> bool:
-        """Whether the display is drawn: its check box and those of the groups around it are on."""
+        """Whether the display is drawn: its check box and the check boxes of all enclosing groups are on."""
         return self.config.enabled
 
     def schema(self) -> Schema:
@@ -128,7 +128,7 @@ class ViewerDisplay:
             group=self.config.group.identity if self.config.group else None,
             enabled=self.config.checked,
             supported=self.SUPPORTED,
-            level=worst(self.status),
+            level=worst_level(self.status),
             status=self.status,
             properties=self.properties.rows(),
         )
@@ -139,11 +139,11 @@ class ViewerDisplay:
         Raises:
             ValueError: the property does not accept the value.
         """
-        taken = self.properties.set(path, value)
+        accepted_value = self.properties.set(path, value)
         self.changed(path)
         if self.properties.is_condition(path):
             self.publish_properties()
-        self.pages.publish(PropertyChanged(self.property_id(path), taken))
+        self.pages.publish(PropertyChanged(self.property_id(path), accepted_value))
 
     def set_checked(self, value: bool) -> None:
         """Set the check box, and send its value to all pages; the caller then calls `enabled_changed`."""
@@ -151,7 +151,7 @@ class ViewerDisplay:
         self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
 
     def recall(self, memories: Sequence[Memory]) -> None:
-        """Restore properties to former entries of the file, apply the values, and send them to all pages."""
+        """Restore previous entries of properties in the file, apply the values, and send them to all pages."""
         for path in self.properties.recall(memories):
             self.changed(path)
         self.properties.recall(memories)  # `changed` may have set further properties, so restore again
@@ -167,12 +167,12 @@ class ViewerDisplay:
         self.pages.publish(DisplayProperties(self.id, self.properties.rows()))
 
     def set_status(self, rows: list[StatusRow]) -> None:
-        """Show status rows, or none while the display is off; pages receive the rows only if they changed."""
+        """Set the status rows, or no rows while the display is off; changed rows are sent to the pages."""
         if not self.enabled:
             rows = []
         if rows != self.status:
             self.status = rows
-            self.pages.publish(DisplayStatus(self.id, worst(rows), rows))
+            self.pages.publish(DisplayStatus(self.id, worst_level(rows), rows))
 
     def _reference_frames(self) -> list[str]:
         return [FIXED_FRAME, *sorted(self.host.frames.names)]
@@ -217,7 +217,7 @@ class ViewerDisplay:
         return []
 
     def data(self) -> list[Payload]:
-        """Return the content that a newly opened page needs to draw the display like the other pages."""
+        """Return the content that a newly opened page needs to draw the display."""
         return []
 
 
@@ -241,20 +241,20 @@ class DataDisplay(ViewerDisplay):
     ) -> None:
         """Send content for pages to draw (see `pack_data`), and store it for pages that open later.
 
-        The content replaces content that was sent under the same key. With `shrink`, the content is reduced for pages
-        with a slow connection.
+        The content replaces the content that was sent before under the same key. If `shrink` is not None, it reduces
+        the content for pages with a slow connection.
         """
         pack = partial(pack_data, self.id, key=key, frame=frame, pose=pose, stamp=stamp_ns / 1e9)
-        waits_under = f"data {self.id} {key}"
-        packed = pack(content) if shrink is None else ScaledData(waits_under, content, shrink, pack)
-        self.pages.send_data(waits_under, packed)
-        self._replaced(key)  # marked after the new content has been queued
+        queue_key = f"data {self.id} {key}"
+        packed = pack(content) if shrink is None else ScaledData(queue_key, content, shrink, pack)
+        self.pages.send_data(queue_key, packed)
+        self._mark_replaced(key)  # after `send_data`, which replaces the content in the queue
         self._data[key] = packed
 
     def forget(self, key: str | None = None) -> None:
         """Remove the content that was sent under a key, or all content, from the display and the pages."""
         for data_key in self._data if key is None else (key,):
-            self._replaced(data_key)
+            self._mark_replaced(data_key)
         if key is None:
             self._data.clear()
         else:
@@ -280,7 +280,7 @@ class DataDisplay(ViewerDisplay):
         """Return the content that is currently drawn."""
         return list(self._data.values())
 
-    def _replaced(self, key: str) -> None:
-        before = self._data.get(key)
-        if isinstance(before, ScaledData):
-            before.gone = True
+    def _mark_replaced(self, key: str) -> None:
+        previous_data = self._data.get(key)
+        if isinstance(previous_data, ScaledData):
+            previous_data.gone = True

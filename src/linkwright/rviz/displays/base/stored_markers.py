@@ -1,4 +1,4 @@
-"""Base class of displays that are drawn as markers, of which pages receive only the changes."""
+"""A base class for displays that are drawn as markers, which sends only changes to pages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.rviz.markers import MarkerStore
 
 
 class StoredMarkersDisplay(TopicDisplay):
-    """A display with a `MarkerStore`, which a subclass fills; `show_markers` sends the changes."""
+    """A base class for displays with a `MarkerStore`; `show_markers` sends the changes of a subclass."""
 
     TRANSFORMED = False
 
@@ -25,12 +25,12 @@ class StoredMarkersDisplay(TopicDisplay):
         self._meshes = MeshIndex(host.context.finder)
 
     def stop(self) -> None:
-        """Unsubscribe, and withdraw the pages' access to the files that markers referred to."""
+        """Unsubscribe, and end the pages' access to the files of the markers."""
         super().stop()
         self.context.meshes.replace(self.id, {})
 
     def data(self) -> list[Payload]:
-        """Return the store, which is packed as all current markers."""
+        """Return the store, from which all current markers are packed."""
         return [self._store]
 
     def receive(self, message: Any) -> None:
@@ -43,6 +43,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send the changes of the store to the pages together, and let them read the markers' files."""
+        """Send all changes of the store to the pages, and give them access to the files of the markers."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

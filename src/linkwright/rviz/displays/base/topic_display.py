@@ -25,7 +25,7 @@ from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
 
 
 class SideTopic:
-    """A subscription in addition to the display's own; its messages are queued while time is paused.
+    """An additional subscription of a display, which queues messages while time is paused.
 
     Args:
         host: the display's host.
@@ -38,12 +38,12 @@ class SideTopic:
         self._type = message_type
         self._on_message = on_message
         self._subscription: Subscription[Any] | None = None
-        self._held: deque[Any] = deque()
+        self._paused_messages: deque[Any] = deque()
 
     def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
-        """Subscribe to a topic instead of the former one; return None, or RViz's error text on failure."""
+        """Subscribe to a topic instead of the previous one; return None, or RViz's error text on failure."""
         self.close()
-        self._held = deque(maxlen=max(1, qos.depth))
+        self._paused_messages = deque(maxlen=max(1, qos.depth))
         try:
             self._subscription = self._host.context.node.create_subscription(self._type, topic, self._received, qos)
         except LinkwrightError as error:
@@ -56,50 +56,50 @@ class SideTopic:
             with suppress(ValueError):  # the node may already have been destroyed
                 self._host.context.node.destroy_subscription(self._subscription)
             self._subscription = None
-        self._held.clear()
+        self._paused_messages.clear()
 
     def resume(self) -> None:
         """Handle the messages that were queued while time was paused."""
-        while self._held and not self._host.time.paused:
-            self._on_message(self._held.popleft())
+        while self._paused_messages and not self._host.time.paused:
+            self._on_message(self._paused_messages.popleft())
 
     def _received(self, message: Any) -> None:
         if self._host.time.paused:
-            self._held.append(message)
+            self._paused_messages.append(message)
         else:
             self._on_message(message)
 
 
-def camera_info_topic(image: str) -> str:
+def camera_info_topic(image_topic: str) -> str:
     """Return the CameraInfo topic of an image topic, which by convention has the same namespace."""
     for transport in ("/compressed", "/compressedDepth", "/theora"):
-        image = image.removesuffix(transport)
-    return image.rpartition("/")[0] + "/camera_info"
+        image_topic = image_topic.removesuffix(transport)
+    return image_topic.rpartition("/")[0] + "/camera_info"
 
 
 TOPIC = "Topic"
 TRANSFORM = "Transform"
 
-_FAILURE = "Failure"
-"""The status row of a message that made a display fail; RViz has no such row."""
+_FAILURE_ROW = "Failure"
+"""The status row for a message that the display cannot process; RViz has no such row."""
 
-_LATE = 1.0
-"""Seconds to wait for a message's transforms before it is an error: usually they arrive later than the message."""
+_LATE_TIMEOUT = 1.0
+"""Seconds to wait for the transforms of a message, which often arrive later, before an error is reported."""
 
 _COUNT_PERIOD = 1.0
-"""Seconds between two updates of the row that counts messages or gives the reason why there are none."""
+"""Seconds between two updates of the row with the number of messages or the reason why there are none."""
 
-_OFFERED_LESS = {
+_WEAKEST_POLICIES = {
     "RELIABILITY": ("Reliability Policy", "Best Effort"),
     "DURABILITY": ("Durability Policy", "Volatile"),
 }
-"""Rows of a topic with which it may request too much, and the value that every publisher offers."""
+"""The QoS rows of a topic, and the value in each row that matches every publisher, by policy."""
 
-_OTHER_CLOCK = 5.0
-"""Seconds between a message's stamp and the local time that indicate different clocks, not a slow computer."""
+_MIN_CLOCK_DIFFERENCE = 5.0
+"""The difference in s of a stamp and the local time above which the clocks probably differ."""
 
-_MOST_OTHERS = 3
-"""Topics of the same type that are named if the display's topic has no publisher: the most similar names first."""
+_MAX_SUGGESTED_TOPICS = 3
+"""The largest number of other topics of the same type in a message about a topic without a publisher."""
 
 
 class TopicDisplay(DataDisplay, ABC):
@@ -113,7 +113,7 @@ class TopicDisplay(DataDisplay, ABC):
     """
 
     MESSAGE: ClassVar[str] = ""
-    """The type of its messages, such as ``sensor_msgs/msg/LaserScan``."""
+    """The message type of the topic, such as ``sensor_msgs/msg/LaserScan``."""
 
     SCHEMA: ClassVar[Schema] = (topic_spec(),)
 
@@ -124,10 +124,10 @@ class TopicDisplay(DataDisplay, ABC):
     """Whether messages wait until the frame in their header can be placed in the Fixed Frame at their time."""
 
     OCCASIONAL: ClassVar[bool] = False
-    """Whether messages are rare, such as plans: if a publisher has sent none yet, that is not a warning."""
+    """Whether messages are rare, such as plans, so that there is no warning before the first message."""
 
     FOLLOWS_TRANSFORMS: ClassVar[bool] = False
-    """Whether `transforms_received` is called although no messages wait: the display places parts of them itself."""
+    """Whether `transforms_received` is also called without queued messages, for displays that place content."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
@@ -135,14 +135,14 @@ class TopicDisplay(DataDisplay, ABC):
         self._subscription: Subscription[Any] | None = None
         self._release: Callable[[], None] | None = None
         self._waiting: deque[Any] = deque()
-        self._held: deque[Any] = deque()
+        self._paused_messages: deque[Any] = deque()
         self._fixed_frame = ""
-        self._failing = False
+        self._has_failed = False
         self._count = 0
-        self._since = 0.0
+        self._subscription_time = 0.0
         self._report_timer: asyncio.TimerHandle | None = None
         self._incompatibility: Phrase | None = None
-        self._late: asyncio.TimerHandle | None = None
+        self._late_timer: asyncio.TimerHandle | None = None
         self._late_reason = ""
 
     # --- what subclasses override ------------------------------------------------------------------------------
@@ -162,8 +162,8 @@ class TopicDisplay(DataDisplay, ABC):
         self.forget()
 
     def transforms_received(self) -> None:
-        """Handle new transforms: process the queued messages that can be placed now."""
-        self._try_waiting()
+        """Handle new transforms; by default, process the queued messages that can be placed now."""
+        self._show_placeable()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the frame and the stamp of a message's header; a stamp of 0 ns means the latest transform."""
@@ -212,30 +212,30 @@ class TopicDisplay(DataDisplay, ABC):
             self._waiting.clear()
             self.reset()
             self.show_again()
-        self._try_waiting()
+        self._show_placeable()
 
     def time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
-        self._try_waiting()
-        while self._held and not self.host.time.paused:
-            self._offer(self._held.popleft())
+        self._show_placeable()
+        while self._paused_messages and not self.host.time.paused:
+            self._offer(self._paused_messages.popleft())
 
     def time_reset(self) -> None:
         """Discard the content; nothing is shown until new messages arrive."""
         self.last = None
         self._waiting.clear()
-        self._held.clear()
+        self._paused_messages.clear()
         self.reset()
 
     def fixed_frame_changed(self) -> bool:
         """Return whether the Fixed Frame has changed since the last call."""
-        before, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
-        return before != self._fixed_frame
+        previous_frame, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
+        return previous_frame != self._fixed_frame
 
     def _restart(self) -> None:
         self._unsubscribe()
         self.last = None
-        self._failing = False
+        self._has_failed = False
         self.reset()
         self.delete_status_row()
         if self.enabled:
@@ -243,11 +243,12 @@ class TopicDisplay(DataDisplay, ABC):
 
     def _subscribe(self) -> None:
         message, topic, qos = self.subscription()
-        self._count, self._since, self._incompatibility = 0, time.monotonic(), None
+        self._count, self._subscription_time, self._incompatibility = 0, time.monotonic(), None
         if not topic:
             self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        from linkwright.graph import SubscriptionEventCallbacks  # not needed for the view of a robot
+        from linkwright.graph import SubscriptionEventCallbacks  # imported late, because the view of a robot does not
+        # need it
 
         try:
             self._subscription = self.context.node.create_subscription(
@@ -255,7 +256,7 @@ class TopicDisplay(DataDisplay, ABC):
                 topic,
                 self._received,
                 qos,
-                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._qos_incompatible),
+                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible_qos),
             )
         except LinkwrightError as error:
             self.set_status_row(
@@ -279,19 +280,19 @@ class TopicDisplay(DataDisplay, ABC):
             self._release = None
         self._cancel_late_report()
         self._waiting.clear()
-        self._held.clear()
+        self._paused_messages.clear()
 
-    def _qos_incompatible(self, info: Any) -> None:
+    def _on_incompatible_qos(self, info: Any) -> None:
         policy = getattr(info.last_policy_kind, "name", str(info.last_policy_kind))
         self._incompatibility = phrase(
             "A publisher offers incompatible QoS. Last incompatible policy: {policy}", policy=policy
         )
-        row, offered = _OFFERED_LESS.get(policy, ("", ""))
+        row, weakest_value = _WEAKEST_POLICIES.get(policy, ("", ""))
         if row:
             self._incompatibility = phrase(
                 "{problem}. Choose {offered} for {row} below {topic}",
                 problem=self._incompatibility,
-                offered=offered,
+                offered=weakest_value,
                 row=row,
                 topic=TOPIC,
             )
@@ -304,7 +305,7 @@ class TopicDisplay(DataDisplay, ABC):
         The reason is updated until a message arrives.
         """
         if self._count > 0:
-            seconds = time.monotonic() - self._since
+            seconds = time.monotonic() - self._subscription_time
             text = phrase("{count} messages received", count=self._count)
             if self._count > 1 and seconds > 0:
                 rate = self._count / seconds
@@ -313,12 +314,12 @@ class TopicDisplay(DataDisplay, ABC):
             return
         self.set_status_row(
             self.TOPIC_ROW,
-            "ok" if self._is_awaited() else "warn",
-            self._incompatibility or phrase("No messages received: {reason}", reason=self._silence()),
+            "ok" if self._may_be_silent() else "warn",
+            self._incompatibility or phrase("No messages received: {reason}", reason=self._silence_reason()),
         )
         self._report_count_later()
 
-    def _is_awaited(self) -> bool:
+    def _may_be_silent(self) -> bool:
         """Return whether the display is `OCCASIONAL` and the topic has a publisher of the right type."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
@@ -332,7 +333,7 @@ class TopicDisplay(DataDisplay, ABC):
         if self._report_timer is None:
             self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
 
-    def _silence(self) -> Phrase:
+    def _silence_reason(self) -> Phrase:
         """Return the reason why no messages arrive.
 
         If the topic has no publisher, the reason names published topics of the same type.
@@ -344,13 +345,17 @@ class TopicDisplay(DataDisplay, ABC):
             return phrase("the topic carries {types}, not {message}", types=joined(sorted(types)), message=message)
         if publishers:
             return phrase("no message arrived yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
-        there = self.context.published.of_type(message)
-        if there:
+        topics = self.context.published.topics_of_type(message)
+        if topics:
             from difflib import SequenceMatcher  # imported here because most topics have a publisher
 
-            there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
+            topics = sorted(topics, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[
+                :_MAX_SUGGESTED_TOPICS
+            ]
             return phrase(
-                "the topic has no publisher; {message} is published on {topics}", message=message, topics=joined(there)
+                "the topic has no publisher, but {message} is published on {topics}",
+                message=message,
+                topics=joined(topics),
             )
         return phrase("the topic has no publisher")
 
@@ -365,9 +370,9 @@ class TopicDisplay(DataDisplay, ABC):
         if self.TRANSFORMED:
             self.host.time.took(self.config.name, self.frame_of(message)[1])
         if self.host.time.paused:
-            self._held.append(message)
-            while len(self._held) > max(1, self.subscription()[2].depth):
-                self._held.popleft()
+            self._paused_messages.append(message)
+            while len(self._paused_messages) > max(1, self.subscription()[2].depth):
+                self._paused_messages.popleft()
         else:
             self._offer(message)
 
@@ -380,7 +385,7 @@ class TopicDisplay(DataDisplay, ABC):
             while len(self._waiting) > self.most_waiting():
                 self._waiting.popleft()
 
-    def _try_waiting(self) -> None:
+    def _show_placeable(self) -> None:
         while self._waiting and not self.host.time.paused and self._place(self._waiting[0]):
             self._waiting.popleft()
 
@@ -406,70 +411,70 @@ class TopicDisplay(DataDisplay, ABC):
     def _report_unplaced(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
         """Report a message whose transform is not available.
 
-        A transform that is only late is reported if no message could be placed for a second.
+        A late transform is reported only if no message can be placed for a second.
         """
         if not is_late:
             self.set_status_row(TRANSFORM, "error", reason)
             return
         self._late_reason = self._add_clock_advice(reason, stamp_ns)
-        if self._late is None:
-            self._late = asyncio.get_running_loop().call_later(_LATE, self._report_late)
+        if self._late_timer is None:
+            self._late_timer = asyncio.get_running_loop().call_later(_LATE_TIMEOUT, self._report_late)
 
     def _add_clock_advice(self, reason: Phrase, stamp_ns: int) -> Phrase:
         """Return the reason, preceded by advice on the clocks if the stamp is far from the local time."""
-        ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
-        if abs(ahead) < _OTHER_CLOCK:
+        seconds_ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
+        if abs(seconds_ahead) < _MIN_CLOCK_DIFFERENCE:
             return reason
-        if ahead > 0:
+        if seconds_ahead > 0:
             return phrase(
                 "The message's stamp is {seconds:.0f} s after the local time: check the clocks of both "
                 "computers and use_sim_time of their nodes. {reason}",
-                seconds=ahead,
+                seconds=seconds_ahead,
                 reason=reason,
             )
         return phrase(
             "The message's stamp is {seconds:.0f} s before the local time: check the clocks of both computers "
             "and use_sim_time of their nodes. {reason}",
-            seconds=-ahead,
+            seconds=-seconds_ahead,
             reason=reason,
         )
 
     def _report_late(self) -> None:
-        self._late = None
+        self._late_timer = None
         if self._waiting:
             self.set_status_row(TRANSFORM, "error", self._late_reason)
 
     def _cancel_late_report(self) -> None:
-        if self._late is not None:
-            self._late.cancel()
-            self._late = None
+        if self._late_timer is not None:
+            self._late_timer.cancel()
+            self._late_timer = None
 
     def _process(self, message: Any, pose: Pose | None) -> None:
-        """Show a message, or log why that failed; later messages are shown all the same."""
+        """Show a message, or log an exception, after which later messages are still shown."""
         self.last = message
         try:
             self.process_message(message, pose)
         except Exception as error:  # noqa: BLE001  # the message is a stranger's
-            if not self._failing:
+            if not self._has_failed:
                 self.context.node.get_logger().error(f"'{self.config.name}' failed:\n{traceback.format_exc().rstrip()}")
-            self._failing = True
+            self._has_failed = True
             self.set_status_row(
-                _FAILURE,
+                _FAILURE_ROW,
                 "error",
                 phrase("The message could not be shown: {reason}", reason=foreign(error or type(error).__name__)),
             )
             return
-        if self._failing:
-            self._failing = False
-            self.delete_status_row(_FAILURE)
+        if self._has_failed:
+            self._has_failed = False
+            self.delete_status_row(_FAILURE_ROW)
 
 
-_MESSAGE = "Message"
-_INVALID = phrase("Message contained invalid floating point values (nans or infs)")
+_MESSAGE_ROW = "Message"
+_INVALID_TEXT = phrase("Message contained invalid floating point values (nans or infs)")
 
 
 @dataclass(slots=True)
-class _Shown:
+class _ShownContent:
     content: DataContent
     frame: str
     pose: Pose | None
@@ -486,11 +491,11 @@ class RecentDisplay(TopicDisplay):
     LENGTH: ClassVar[Path | None] = None
 
     IN_FIXED_FRAME: ClassVar[bool] = False
-    """Whether contents are in the Fixed Frame already."""
+    """Whether the contents are already in the Fixed Frame."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self._shown: deque[_Shown] = deque()
+        self._shown_contents: deque[_ShownContent] = deque()
         self._number = 0
 
     @abstractmethod
@@ -498,7 +503,7 @@ class RecentDisplay(TopicDisplay):
         """Return the content of a message, in the frame that `frame_of` returns, or None to ignore the message."""
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a message, and remove the oldest one if more than `LENGTH` allows are shown."""
+        """Show a message, and remove the oldest message if there are more than `LENGTH` allows."""
         assert pose is not None
         content = self.content(message)
         if content is None:
@@ -506,50 +511,56 @@ class RecentDisplay(TopicDisplay):
         frame, stamp_ns = self.frame_of(message)
         if self.IN_FIXED_FRAME:
             frame, pose = "", None
-        self._shown.append(_Shown(content, frame, pose, stamp_ns))
+        self._shown_contents.append(_ShownContent(content, frame, pose, stamp_ns))
         length = self._length()
-        if length and len(self._shown) > length:
-            self._shown.popleft()
-        self._send(self._shown[-1])
+        if length and len(self._shown_contents) > length:
+            self._shown_contents.popleft()
+        self._send(self._shown_contents[-1])
 
     def changed(self, path: Path) -> None:
         """Subscribe again if necessary, or apply a new number of messages to show."""
         super().changed(path)
         if path == self.LENGTH:
             length = self._length()
-            recent = list(self._shown)[-length:]
+            recent_contents = list(self._shown_contents)[-length:]
             self.reset()
-            for shown in recent:
-                self._shown.append(shown)
-                self._send(shown)
+            for recent_content in recent_contents:
+                self._shown_contents.append(recent_content)
+                self._send(recent_content)
 
     def reset(self) -> None:
         """Discard all messages."""
-        self._shown.clear()
+        self._shown_contents.clear()
         self._number = 0
         super().reset()
 
     def refuse(self, text: str) -> None:
-        """Show in the status why the last message cannot be drawn, with the given text."""
-        self.set_status_row(_MESSAGE, "error", text)
+        """Show a text in the status that explains why the last message cannot be drawn."""
+        self.set_status_row(_MESSAGE_ROW, "error", text)
 
     def accept(self) -> None:
         """Clear the error of the previous message from the status."""
-        self.delete_status_row(_MESSAGE)
+        self.delete_status_row(_MESSAGE_ROW)
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
         """Return whether all numbers are finite; if not, show an error in the status."""
         if all(np.isfinite(number).all() for number in numbers):
             self.accept()
             return True
-        self.refuse(_INVALID)
+        self.refuse(_INVALID_TEXT)
         return False
 
-    def _send(self, shown: _Shown) -> None:
+    def _send(self, shown_content: _ShownContent) -> None:
         length = self._length()
         key = str(self._number % length if length else self._number)
         self._number += 1
-        self.send(shown.content, key=key, frame=shown.frame, pose=shown.pose, stamp_ns=shown.stamp_ns)
+        self.send(
+            shown_content.content,
+            key=key,
+            frame=shown_content.frame,
+            pose=shown_content.pose,
+            stamp_ns=shown_content.stamp_ns,
+        )
 
     def _length(self) -> int:
         return 1 if self.LENGTH is None else int(self.properties.number(*self.LENGTH))

@@ -1,4 +1,4 @@
-"""The base class of MoveIt's displays, which draw a robot in any state and markers in groups."""
+"""The base class of the displays of MoveIt, which draw a robot in any state and groups of markers."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from linkwright.rviz.displays.moveit.properties import ALL_LINKS, DESCRIPTION
 from linkwright.rviz.displays.moveit.robot import PosableRobot
 from linkwright.urdf import Robot
 
-_URDF = "URDF"
-_JOINTS = "Joints"
+_URDF_ROW = "URDF"
+_JOINTS_ROW = "Joints"
 STATE = "State"
 """The status row for problems with a state of the robot."""
 
@@ -38,13 +38,13 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.robot: PosableRobot | None = None
         self.link_names: tuple[str, ...] = ()
         super().__init__(host, identity, config)
-        self._descriptions = SideTopic(host, "std_msgs/msg/String", self._described)
+        self._description_topic = SideTopic(host, "std_msgs/msg/String", self._on_description)
         self._groups: dict[str, dict[str, MarkerShape]] = {}
 
     # --- what subclasses override ------------------------------------------------------------------------------
 
     def draw(self) -> None:
-        """Draw all markers again: an implementation calls `put` for each group, then `drawn`."""
+        """Draw all markers again; an implementation calls `put` for each group, and then `drawn`."""
 
     def description_topic(self) -> str:
         """Return the topic of the robot's description, or an empty string if none is set."""
@@ -54,14 +54,14 @@ class MoveItDisplay(StoredMarkersDisplay):
 
     def put(self, group: str, shapes: Iterable[MarkerShape]) -> None:
         """Replace the markers of a group."""
-        before = self._groups.get(group, {})
-        now = {shape.id: shape for shape in shapes}
-        for identity in before.keys() - now.keys():
+        previous_shapes = self._groups.get(group, {})
+        current_shapes = {shape.id: shape for shape in shapes}
+        for identity in previous_shapes.keys() - current_shapes.keys():
             self._store.remove(identity)
-        for identity, shape in now.items():
-            if identity not in before or not _is_same(before[identity], shape):
+        for identity, shape in current_shapes.items():
+            if identity not in previous_shapes or not _is_same_marker(previous_shapes[identity], shape):
                 self._store.put(shape)
-        self._groups[group] = now
+        self._groups[group] = current_shapes
 
     def drawn(self) -> None:
         """Send the markers passed to `put`, and show in the status which frames have no known pose."""
@@ -69,20 +69,20 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._report_frames()
 
     def report_unknown_joints(self, joints: list[str]) -> None:
-        """Show in the status which joints of a state the robot lacks; an empty list clears the warning."""
+        """Show a warning with the joints of a state that the robot does not have, or clear it if there are none."""
         if joints:
-            names, more = quoted_names(joints[:5]), len(joints) - 5
+            names, extra_count = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)
-            if more > 0:
-                text = phrase("The robot has no joint {names} and {more} more", names=names, more=more)
-            self.set_status_row(_JOINTS, "warn", text)
+            if extra_count > 0:
+                text = phrase("The robot has no joint {names} and {more} more", names=names, more=extra_count)
+            self.set_status_row(_JOINTS_ROW, "warn", text)
         else:
-            self.delete_status_row(_JOINTS)
+            self.delete_status_row(_JOINTS_ROW)
 
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the message type, topic and QoS of the display's own topic."""
+        """Return the message type, topic and QoS to subscribe with."""
         return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
 
     def start(self) -> None:
@@ -92,7 +92,7 @@ class MoveItDisplay(StoredMarkersDisplay):
 
     def stop(self) -> None:
         """Unsubscribe."""
-        self._descriptions.close()
+        self._description_topic.close()
         super().stop()
 
     def enabled_changed(self) -> None:
@@ -120,7 +120,7 @@ class MoveItDisplay(StoredMarkersDisplay):
 
     def time_changed(self) -> None:
         """Handle the description and the messages that were queued while time was paused."""
-        self._descriptions.resume()
+        self._description_topic.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -130,29 +130,31 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.show_markers()
 
     def _follow(self) -> None:
-        self._descriptions.close()
+        self._description_topic.close()
         topic = self.description_topic()
         if not self.enabled:
             return
         if not topic:
-            self.set_status_row(_URDF, "error", phrase("Error subscribing: Empty topic name"))
+            self.set_status_row(_URDF_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        problem = self._descriptions.listen(topic, DESCRIPTION_QOS)
+        problem = self._description_topic.listen(topic, DESCRIPTION_QOS)
         if problem is not None:
-            self.set_status_row(_URDF, "error", problem)
+            self.set_status_row(_URDF_ROW, "error", problem)
         elif self.robot is None:
-            self.set_status_row(_URDF, "warn", phrase("No description on topic '{topic}' yet", topic=topic))
+            self.set_status_row(
+                _URDF_ROW, "warn", phrase(("No description was received on topic '{topic}' yet"), topic=topic)
+            )
 
-    def _described(self, message: Any) -> None:
+    def _on_description(self, message: Any) -> None:
         robot = self.context.library.read(message.data).robot
         if robot is None or not robot.links:
             self.set_status_row(
-                _URDF,
+                _URDF_ROW,
                 "error",
                 phrase("URDF is empty") if not message.data.strip() else phrase("URDF failed Model parse"),
             )
             return
-        self.set_status_row(_URDF, "ok", phrase("URDF parsed OK"))
+        self.set_status_row(_URDF_ROW, "ok", phrase("URDF parsed OK"))
         self._set_robot(robot, message.data)
 
     def _set_robot(self, robot: Robot, text: str) -> None:
@@ -168,7 +170,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.draw()
 
     def robot_changed(self) -> None:
-        """Handle a change of the robot; `draw` is called later."""
+        """Handle a change of the robot, after which `draw` is called."""
 
     def _report_frames(self) -> None:
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}
@@ -181,15 +183,15 @@ class MoveItDisplay(StoredMarkersDisplay):
             self.delete_status_row(TRANSFORM)
 
 
-def _is_same(one: MarkerShape, other: MarkerShape) -> bool:
+def _is_same_marker(first: MarkerShape, other: MarkerShape) -> bool:
     return (
-        (one.shape, one.frame, one.pose, one.scale, one.color)
+        (first.shape, first.frame, first.pose, first.scale, first.color)
         == (other.shape, other.frame, other.pose, other.scale, other.color)
-        and _mesh_of(one) == _mesh_of(other)
-        and np.array_equal(one.points, other.points)
-        and np.array_equal(one.colors, other.colors)
+        and _mesh_identity(first) == _mesh_identity(other)
+        and np.array_equal(first.points, other.points)
+        and np.array_equal(first.colors, other.colors)
     )
 
 
-def _mesh_of(shape: MarkerShape) -> tuple[str | None, bool] | None:
+def _mesh_identity(shape: MarkerShape) -> tuple[str | None, bool] | None:
     return (shape.mesh.url, shape.mesh.embedded) if shape.mesh else None

@@ -15,10 +15,10 @@ from linkwright.rviz.displays.moveit.properties import PATH, TRAJECTORY_TOPIC, f
 from linkwright.rviz.displays.moveit.robot import Look
 from linkwright.rviz.displays.moveit.trajectory import MotionPlayer
 
-_REQUEST = "Planning Request"
+_REQUEST_GROUP = "Planning Request"
 
 _REQUEST_SPEC = PropertySpec(
-    _REQUEST,
+    _REQUEST_GROUP,
     "group",
     description="The first and last states of the last planned motion, for the links that it moves.",
     children=(
@@ -33,9 +33,9 @@ _REQUEST_SPEC = PropertySpec(
 
 
 class MotionPlanningDisplay(PlanningSceneDisplay):
-    """A display of the planning scene, the planned motions, and the last motion's first and last state.
+    """A display of the planning scene, the planned motions, and the first and last states of the last motion.
 
-    The display does not plan: the properties of planning requests stay in the file, but have no rows.
+    The display does not plan. The properties of planning requests stay in the file, but have no rows in the page.
     """
 
     CLASS = "moveit_rviz_plugin/MotionPlanning"
@@ -48,7 +48,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._player = MotionPlayer(self, (PATH,), self._draw_motion)
-        self._motions = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
+        self._motion_topic = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
 
     def schema(self) -> Schema:
         """Return the properties for the scene and for motions."""
@@ -58,31 +58,31 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     def start(self) -> None:
         """Subscribe to the planning scene and to motions."""
         super().start()
-        self._follow_motions()
+        self._subscribe_motions()
 
     def stop(self) -> None:
         """Unsubscribe, and stop playing."""
-        self._motions.close()
+        self._motion_topic.close()
         self._player.forget()
         super().stop()
 
     def enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
         super().enabled_changed()
-        self._follow_motions()
+        self._subscribe_motions()
 
     def changed(self, path: Path) -> None:
         """Subscribe to other motions, or play the last motion again if looping was just switched on."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
-            self._follow_motions()
+            self._subscribe_motions()
         super().changed(path)
         self._player.property_changed(path)
 
     def time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
         super().time_changed()
-        self._motions.resume()
+        self._motion_topic.resume()
 
     def robot_changed(self) -> None:
         """Play the motion again with the new robot."""
@@ -102,30 +102,30 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
 
     def _draw_motion(self) -> None:
         self._player.draw(PATH)
-        self._draw_end("Start", 0)
-        self._draw_end("Goal", -1)
+        self._draw_end_state("Start", 0)
+        self._draw_end_state("Goal", -1)
         self.drawn()
 
-    def _draw_end(self, which: str, place: int) -> None:
-        group, motion, robot = f"{which} State", self._player.motion, self.robot
-        if robot is None or motion is None or not self.properties.flag(_REQUEST, f"Query {which} State"):
+    def _draw_end_state(self, end_name: str, place: int) -> None:
+        group, motion, robot = f"{end_name} State", self._player.motion, self.robot
+        if robot is None or motion is None or not self.properties.flag(_REQUEST_GROUP, f"Query {end_name} State"):
             self.put(group, ())
             return
-        look = Look(
+        appearance = Look(
             group,
-            alpha=self.properties.number(_REQUEST, f"{which} State Alpha"),
-            color=rgb(self.properties.text(_REQUEST, f"{which} State Color")),
+            alpha=self.properties.number(_REQUEST_GROUP, f"{end_name} State Alpha"),
+            color=rgb(self.properties.text(_REQUEST_GROUP, f"{end_name} State Color")),
             only=robot.links_moved_by(motion.joints),
         )
-        self.put(group, robot.markers(motion.states[place], look))
+        self.put(group, robot.markers(motion.states[place], appearance))
 
-    def _follow_motions(self) -> None:
-        self._motions.close()
+    def _subscribe_motions(self) -> None:
+        self._motion_topic.close()
         topic = self.properties.text(PATH, TRAJECTORY_TOPIC).strip()
         if not self.enabled:
             return
         problem = (
-            self._motions.listen(topic, QoSProfile(depth=10))
+            self._motion_topic.listen(topic, QoSProfile(depth=10))
             if topic
             else phrase("Error subscribing: Empty topic name")
         )

@@ -1,9 +1,9 @@
-"""Reads octrees in the format in which the OctoMap library writes them to octomap_msgs/msg/Octomap.
+"""Reads octrees in the format of the OctoMap library from octomap_msgs/msg/Octomap.
 
-Both the binary and the full form store the tree from the root, each node before its children and the children in
-order. The binary form has two bits for each child of an inner node: free, occupied, or an inner node. The full form has
-a float with the log-odds that a node is occupied, further data of the tree's class, and a byte with one bit for each
-existing child.
+Both the binary and the full form store the tree from the root: each node precedes its children, and the children are
+in order. The binary form has two bits for each child of an inner node: free, occupied, or an inner node. The full form
+has a float with the log-odds that a node is occupied, further data of the tree's class, and a byte with one bit for
+each existing child.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import phrase
 
-_DEPTH = 16
-"""Levels below the root; cells of the last have the resolution."""
+_MAX_DEPTH = 16
+"""The number of levels below the root; cells of the last level have the size of the resolution."""
 
 _FREE, _OCCUPIED, _INNER = 1, 2, 3
 
-_FULL_NODES = {"OcTree": 4, "ColorOcTree": 7}
-"""Bytes of a node, by the class of the tree."""
+_NODE_BYTES = {"OcTree": 4, "ColorOcTree": 7}
+"""The number of bytes of a node without its children, by the class of the tree."""
 
-_CLAMPED = {_FREE: 0.1192, _OCCUPIED: 0.971}
-"""The probabilities that the binary form encodes: OctoMap's clamping thresholds."""
+_PROBABILITIES = {_FREE: 0.1192, _OCCUPIED: 0.971}
+"""The probabilities of free and occupied cells in the binary form, which are OctoMap's clamping thresholds."""
 
-MOST_CELLS = 1_000_000
-"""The largest number of cells drawn."""
+MAX_CELLS = 1_000_000
+"""The largest number of cells of an octree that can be drawn."""
 
 
 class BadOctreeError(ValueError):
-    """Raised when the data is not an octree; the message gives the reason."""
+    """Raised if the data is not a supported octree; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Cells:
 
     Attributes:
         centers: the centres of the cells, metres, shape (N, 3).
-        sizes: edge lengths, metres, shape (N,).
+        sizes: the edge lengths of the cells, metres, shape (N,).
         probabilities: the probability that each cell is occupied, shape (N,).
     """
 
@@ -56,7 +56,7 @@ class Cells:
 
 
 def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> Cells:
-    """Return the leaves of an octomap_msgs/msg/Octomap, including free ones.
+    """Return the leaves of an octomap_msgs/msg/Octomap, including free cells.
 
     Args:
         data: the bytes of the message's `data`.
@@ -65,7 +65,7 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
         resolution: the edge length of the smallest cells, metres.
 
     Raises:
-        BadOctreeError: the data is too short or too long, or the class is unknown.
+        BadOctreeError: the data is too short or too long, or the resolution or the class is not supported.
     """
     if not (math.isfinite(resolution) and resolution > 0.0):
         raise BadOctreeError(phrase("Invalid resolution of the octomap: {resolution}", resolution=resolution))
@@ -80,84 +80,92 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
 
 
 def _read_binary(data: bytes, resolution: float) -> Cells:
-    inner: list[_Node] = []
+    inner_nodes: list[_Node] = []
     states: list[int] = []
     pending = [_ROOT]
-    at = 0
+    offset = 0
     while pending:
         node = pending.pop()
-        bits = data[at] | data[at + 1] << 8
-        at += 2
-        inner.append(node)
+        bits = data[offset] | data[offset + 1] << 8
+        offset += 2
+        inner_nodes.append(node)
         states.append(bits)
-        deeper = bits & bits >> 1 & 0x5555
-        if deeper:
-            pending += [_child(node, child) for child in reversed(range(8)) if deeper >> 2 * child & 1]
-        if len(inner) > MOST_CELLS:
-            raise BadOctreeError(phrase("The octomap has more than {most} cells", most=MOST_CELLS))
-    _check_end(at, data)
-    return _leaves_of(np.array(inner, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
+        inner_children = bits & bits >> 1 & 0x5555
+        if inner_children:
+            pending += [_child(node, child) for child in reversed(range(8)) if inner_children >> 2 * child & 1]
+        if len(inner_nodes) > MAX_CELLS:
+            raise BadOctreeError(
+                phrase(("The octomap has more than {most} cells, which are too many to draw"), most=MAX_CELLS)
+            )
+    _check_is_at_end(offset, data)
+    return _leaf_cells(np.array(inner_nodes, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
 
 
-def _leaves_of(inner: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
+def _leaf_cells(inner_nodes: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
     """Return the leaves among the children of inner nodes.
 
     Args:
-        inner: the inner nodes, shape (N, 4).
+        inner_nodes: the inner nodes, shape (N, 4).
         bits: for each inner node, the states of its eight children, two bits each.
         resolution: the edge length of the smallest cells, metres.
     """
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
-    if len(parents) > MOST_CELLS:
-        raise BadOctreeError(phrase("The octomap has more than {most} cells", most=MOST_CELLS))
-    edges = inner[parents, 3]
+    if len(parents) > MAX_CELLS:
+        raise BadOctreeError(
+            phrase(("The octomap has more than {most} cells, which are too many to draw"), most=MAX_CELLS)
+        )
+    edges = inner_nodes[parents, 3]
     if (edges <= 2).any():
-        raise BadOctreeError(phrase("The octomap is deeper than {depth} levels", depth=_DEPTH))
+        raise BadOctreeError(phrase("The octomap has more than {depth} levels", depth=_MAX_DEPTH))
     signs = (children[:, None] >> np.arange(3) & 1) * 2 - 1
-    centers = inner[parents, :3] + signs * (edges // 4)[:, None]
-    half = resolution / 2.0
-    probabilities = np.where(states[parents, children] == _FREE, _CLAMPED[_FREE], _CLAMPED[_OCCUPIED])
-    return Cells(centers * half, edges // 2 * half, probabilities)
+    centers = inner_nodes[parents, :3] + signs * (edges // 4)[:, None]
+    half_resolution = resolution / 2.0
+    probabilities = np.where(states[parents, children] == _FREE, _PROBABILITIES[_FREE], _PROBABILITIES[_OCCUPIED])
+    return Cells(centers * half_resolution, edges // 2 * half_resolution, probabilities)
 
 
 def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
-    size = _FULL_NODES.get(kind)
-    if size is None:
-        known = ", ".join(_FULL_NODES)
+    node_bytes = _NODE_BYTES.get(kind)
+    if node_bytes is None:
+        known_types = ", ".join(_NODE_BYTES)
         raise BadOctreeError(
-            phrase("Unknown octomap type: '{kind}'; the known types are {known}", kind=kind, known=known)
+            phrase(
+                ("Octomaps of type '{kind}' are not supported; the supported types are {known}"),
+                kind=kind,
+                known=known_types,
+            )
         )
     leaves = _Leaves()
     pending = [_ROOT]
-    at = 0
+    offset = 0
     while pending:
         node = pending.pop()
-        (logarithm,) = struct.unpack_from("<f", data, at)
-        children = data[at + size]
-        at += size + 1
+        (log_odds,) = struct.unpack_from("<f", data, offset)
+        children = data[offset + node_bytes]
+        offset += node_bytes + 1
         if not children:
-            leaves.add(node, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, logarithm)))))
+            leaves.add(node, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, log_odds)))))
         else:
             pending += [_child(node, child) for child in reversed(range(8)) if children >> child & 1]
-    return leaves.cells(resolution, at, data)
+    return leaves.cells(resolution, offset, data)
 
 
 _Node = tuple[int, int, int, int]
-"""The centre of a node and its edge, both in half edges of the smallest cells."""
+"""The centre x, y, z of a node and its edge length, in units of half the edge of the smallest cells."""
 
-_ROOT: _Node = (0, 0, 0, 2 << _DEPTH)
+_ROOT: _Node = (0, 0, 0, 2 << _MAX_DEPTH)
 
 
 def _child(node: _Node, child: int) -> _Node:
     x, y, z, edge = node
     if edge <= 2:
-        raise BadOctreeError(phrase("The octomap is deeper than {depth} levels", depth=_DEPTH))
-    away = edge // 4
+        raise BadOctreeError(phrase("The octomap has more than {depth} levels", depth=_MAX_DEPTH))
+    distance = edge // 4
     return (
-        x + (away if child & 1 else -away),
-        y + (away if child & 2 else -away),
-        z + (away if child & 4 else -away),
+        x + (distance if child & 1 else -distance),
+        y + (distance if child & 2 else -distance),
+        z + (distance if child & 4 else -distance),
         edge // 2,
     )
 
@@ -170,17 +178,19 @@ class _Leaves:
         self._probabilities: list[float] = []
 
     def add(self, node: _Node, probability: float) -> None:
-        if len(self._nodes) == MOST_CELLS:
-            raise BadOctreeError(phrase("The octomap has more than {most} cells", most=MOST_CELLS))
+        if len(self._nodes) == MAX_CELLS:
+            raise BadOctreeError(
+                phrase(("The octomap has more than {most} cells, which are too many to draw"), most=MAX_CELLS)
+            )
         self._nodes.append(node)
         self._probabilities.append(probability)
 
-    def cells(self, resolution: float, at: int, data: bytes) -> Cells:
-        _check_end(at, data)
+    def cells(self, resolution: float, offset: int, data: bytes) -> Cells:
+        _check_is_at_end(offset, data)
         nodes = np.array(self._nodes, dtype=np.float64).reshape(-1, 4) * (resolution / 2.0)
         return Cells(nodes[:, :3], nodes[:, 3], np.array(self._probabilities, dtype=np.float64))
 
 
-def _check_end(at: int, data: bytes) -> None:
-    if at != len(data):
-        raise BadOctreeError(phrase("The octomap ends after {at} of {data} bytes", at=at, data=len(data)))
+def _check_is_at_end(offset: int, data: bytes) -> None:
+    if offset != len(data):
+        raise BadOctreeError(phrase("The octree ends after {at} of {data} bytes of data", at=offset, data=len(data)))

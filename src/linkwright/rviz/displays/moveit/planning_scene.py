@@ -30,17 +30,17 @@ from linkwright.rviz.displays.moveit.properties import (
 )
 from linkwright.rviz.displays.moveit.robot import JointPositions, UnusableStateError
 from linkwright.rviz.displays.moveit.scene import Scene
-from linkwright.rviz.displays.moveit.voxels import BY_PROBABILITY, octomap_markers, rendered
+from linkwright.rviz.displays.moveit.voxels import BY_PROBABILITY, octomap_markers, select_rendered
 
-_SERVICE = "get_planning_scene"
-_HELD = "Scene Robot holds"
+_SERVICE_NAME = "get_planning_scene"
+_ATTACHED_NAMESPACE = "Scene Robot holds"
 
 
 class PlanningSceneDisplay(MoveItDisplay):
     """A display of the robot of a planning scene, its attached objects, and the objects around it.
 
-    The topic carries only changes. The display therefore requests the full scene from move_group when the display
-    starts, or when move_group appears later.
+    The topic carries only changes. The display therefore requests the full scene from move_group, when the display
+    starts or as soon as move_group is available.
     """
 
     CLASS = "moveit_rviz_plugin/PlanningScene"
@@ -63,7 +63,7 @@ class PlanningSceneDisplay(MoveItDisplay):
     def description_topic(self) -> str:
         """Return the topic of the robot's description, in move_group's namespace unless it is absolute.
 
-        Without a namespace, or if no topic is set, return the property's value.
+        Return the value of the property if no namespace or no topic is set.
         """
         name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
@@ -71,32 +71,32 @@ class PlanningSceneDisplay(MoveItDisplay):
     def start(self) -> None:
         """Subscribe, and request the full scene."""
         super().start()
-        self._ask()
+        self._request_scene()
 
     def stop(self) -> None:
         """Unsubscribe, and cancel pending requests for the scene."""
-        self._leave()
+        self._cancel_request()
         super().stop()
 
     def enabled_changed(self) -> None:
         """Subscribe and request the full scene if the display is enabled, or unsubscribe."""
         super().enabled_changed()
-        self._ask()
+        self._request_scene()
 
     def changed(self, path: Path) -> None:
         """Apply a changed property; a new namespace or topic also requests the full scene again."""
         if path == (NAMESPACE,):
             self._restart()
             self._follow()
-            self._ask()
+            self._request_scene()
         super().changed(path)
         if path == self.TOPIC:
-            self._ask()
+            self._request_scene()
 
     def time_reset(self) -> None:
         """Discard the scene and request it again."""
         super().time_reset()
-        self._ask()
+        self._request_scene()
 
     def reset(self) -> None:
         """Discard the scene."""
@@ -106,16 +106,16 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().reset()
 
     def robot_changed(self) -> None:
-        """Apply the last state to the new robot; the state may have arrived before the description."""
+        """Apply the last state to the new robot, because the state may have arrived before the description."""
         self.scene.state = JointPositions()
         if self._state is not None:
             self._apply_state(self._state)
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Apply a full scene, or changes to the current one."""
-        before = self.scene.name
+        """Apply a full scene, or changes to the current scene."""
+        previous_name = self.scene.name
         self.scene.apply(message)
-        if self.scene.name != before:
+        if self.scene.name != previous_name:
             self._publish_name()
         state = message.robot_state
         if state.joint_state.name or state.multi_dof_joint_state.joint_names:
@@ -139,22 +139,22 @@ class PlanningSceneDisplay(MoveItDisplay):
 
     def _draw_soon(self) -> None:
         if self._due is None:
-            wait = self.properties.number(GEOMETRY, "Scene Display Time")
-            self._due = asyncio.get_running_loop().call_later(wait, self.draw)
+            delay = self.properties.number(GEOMETRY, "Scene Display Time")
+            self._due = asyncio.get_running_loop().call_later(delay, self.draw)
 
     def _draw_geometry(self) -> None:
-        shown = self.properties.flag(GEOMETRY, "Show Scene Geometry")
+        is_shown = self.properties.flag(GEOMETRY, "Show Scene Geometry")
         alpha = self.properties.number(GEOMETRY, "Scene Alpha")
         color = (*rgb(self.properties.text(GEOMETRY, "Scene Color")), alpha)
-        self.put("objects", self.scene.object_markers(GEOMETRY, color) if shown else ())
-        self.put("octomap", self._octomap(alpha) if shown else ())
+        self.put("objects", self.scene.object_markers(GEOMETRY, color) if is_shown else ())
+        self.put("octomap", self._octomap(alpha) if is_shown else ())
 
     def _octomap(self, alpha: float) -> list[MarkerShape]:
         octomap = self.scene.octomap
         if octomap is None:
             return []
         return octomap_markers(
-            rendered(octomap.cells, self.properties.text(GEOMETRY, "Voxel Rendering")),
+            select_rendered(octomap.cells, self.properties.text(GEOMETRY, "Voxel Rendering")),
             GEOMETRY,
             frame=octomap.frame,
             base=octomap.base,
@@ -168,10 +168,13 @@ class PlanningSceneDisplay(MoveItDisplay):
         alpha = self.properties.number(ROBOT, "Robot Alpha")
         color = (*rgb(self.properties.text(ROBOT, "Attached Body Color")), alpha)
         has_state = self._state is not None
-        of = look(self.properties, self.robot, ROBOT, (ROBOT,))
-        self.put("robot", self.robot.markers(self.scene.state, of) if has_state else ())
-        shown = has_state and alpha > 0.0
-        self.put("held", self.scene.held_markers(self.robot, self.scene.state, _HELD, color) if shown else ())
+        appearance = look(self.properties, self.robot, ROBOT, (ROBOT,))
+        self.put("robot", self.robot.markers(self.scene.state, appearance) if has_state else ())
+        is_shown = has_state and alpha > 0.0
+        self.put(
+            "held",
+            self.scene.attached_markers(self.robot, self.scene.state, _ATTACHED_NAMESPACE, color) if is_shown else (),
+        )
 
     def _apply_state(self, message: Any) -> None:
         if self.robot is None:
@@ -197,39 +200,39 @@ class PlanningSceneDisplay(MoveItDisplay):
 
     # --- requesting the full scene -----------------------------------------------------------------------------
 
-    def _ask(self) -> None:
+    def _request_scene(self) -> None:
         """Request the full scene from move_group, now or as soon as its service is available."""
-        self._leave()
+        self._cancel_request()
         if not self.enabled:
             return
         namespace = self.properties.text(NAMESPACE).strip("/ ")
-        name = f"/{namespace}/{_SERVICE}" if namespace else f"/{_SERVICE}"
+        name = f"/{namespace}/{_SERVICE_NAME}" if namespace else f"/{_SERVICE_NAME}"
         self._client = self.context.node.create_client(get_service("moveit_msgs/srv/GetPlanningScene"), name)
-        self.context.graph_changes.watch(self._ask_if_ready)
-        self._ask_if_ready()
+        self.context.graph_changes.watch(self._request_if_ready)
+        self._request_if_ready()
 
-    def _ask_if_ready(self) -> None:
+    def _request_if_ready(self) -> None:
         client = self._client
         if client is None or not client.service_is_ready():
             return
-        self.context.graph_changes.unwatch(self._ask_if_ready)
+        self.context.graph_changes.unwatch(self._request_if_ready)
         components = get_message("moveit_msgs/msg/PlanningSceneComponents")
-        asked = components(components=_PARTS)
-        future = client.call_async(client.srv_type.Request(components=asked))
+        requested_components = components(components=_COMPONENTS)
+        future = client.call_async(client.srv_type.Request(components=requested_components))
 
         def answered(_: Any) -> None:
             response = future.result()
             if self._client is client and response is not None and not self.scene.is_whole:
-                self._received_scene(response.scene)
+                self._on_scene(response.scene)
 
         future.add_done_callback(answered)
 
-    def _received_scene(self, scene: Any) -> None:
+    def _on_scene(self, scene: Any) -> None:
         if not self.host.time.paused:
             self._process(scene, None)
 
-    def _leave(self) -> None:
-        self.context.graph_changes.unwatch(self._ask_if_ready)
+    def _cancel_request(self) -> None:
+        self.context.graph_changes.unwatch(self._request_if_ready)
         if self._due is not None:
             self._due.cancel()
             self._due = None
@@ -239,5 +242,5 @@ class PlanningSceneDisplay(MoveItDisplay):
             self._client = None
 
 
-_PARTS = 1 | 2 | 4 | 8 | 16 | 32 | 64 | 512
-"""Settings, state, attached objects, names and shapes of objects, octomap, transforms, colours; see the message."""
+_COMPONENTS = 1 | 2 | 4 | 8 | 16 | 32 | 64 | 512
+"""The requested components: settings, state, objects with names and shapes, octomap, transforms and colours."""

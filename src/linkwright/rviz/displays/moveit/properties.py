@@ -59,7 +59,9 @@ GEOMETRY_SPEC = PropertySpec(
         ),
     ),
 )
-ATTACHED = PropertySpec("Attached Body Color", "color", "#963296", "Colour of attached bodies that have no colour.")
+ATTACHED_COLOR_SPEC = PropertySpec(
+    "Attached Body Color", "color", "#963296", "Colour of attached bodies that have no colour."
+)
 
 
 def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
@@ -70,7 +72,7 @@ def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
     )
 
 
-SHOWN = visibility("Show Robot Visual", "Show Robot Collision")
+VISIBILITY_SPECS = visibility("Show Robot Visual", "Show Robot Collision")
 
 
 def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
@@ -79,7 +81,12 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
         ROBOT,
         "group",
         description="The robot, in the state of the scene.",
-        children=(*SHOWN, fraction("Robot Alpha", 1.0, "Opacity of the robot."), ATTACHED, links_spec(links)),
+        children=(
+            *VISIBILITY_SPECS,
+            fraction("Robot Alpha", 1.0, "Opacity of the robot."),
+            ATTACHED_COLOR_SPEC,
+            links_spec(links),
+        ),
     )
 
 
@@ -93,7 +100,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
             "The topic of motions.",
             messages=("moveit_msgs/msg/DisplayTrajectory",),
         ),
-        *SHOWN,
+        *VISIBILITY_SPECS,
         fraction("Robot Alpha", 0.5, "Opacity of the robot that moves."),
         PropertySpec(
             "State Display Time",
@@ -115,14 +122,14 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
 
 
 def links_spec(links: Sequence[str]) -> PropertySpec:
-    """Return the declaration of the group with the check boxes of the links that have shapes."""
-    boxes = tuple(
+    """Return the declaration of the group with a check box for each of the given links."""
+    link_specs = tuple(
         PropertySpec(name, "bool", True, "Draw this link.", children=(alpha("Opacity of this link."),))
         for name in links
         if name != ALL_LINKS
     )
-    every = PropertySpec(ALL_LINKS, "bool", True, "Enable or disable all links.")
-    return PropertySpec(LINKS, "group", description="The links of the robot.", children=(every, *boxes))
+    all_spec = PropertySpec(ALL_LINKS, "bool", True, "Enable or disable all links.")
+    return PropertySpec(LINKS, "group", description="The links of the robot.", children=(all_spec, *link_specs))
 
 
 def rgb(text: str) -> tuple[float, float, float]:
@@ -133,23 +140,23 @@ def rgb(text: str) -> tuple[float, float, float]:
 
 def rgba(message: object) -> Color:
     """Return the red, green, blue and alpha components of a std_msgs/msg/ColorRGBA."""
-    parts = (getattr(message, part) for part in "rgba")
-    red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in parts)
+    components = (getattr(message, part) for part in "rgba")
+    red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in components)
     return red, green, blue, opacity
 
 
-def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()) -> dict[str, float]:
-    """Return the opacity of each link by name; 0 for links whose check box is off."""
-    found = {}
+def link_alphas(properties: PropertyStore, robot: PosableRobot, group_path: Path = ()) -> dict[str, float]:
+    """Return the opacity of each link by name, which is 0 if the check box of the link is off."""
+    alphas = {}
     for name in robot.shaped_links:
         if name != ALL_LINKS:
-            path = (*above, LINKS, name)
-            found[name] = properties.number(*path, "Alpha") if properties.flag(*path) else 0.0
-    return found
+            path = (*group_path, LINKS, name)
+            alphas[name] = properties.number(*path, "Alpha") if properties.flag(*path) else 0.0
+    return alphas
 
 
 def look(
-    properties: PropertyStore, robot: PosableRobot, namespace: str, above: Path = (), color: str | None = None
+    properties: PropertyStore, robot: PosableRobot, namespace: str, group_path: Path = (), color: str | None = None
 ) -> Look:
     """Return the appearance of a robot that the properties below a path describe.
 
@@ -157,14 +164,14 @@ def look(
         properties: the display's properties.
         robot: the robot whose links have check boxes.
         namespace: the markers' namespace.
-        above: the path of the group that contains the properties.
-        color: the colour of all links, such as ``#963296``; None to use the links' own colours.
+        group_path: the path of the group that contains the properties.
+        color: the colour of all links, such as ``#963296``; None to use the colours in the description.
     """
     return Look(
         namespace,
-        visual=properties.flag(*above, "Show Robot Visual"),
-        collision=properties.flag(*above, "Show Robot Collision"),
-        alpha=properties.number(*above, "Robot Alpha"),
-        alphas=link_alphas(properties, robot, above),
+        visual=properties.flag(*group_path, "Show Robot Visual"),
+        collision=properties.flag(*group_path, "Show Robot Collision"),
+        alpha=properties.number(*group_path, "Robot Alpha"),
+        alphas=link_alphas(properties, robot, group_path),
         color=None if color is None else rgb(color),
     )

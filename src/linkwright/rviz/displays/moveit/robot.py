@@ -1,4 +1,4 @@
-"""Draws a robot as markers in a state from a message; the links are placed without tf."""
+"""Draws a robot as markers in a state from a message; tf is not needed for the poses of the links."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from linkwright.rviz.markers.shapes import make_marker, pose_of
 from linkwright.rviz.robot import SceneBuilder
 from linkwright.urdf import Robot
 
-_RED: Color = (1.0, 0.0, 0.0, 1.0)
-"""RViz's colour of shapes without one."""
+_DEFAULT_COLOR: Color = (1.0, 0.0, 0.0, 1.0)
+"""The colour of shapes for which the description has no colour, as in RViz."""
 
 
 @dataclass(slots=True)
@@ -53,7 +53,7 @@ class Look:
         collision: whether to draw the collision geometry.
         alpha: the opacity of all links.
         alphas: the opacity of individual links, which is multiplied by `alpha`; links with 0 are not drawn.
-        color: the RGB colour of all links; None to use the links' own colours.
+        color: the RGB colour of all links; None to use the colours in the description.
         links: the colours of individual links, which take precedence over `color`.
         only: the names of the links that are drawn; None to draw all of them.
     """
@@ -82,7 +82,7 @@ class PosableRobot:
     Attributes:
         root: the name of the root link, which is also the name of its frame.
         shaped_links: the names of the links with shapes, in alphabetical order.
-        problems: the problems with files, by link.
+        problems: the problems with mesh and texture files, by link name.
     """
 
     def __init__(self, robot: Robot, index: MeshIndex) -> None:
@@ -91,12 +91,12 @@ class PosableRobot:
         self.problems = builder.problems
         self.shaped_links = sorted(link.name for link in self._links.values() if link.visuals or link.collisions)
         self._tree = KinematicTree(robot)
-        self._free = frozenset(self._tree.joint_names)
-        self._joints = frozenset(robot.joints)
-        self._below: dict[str, list[str]] = {}
+        self._independent_joints = frozenset(self._tree.joint_names)
+        self._joint_names = frozenset(robot.joints)
+        self._children_by_parent: dict[str, list[str]] = {}
         for joint in robot.joints.values():
-            self._below.setdefault(joint.parent, []).append(joint.child)
-        self._children = {joint.name: joint.child for joint in robot.joints.values()}
+            self._children_by_parent.setdefault(joint.parent, []).append(joint.child)
+        self._child_by_joint = {joint.name: joint.child for joint in robot.joints.values()}
         self.root = self._tree.link_names[0]
 
     def has_link(self, name: str) -> bool:
@@ -105,18 +105,18 @@ class PosableRobot:
 
     def has_joint(self, name: str) -> bool:
         """Return whether the robot has a joint with this name."""
-        return name in self._joints
+        return name in self._joint_names
 
     def links_moved_by(self, joints: AbstractSet[str]) -> set[str]:
         """Return the names of all links below any of these joints."""
-        pending = [self._children[name] for name in joints if name in self._children]
-        found: set[str] = set()
+        pending = [self._child_by_joint[name] for name in joints if name in self._child_by_joint]
+        links: set[str] = set()
         while pending:
             link = pending.pop()
-            if link not in found:
-                found.add(link)
-                pending += self._below.get(link, ())
-        return found
+            if link not in links:
+                links.add(link)
+                pending += self._children_by_parent.get(link, ())
+        return links
 
     def set_state(self, state: JointPositions, message: Any) -> list[str]:
         """Copy the joint positions and the root's pose of a moveit_msgs/msg/RobotState to a state.
@@ -129,18 +129,18 @@ class PosableRobot:
         """
         joints = message.joint_state
         unknown = self.set_joints(state, joints.name, joints.position)
-        several = message.multi_dof_joint_state
-        if len(several.joint_names) != len(several.transforms):
+        multi_dof = message.multi_dof_joint_state
+        if len(multi_dof.joint_names) != len(multi_dof.transforms):
             raise UnusableStateError(
                 phrase(
                     "The state has {joint_names} multi-DOF joints, but {transforms} transforms",
-                    joint_names=len(several.joint_names),
-                    transforms=len(several.transforms),
+                    joint_names=len(multi_dof.joint_names),
+                    transforms=len(multi_dof.transforms),
                 )
             )
-        for name, transform in zip(several.joint_names, several.transforms, strict=True):
-            if name not in self._joints:  # a virtual joint of the SRDF, which moves the root
-                self.set_root(state, several.header.frame_id, transform)
+        for name, transform in zip(multi_dof.joint_names, multi_dof.transforms, strict=True):
+            if name not in self._joint_names:  # such a joint is a virtual joint of the SRDF, which moves the root
+                self.set_root(state, multi_dof.header.frame_id, transform)
         return unknown
 
     def set_root(self, state: JointPositions, frame: str, transform: Any) -> None:
@@ -149,11 +149,16 @@ class PosableRobot:
         Raises:
             UnusableStateError: a number is not finite.
         """
-        at, turn = transform.translation, transform.rotation
-        if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
+        translation, rotation = transform.translation, transform.rotation
+        if not all(
+            map(
+                math.isfinite,
+                (translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z, rotation.w),
+            )
+        ):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
         state.frame = frame.removeprefix("/")
-        x, y, z, qx, qy, qz, qw = pose_of(_TransformAsPose(at, turn))
+        x, y, z, qx, qy, qz, qw = pose_of(_TransformAsPose(translation, rotation))
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
@@ -177,22 +182,26 @@ class PosableRobot:
         for name, position in zip(names, positions, strict=True):
             if not math.isfinite(position):
                 raise UnusableStateError(
-                    phrase("The position of joint '{name}' is {position}", name=name, position=position)
+                    phrase(
+                        ("The position of joint '{name}' must be finite, but is {position}"),
+                        name=name,
+                        position=position,
+                    )
                 )
-            if name in self._free:
+            if name in self._independent_joints:
                 state.values[name] = float(position)
-            elif name not in self._joints:
+            elif name not in self._joint_names:
                 unknown.append(name)
         return unknown
 
     def link_poses(self, state: JointPositions) -> dict[str, Transform]:
         """Return the poses of the links in a state, relative to the frame that `frame_of` returns."""
         matrices = self._tree.forward(state.values)
-        turns = quaternion_from_matrix(matrices[:, :3, :3]).tolist()
-        places = matrices[:, :3, 3].tolist()
+        quaternions = quaternion_from_matrix(matrices[:, :3, :3]).tolist()
+        translations = matrices[:, :3, 3].tolist()
         return {
             name: compose(state.root_in_frame, (x, y, z, qx, qy, qz, qw))
-            for name, (x, y, z), (qx, qy, qz, qw) in zip(self._tree.link_names, places, turns, strict=True)
+            for name, (x, y, z), (qx, qy, qz, qw) in zip(self._tree.link_names, translations, quaternions, strict=True)
         }
 
     def frame_of(self, state: JointPositions) -> str:
@@ -202,7 +211,7 @@ class PosableRobot:
     def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:
         """Return the markers that draw the robot in a state."""
         frame = self.frame_of(state)
-        made: list[MarkerShape] = []
+        shape_markers: list[MarkerShape] = []
         for name, pose in self.link_poses(state).items():
             link = self._links[name]
             alpha = look.alpha * look.alphas.get(name, 1.0)
@@ -213,25 +222,25 @@ class PosableRobot:
             if color is None and look.color is not None:
                 color = (*look.color, 1.0)
             for number, shape in enumerate(shapes):
-                called = f"{name} {number}" if number else name
-                red, green, blue, opacity = color or _own_color(shape)
+                marker_name = f"{name} {number}" if number else name
+                red, green, blue, opacity = color or _description_color(shape)
                 rgba = (red, green, blue, opacity * alpha)
-                place = _Place(look.namespace, called, frame, compose(pose, _in_link(shape)))
-                made += _shape_markers(shape, place, rgba, is_painted=color is not None)
-        return made
+                placement = _MarkerPlacement(look.namespace, marker_name, frame, compose(pose, _pose_in_link(shape)))
+                shape_markers += _shape_markers(shape, placement, rgba, is_painted=color is not None)
+        return shape_markers
 
 
 @dataclass(frozen=True, slots=True)
 class _TransformAsPose:
-    """A transform under the attribute names of a pose message."""
+    """A transform with the attribute names of a pose message."""
 
     position: Any
     orientation: Any
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    """The namespace, name, frame and pose that a marker gets."""
+class _MarkerPlacement:
+    """The namespace, name, frame and pose of a new marker."""
 
     namespace: str
     name: str
@@ -241,39 +250,40 @@ class _Place:
     def marker(self, kind: MarkerKind, scale: list[float], color: Color, mesh: MarkerMesh | None = None) -> MarkerShape:
         return make_marker(self.namespace, self.name, kind, self.pose, scale, color, frame=self.frame, mesh=mesh)
 
-    def end(self, number: int, z: float) -> _Place:
+    def end(self, number: int, z: float) -> _MarkerPlacement:
         pose = compose(self.pose, (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))
-        return _Place(self.namespace, f"{self.name} end {number}", self.frame, pose)
+        return _MarkerPlacement(self.namespace, f"{self.name} end {number}", self.frame, pose)
 
 
-def _shape_markers(shape: Shape, place: _Place, color: Color, *, is_painted: bool) -> list[MarkerShape]:
+def _shape_markers(shape: Shape, place: _MarkerPlacement, color: Color, *, is_painted: bool) -> list[MarkerShape]:
     if shape.kind == "mesh":
         mesh = MarkerMesh(shape.format or "", shape.url, None, embedded=not is_painted)
         return [place.marker("mesh", shape.size, color, mesh)]
     if shape.kind == "box":
         return [place.marker("cube", shape.size, color)]
     radius = shape.size[0]
-    ball = [2.0 * radius] * 3
+    sphere_size = [2.0 * radius] * 3
     if shape.kind == "sphere":
-        return [place.marker("sphere", ball, color)]
+        return [place.marker("sphere", sphere_size, color)]
     length = shape.size[1]
-    tube = place.marker("cylinder", [2.0 * radius, 2.0 * radius, length], color)
+    cylinder = place.marker("cylinder", [2.0 * radius, 2.0 * radius, length], color)
     if shape.kind == "cylinder":
-        return [tube]
+        return [cylinder]
     ends = (place.end(number, sign * length / 2.0) for number, sign in enumerate((-1.0, 1.0)))
-    return [tube, *(end.marker("sphere", ball, color) for end in ends)]
+    return [cylinder, *(at_end.marker("sphere", sphere_size, color) for at_end in ends)]
 
 
-def _in_link(shape: Shape) -> Transform:
+def _pose_in_link(shape: Shape) -> Transform:
     x, y, z = shape.position
     qx, qy, qz, qw = shape.quaternion
     return (x, y, z, qx, qy, qz, qw)
 
 
-def _own_color(shape: Shape) -> Color:
+def _description_color(shape: Shape) -> Color:
     """Return the colour of a shape in the description, by default red.
 
-    The colour of a mesh is white, except of STL meshes, because it is multiplied by the mesh's own materials.
+    The colour of a mesh is white, because it is multiplied by the materials of the mesh. STL meshes have no materials,
+    and so have the colour of the description.
     """
     if shape.kind == "mesh" and not (shape.format or "").startswith("stl"):
         alpha = shape.color[3] if shape.color else 1.0
@@ -281,4 +291,4 @@ def _own_color(shape: Shape) -> Color:
     if shape.color:
         red, green, blue, alpha = shape.color
         return (red, green, blue, alpha)
-    return _RED
+    return _DEFAULT_COLOR

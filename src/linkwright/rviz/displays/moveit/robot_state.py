@@ -10,7 +10,7 @@ from linkwright.rviz.config.schema import PropertySpec, Schema
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.moveit.base import STATE, MoveItDisplay
 from linkwright.rviz.displays.moveit.properties import (
-    ATTACHED,
+    ATTACHED_COLOR_SPEC,
     DESCRIPTION_SPEC,
     fraction,
     link_alphas,
@@ -23,13 +23,13 @@ from linkwright.rviz.displays.moveit.robot import JointPositions, Look, Unusable
 from linkwright.rviz.displays.moveit.scene import Scene
 
 _TOPIC = "Robot State Topic"
-_ROBOT = "Robot State"
-_HELD = "Robot State holds"
-_HIGHLIGHTS = "Highlights"
+_ROBOT_NAMESPACE = "Robot State"
+_ATTACHED_NAMESPACE = "Robot State holds"
+_HIGHLIGHTS_ROW = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """A display of the robot in the state of the last message, with the message's link colours."""
+    """A display of the robot in the state of the last message, with the link colours of the message."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"
@@ -38,7 +38,7 @@ class RobotStateDisplay(MoveItDisplay):
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._state = JointPositions()
-        self._attached = Scene()
+        self._attached_objects = Scene()
 
     def schema(self) -> Schema:
         """Return the properties, with a check box for each link."""
@@ -47,7 +47,7 @@ class RobotStateDisplay(MoveItDisplay):
             PropertySpec(_TOPIC, "topic", "display_robot_state", "The topic of states.", messages=(self.MESSAGE,)),
             *visibility("Visual Enabled", "Collision Enabled"),
             fraction("Robot Alpha", 1.0, "Opacity of the robot."),
-            ATTACHED,
+            ATTACHED_COLOR_SPEC,
             PropertySpec("Show Highlights", "bool", True, "Draw links in the colours that the message gives them."),
             links_spec(self.link_names),
         )
@@ -65,48 +65,52 @@ class RobotStateDisplay(MoveItDisplay):
     def reset(self) -> None:
         """Discard the state."""
         self._state = JointPositions()
-        self._attached = Scene()
+        self._attached_objects = Scene()
         super().reset()
 
     def draw(self) -> None:
         """Draw the robot in the last state."""
         message, robot = self.last, self.robot
         if robot is None or message is None or message.hide:
-            self.put(_ROBOT, ())
-            self.put(_HELD, ())
+            self.put(_ROBOT_NAMESPACE, ())
+            self.put(_ATTACHED_NAMESPACE, ())
             self.drawn()
             return
         properties = self.properties
         alpha = properties.number("Robot Alpha")
-        highlights = {highlight_link.id: rgba(highlight_link.color) for highlight_link in message.highlight_links}
+        highlights = {highlight.id: rgba(highlight.color) for highlight in message.highlight_links}
         look = Look(
-            _ROBOT,
+            _ROBOT_NAMESPACE,
             visual=properties.flag("Visual Enabled"),
             collision=properties.flag("Collision Enabled"),
             alpha=alpha,
             alphas=link_alphas(properties, robot),
             links=highlights if properties.flag("Show Highlights") else {},
         )
-        self.put(_ROBOT, robot.markers(self._state, look))
+        self.put(_ROBOT_NAMESPACE, robot.markers(self._state, look))
         color = (*rgb(properties.text("Attached Body Color")), alpha)
-        self.put(_HELD, self._attached.held_markers(robot, self._state, _HELD, color))
-        for name, text in self._attached.problems.items():
+        self.put(
+            _ATTACHED_NAMESPACE, self._attached_objects.attached_markers(robot, self._state, _ATTACHED_NAMESPACE, color)
+        )
+        for name, text in self._attached_objects.problems.items():
             self.set_status_row(name, "error", text)
-        unknown = sorted(name for name in highlights if not robot.has_link(name))
-        if unknown:
-            self.set_status_row(_HIGHLIGHTS, "warn", phrase("The robot has no link '{name}'", name=unknown[0]))
+        unknown_links = sorted(name for name in highlights if not robot.has_link(name))
+        if unknown_links:
+            self.set_status_row(
+                _HIGHLIGHTS_ROW, "warn", phrase("The robot has no link '{name}'", name=unknown_links[0])
+            )
         else:
-            self.delete_status_row(_HIGHLIGHTS)
+            self.delete_status_row(_HIGHLIGHTS_ROW)
         self.drawn()
 
     def _read(self, message: Any) -> None:
         robot = self.robot
         if robot is None:
             return
-        for name in self._attached.problems:
+        for name in self._attached_objects.problems:
             self.delete_status_row(name)
-        self._attached = Scene()
-        self._attached.attach(message.state.attached_collision_objects)
+        self._attached_objects = Scene()
+        self._attached_objects.attach(message.state.attached_collision_objects)
         state = self._state.copy() if message.state.is_diff else JointPositions()
         try:
             self.report_unknown_joints(robot.set_state(state, message.state))

@@ -20,7 +20,7 @@ from linkwright.rviz.markers.shapes import pose_of
 _REMOVE, _APPEND, _MOVE = b"\x01", b"\x02", b"\x03"
 
 OCTOMAP = "<octomap>"
-"""The name that MoveIt gives the octomap among the objects."""
+"""The ID of the octomap among the objects of MoveIt."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +51,11 @@ class SceneObject:
     def moved(self, message: Any) -> SceneObject:
         """Return a copy of the object with the frame and the poses of a message.
 
-        Poses of shapes that the message omits stay unchanged.
+        Poses that the message omits stay unchanged.
         """
-        poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
+        poses: dict[str, Any] = {
+            name: tuple(poses_of_kind) for name in _POSES if (poses_of_kind := getattr(message, name))
+        }
         return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
 
     @property
@@ -68,7 +70,7 @@ _SHAPES = ("primitives", "meshes", "planes", *_POSES)
 
 @dataclass(frozen=True, slots=True)
 class PlacedCells:
-    """The cells of an octomap and the octomap's pose."""
+    """The cells of an octomap, and the pose `base` of the octomap in a frame."""
 
     cells: Cells
     frame: str
@@ -80,7 +82,7 @@ class Scene:
 
     Attributes:
         name: the name of the scene.
-        is_whole: whether the full scene is known, and not only the changes since the subscription.
+        is_whole: whether a full scene was received, and not only changes.
         state: the robot's state.
         octomap: the cells and the pose of the octomap, or None.
         problems: the problems with objects, by object ID.
@@ -93,17 +95,17 @@ class Scene:
         self.octomap: PlacedCells | None = None
         self.problems: dict[str, Phrase] = {}
         self._objects: dict[str, SceneObject] = {}
-        self._held: dict[str, tuple[str, SceneObject]] = {}
+        self._attached: dict[str, tuple[str, SceneObject]] = {}
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
         """Apply a moveit_msgs/msg/PlanningScene, either a full scene or a difference.
 
-        The caller applies the robot's joint positions.
+        The caller must apply the joint positions of the robot.
         """
         if not message.is_diff:
             self._objects.clear()
-            self._held.clear()
+            self._attached.clear()
             self._colors.clear()
             self.problems.clear()
             self.octomap = None
@@ -113,9 +115,9 @@ class Scene:
         for object_color in message.object_colors:
             self._colors[object_color.id] = rgba(object_color.color)
         if not message.robot_state.is_diff and not message.is_diff:
-            self._held.clear()
+            self._attached.clear()
         for collision_object in message.world.collision_objects:
-            self._change(collision_object)
+            self._apply_object(collision_object)
         self.attach(message.robot_state.attached_collision_objects)
         octomap = message.world.octomap
         if octomap.octomap.id or octomap.octomap.data:
@@ -128,80 +130,84 @@ class Scene:
 
     def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
         """Return the markers of the objects that are not attached to the robot."""
-        made: list[MarkerShape] = []
-        for known_object in self._objects.values():
-            chosen = self._colors.get(known_object.id, color)
-            made += self._markers(known_object, namespace, chosen, known_object.frame, IDENTITY)
-        return made
+        shape_markers: list[MarkerShape] = []
+        for scene_object in self._objects.values():
+            object_color = self._colors.get(scene_object.id, color)
+            shape_markers += self._markers(scene_object, namespace, object_color, scene_object.frame, IDENTITY)
+        return shape_markers
 
-    def held_markers(
+    def attached_markers(
         self, robot: PosableRobot, state: JointPositions, namespace: str, color: Color
     ) -> list[MarkerShape]:
         """Return the markers of the attached objects, with the robot in the given state."""
         links = robot.link_poses(state)
-        made: list[MarkerShape] = []
-        for link, held in self._held.values():
-            at = held.frame or link
-            if at not in links:
-                self.problems[held.id] = phrase(
-                    "The robot has no link '{link}' for the attached object '{name}'", link=at, name=held.id
+        shape_markers: list[MarkerShape] = []
+        for link, attached_object in self._attached.values():
+            frame = attached_object.frame or link
+            if frame not in links:
+                self.problems[attached_object.id] = phrase(
+                    "The robot has no link '{link}' for the attached object '{name}'",
+                    link=frame,
+                    name=attached_object.id,
                 )
                 continue
-            chosen = self._colors.get(held.id, color)
-            made += self._markers(held, namespace, chosen, robot.frame_of(state), links[at])
-        return made
+            object_color = self._colors.get(attached_object.id, color)
+            shape_markers += self._markers(
+                attached_object, namespace, object_color, robot.frame_of(state), links[frame]
+            )
+        return shape_markers
 
     def _markers(
         self, scene_object: SceneObject, namespace: str, color: Color, frame: str, base: Transform
     ) -> list[MarkerShape]:
         try:
-            made = object_markers(scene_object, namespace, color, frame=frame, base=base)
+            shape_markers = object_markers(scene_object, namespace, color, frame=frame, base=base)
         except BadObjectError as error:
             self.problems[scene_object.id] = foreign(error)
             return []
         self.problems.pop(scene_object.id, None)
-        return made
+        return shape_markers
 
-    def _change(self, message: Any) -> None:
+    def _apply_object(self, message: Any) -> None:
         name, operation = message.id, message.operation
-        known = self._objects.get(name)
+        existing = self._objects.get(name)
         if operation == _REMOVE:
             if not name:
                 self._objects.clear()
             self._objects.pop(name, None)
             self.problems.pop(name, None)
         elif operation == _MOVE:
-            if known is None:
-                self.problems[name] = phrase("Object '{name}' cannot be moved: it does not exist", name=name)
+            if existing is None:
+                self.problems[name] = phrase("Object '{name}' cannot be moved, because it does not exist", name=name)
             else:
-                self._objects[name] = known.moved(message)
-        elif operation == _APPEND and known is not None:
-            self._objects[name] = known.with_added_shapes(message)
+                self._objects[name] = existing.moved(message)
+        elif operation == _APPEND and existing is not None:
+            self._objects[name] = existing.with_added_shapes(message)
         else:
             self._objects[name] = SceneObject.of(message)
 
     def _attach(self, message: Any) -> None:
         name, link = message.object.id, message.link_name
         if message.object.operation == _REMOVE:
-            gone = [
+            removed_ids = [
                 identity
-                for identity, (at, _) in self._held.items()
+                for identity, (at, _) in self._attached.items()
                 if identity == name or (not name and link in ("", at))
             ]
-            for identity in gone:
-                del self._held[identity]
+            for identity in removed_ids:
+                del self._attached[identity]
                 self.problems.pop(identity, None)
             return
-        held = SceneObject.of(message.object)
-        before = self._held.get(name)
-        if message.object.operation == _APPEND and before is not None:
-            held = before[1].with_added_shapes(message.object)
-        if not held.has_shapes:
+        attached_object = SceneObject.of(message.object)
+        previous = self._attached.get(name)
+        if message.object.operation == _APPEND and previous is not None:
+            attached_object = previous[1].with_added_shapes(message.object)
+        if not attached_object.has_shapes:
             self.problems[name] = phrase("The attached object '{name}' has no shapes", name=name)
             return
         self._objects.pop(name, None)
         self.problems.pop(name, None)
-        self._held[name] = (link, held)
+        self._attached[name] = (link, attached_object)
 
     def _map(self, message: Any) -> None:
         octomap = message.octomap

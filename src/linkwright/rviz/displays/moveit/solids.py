@@ -19,15 +19,15 @@ Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, from 0 to 1."""
 
 Form = tuple[MarkerKind, Sequence[float], NDArray[np.float32]]
-"""Kind, scale and points of a marker."""
+"""The kind, the scale and the points of a marker."""
 
 _NO_POINTS = np.empty((0, 3), dtype=np.float32)
 
 _PLANE_EDGE = 10.0
-"""Edge of the square that represents a plane, which is infinite, in metres."""
+"""The edge length in metres of the square that represents an infinite plane."""
 
-_ROUND = 24
-"""Corners of the circle of a cone."""
+_CONE_CORNERS = 24
+"""The number of corners of the circle of a cone."""
 
 
 class BadObjectError(ValueError):
@@ -42,36 +42,36 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
         namespace: the markers' namespace.
         color: the colour of all shapes.
         frame: the frame that the markers follow.
-        base: the pose, in `frame`, of the frame in the message's header.
+        base: the pose of the frame in the message's header, relative to `frame`.
 
     Raises:
         BadObjectError: a number is not finite, the numbers of shapes and poses differ, or a primitive is not valid.
     """
-    in_frame = compose(base, _pose(message.pose))
+    object_pose = compose(base, _pose(message.pose))
     groups: tuple[tuple[str, Sequence[Any], Sequence[Any], Callable[[Any], Form]], ...] = (
         ("primitive", message.primitives, message.primitive_poses, _primitive),
         ("mesh", message.meshes, message.mesh_poses, _mesh),
         ("plane", message.planes, message.plane_poses, _plane),
     )
-    made: list[MarkerShape] = []
-    for what, shapes, poses, form_of in groups:
+    shape_markers: list[MarkerShape] = []
+    for kind_name, shapes, poses, make_form in groups:
         if len(poses) not in (0, len(shapes)):
             raise BadObjectError(
                 phrase(
-                    "{shapes} shapes of kind {what} have {poses} poses",
+                    "The numbers of shapes and poses of kind {what} differ: {shapes} shapes, but {poses} poses",
                     shapes=len(shapes),
-                    what=what,
+                    what=kind_name,
                     poses=len(poses),
                 )
             )
         for number, shape in enumerate(shapes):
-            pose = compose(in_frame, _pose(poses[number])) if poses else in_frame
-            kind, scale, points = form_of(shape)
+            pose = compose(object_pose, _pose(poses[number])) if poses else object_pose
+            kind, scale, points = make_form(shape)
             if not all(map(math.isfinite, (*pose, *scale))) or not np.isfinite(points).all():
                 raise BadObjectError(phrase("Contains invalid floating point values (nans or infs)"))
-            name = f"{message.id} {what} {number}" if made else message.id
-            made.append(make_marker(namespace, name, kind, pose, scale, color, frame=frame, points=points))
-    return made
+            name = f"{message.id} {kind_name} {number}" if shape_markers else message.id
+            shape_markers.append(make_marker(namespace, name, kind, pose, scale, color, frame=frame, points=points))
+    return shape_markers
 
 
 def _pose(message: Any) -> Transform:
@@ -80,9 +80,9 @@ def _pose(message: Any) -> Transform:
 
 
 def _primitive(shape: Any) -> Form:
-    make, count = _PRIMITIVES.get(shape.type, (None, 0))
-    if make is None:
-        raise BadObjectError(phrase("Unknown type of primitive: {type}", type=shape.type))
+    make_form, count = _PRIMITIVES.get(shape.type, (None, 0))
+    if make_form is None:
+        raise BadObjectError(phrase("Primitives of type {type} are not supported", type=shape.type))
     sizes = [float(size) for size in shape.dimensions]
     if len(sizes) < count:
         raise BadObjectError(
@@ -95,7 +95,7 @@ def _primitive(shape: Any) -> Form:
         )
     if any(size < 0.0 for size in sizes):
         raise BadObjectError(phrase("A dimension is negative"))
-    return make(shape, sizes)
+    return make_form(shape, sizes)
 
 
 def _box(_: Any, sizes: list[float]) -> Form:
@@ -113,33 +113,35 @@ def _cylinder(_: Any, sizes: list[float]) -> Form:
 
 def _cone(_: Any, sizes: list[float]) -> Form:
     height, radius = sizes[:2]
-    angles = np.linspace(0.0, 2.0 * math.pi, _ROUND + 1)
-    rim = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(_ROUND + 1, -height / 2.0)], axis=-1)
-    tip, middle = (0.0, 0.0, height / 2.0), (0.0, 0.0, -height / 2.0)
-    corners = [corner for a, b in pairwise(rim) for corner in (a, b, tip, b, a, middle)]
-    return "triangle_list", _ONE, _points(corners)
+    angles = np.linspace(0.0, 2.0 * math.pi, _CONE_CORNERS + 1)
+    rim = np.stack(
+        [radius * np.cos(angles), radius * np.sin(angles), np.full(_CONE_CORNERS + 1, -height / 2.0)], axis=-1
+    )
+    apex, center = (0.0, 0.0, height / 2.0), (0.0, 0.0, -height / 2.0)
+    corners = [corner for a, b in pairwise(rim) for corner in (a, b, apex, b, a, center)]
+    return "triangle_list", _UNIT_SCALE, _points(corners)
 
 
 def _prism(shape: Any, sizes: list[float]) -> Form:
-    """Return a polygon extruded to a height; the polygon's plane is halfway between both faces.
+    """Return a polygon extruded to a height, with its plane halfway between both faces.
 
-    The corners of the polygon are in order.
+    The corners of the polygon must be in order.
     """
-    flat = [(point.x, point.y) for point in shape.polygon.points]
-    if len(flat) < 3:
-        raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))
-    half = sizes[0] / 2.0
-    lower, upper = [(x, y, -half) for x, y in flat], [(x, y, half) for x, y in flat]
+    outline = [(point.x, point.y) for point in shape.polygon.points]
+    if len(outline) < 3:
+        raise BadObjectError(phrase("The polygon of a prism has only {corners} corners", corners=len(outline)))
+    half_height = sizes[0] / 2.0
+    lower, upper = [(x, y, -half_height) for x, y in outline], [(x, y, half_height) for x, y in outline]
     corners = []
-    for place in range(1, len(flat) - 1):
-        corners += [upper[0], upper[place], upper[place + 1], lower[0], lower[place + 1], lower[place]]
-    for place in range(len(flat)):
-        after = (place + 1) % len(flat)
-        corners += [lower[place], lower[after], upper[after], lower[place], upper[after], upper[place]]
-    return "triangle_list", _ONE, _points(corners)
+    for index in range(1, len(outline) - 1):
+        corners += [upper[0], upper[index], upper[index + 1], lower[0], lower[index + 1], lower[index]]
+    for index in range(len(outline)):
+        next_index = (index + 1) % len(outline)
+        corners += [lower[index], lower[next_index], upper[next_index], lower[index], upper[next_index], upper[index]]
+    return "triangle_list", _UNIT_SCALE, _points(corners)
 
 
-_ONE = (1.0, 1.0, 1.0)
+_UNIT_SCALE = (1.0, 1.0, 1.0)
 
 _PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], Form], int]] = {
     1: (_box, 3),
@@ -148,23 +150,23 @@ _PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], Form], int]] = {
     4: (_cone, 2),
     5: (_prism, 1),
 }
-"""By shape_msgs' numbers, with the number of dimensions of each."""
+"""The function for each primitive and its number of dimensions, by the type in shape_msgs."""
 
 
 def _mesh(mesh: Any) -> Form:
     if not mesh.triangles:
         raise BadObjectError(phrase("A mesh has no triangles"))
-    places = np.array([triangle.vertex_indices for triangle in mesh.triangles], dtype=np.int64).reshape(-1)
+    vertex_indices = np.array([triangle.vertex_indices for triangle in mesh.triangles], dtype=np.int64).reshape(-1)
     vertices = np.array([(vertex.x, vertex.y, vertex.z) for vertex in mesh.vertices], dtype=np.float32).reshape(-1, 3)
-    if places.max() >= len(vertices):
+    if vertex_indices.max() >= len(vertices):
         raise BadObjectError(
             phrase(
-                "A triangle of a mesh refers to vertex {vertex}, but there are {vertices}",
-                vertex=places.max(),
+                "A triangle of a mesh refers to vertex {vertex}, but the mesh has only {vertices} vertices",
+                vertex=vertex_indices.max(),
                 vertices=len(vertices),
             )
         )
-    return "triangle_list", _ONE, _points(vertices[places])
+    return "triangle_list", _UNIT_SCALE, _points(vertices[vertex_indices])
 
 
 def _plane(plane: Any) -> Form:
@@ -175,14 +177,14 @@ def _plane(plane: Any) -> Form:
     normal, distance = np.array(plane.coef[:3], dtype=np.float64), float(plane.coef[3])
     length = float(np.linalg.norm(normal))
     if not math.isfinite(length) or length == 0.0:
-        raise BadObjectError(phrase("A plane has no normal"))
-    middle = normal * (-distance / length**2)
+        raise BadObjectError(phrase("The normal of a plane is zero or not finite"))
+    center = normal * (-distance / length**2)
     normal /= length
-    along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    along *= _PLANE_EDGE / 2.0 / np.linalg.norm(along)
-    across = np.cross(normal, along)
-    a, b, c, d = (middle + p * along + q * across for p, q in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
-    return "triangle_list", _ONE, _points([a, b, c, a, c, d])
+    first_edge = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    first_edge *= _PLANE_EDGE / 2.0 / np.linalg.norm(first_edge)
+    second_edge = np.cross(normal, first_edge)
+    a, b, c, d = (center + p * first_edge + q * second_edge for p, q in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    return "triangle_list", _UNIT_SCALE, _points([a, b, c, a, c, d])
 
 
 def _points(corners: Any) -> NDArray[np.float32]:

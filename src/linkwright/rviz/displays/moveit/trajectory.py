@@ -19,14 +19,14 @@ from linkwright.rviz.displays.moveit.robot import JointPositions, PosableRobot, 
 
 _SECONDS = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
 _FACTOR = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
-_LOOP = "Loop Animation"
-_LEAST_WAIT = 0.005
-_MOST_WAYPOINTS = 100_000
-_MOST_IN_TRAIL = 200
-"""The largest number of states drawn at once; longer trails are drawn with larger steps."""
+_LOOP_PROPERTY = "Loop Animation"
+_MIN_WAIT = 0.005
+_MAX_STATES = 100_000
+_MAX_TRAIL_STATES = 200
+"""The largest number of states in a trail; longer trails are drawn with larger steps."""
 
-READ_AS = "3x"
-"""The value used for a State Display Time that cannot be read."""
+DEFAULT_DISPLAY_TIME = "3x"
+"""The value that is used if the State Display Time is not valid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,18 +56,21 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
     unknown = robot.set_state(state, message.trajectory_start)
     states, durations = [state.copy()], []
     joints: set[str] = set()
-    for part in message.trajectory:
-        one, many = part.joint_trajectory, part.multi_dof_joint_trajectory
-        if len(states) + max(len(one.points), len(many.points)) > _MOST_WAYPOINTS:
-            raise UnusableStateError(phrase("The motion has more than {most} states", most=_MOST_WAYPOINTS))
-        joints.update(one.joint_names)
+    for partial_trajectory in message.trajectory:
+        joint_trajectory, root_trajectory = (
+            partial_trajectory.joint_trajectory,
+            partial_trajectory.multi_dof_joint_trajectory,
+        )
+        if len(states) + max(len(joint_trajectory.points), len(root_trajectory.points)) > _MAX_STATES:
+            raise UnusableStateError(phrase("The motion has more than {most} states", most=_MAX_STATES))
+        joints.update(joint_trajectory.joint_names)
         times = [0.0]
-        for point, root_point in zip_longest(one.points, many.points):
+        for point, root_point in zip_longest(joint_trajectory.points, root_trajectory.points):
             if point is not None:
-                missing = robot.set_joints(state, one.joint_names, point.positions)
-                unknown += [name for name in missing if name not in unknown]
+                unknown_names = robot.set_joints(state, joint_trajectory.joint_names, point.positions)
+                unknown += [name for name in unknown_names if name not in unknown]
             if root_point is not None:
-                _set_root(robot, state, many, root_point)
+                _set_root(robot, state, root_trajectory, root_point)
             times.append(_seconds((root_point if point is None else point).time_from_start))
             states.append(state.copy())
         durations += [max(0.0, after - before) for before, after in pairwise(times)]
@@ -79,7 +82,7 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
 def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point: Any) -> None:
     """Set the root's pose from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory.
 
-    The root is moved by joints that the robot does not have.
+    Joints that the robot does not have move the root.
     """
     for name, transform in zip(trajectory.joint_names, point.transforms, strict=False):
         if not robot.has_joint(name):
@@ -91,7 +94,7 @@ def _seconds(duration: Any) -> float:
 
 
 def display_seconds(text: str, duration: float) -> float:
-    """Return how many seconds a state is shown.
+    """Return the time for which a state is shown, in seconds.
 
     Args:
         text: the value of the property State Display Time.
@@ -103,23 +106,23 @@ def display_seconds(text: str, duration: float) -> float:
     factor = _FACTOR.fullmatch(text)
     if factor and float(factor[1]) > 0.0:
         return duration / float(factor[1])
-    fixed = _SECONDS.fullmatch(text)
-    return float(fixed[1]) if fixed else display_seconds(READ_AS, duration)
+    fixed_seconds = _SECONDS.fullmatch(text)
+    return float(fixed_seconds[1]) if fixed_seconds else display_seconds(DEFAULT_DISPLAY_TIME, duration)
 
 
 class MotionPlayer:
-    """Plays motions, by showing their states one after the other.
+    """Plays motions by showing their states one after the other.
 
     Args:
         display: the display that has the properties.
-        above: the path of the group that contains the properties.
-        show: called when another state is to be drawn.
+        group_path: the path of the group that contains the properties of the motion.
+        on_state: called when another state is to be drawn.
     """
 
-    def __init__(self, display: MoveItDisplay, above: Path, show: Callable[[], None]) -> None:
+    def __init__(self, display: MoveItDisplay, group_path: Path, on_state: Callable[[], None]) -> None:
         self._display = display
-        self._above = above
-        self._show = show
+        self._group_path = group_path
+        self._on_state = on_state
         self._message: Any = None
         self._next: Any = None
         self._place = 0
@@ -139,10 +142,10 @@ class MotionPlayer:
     def play(self, message: Any) -> None:
         """Play a moveit_msgs/msg/DisplayTrajectory, immediately or after the current motion.
 
-        The new motion waits for the current one to end, unless the properties let it interrupt the current motion, or
-        make the current motion loop.
+        The new motion waits for the end of the current motion, unless ``Interrupt Display`` or ``Loop Animation`` is
+        on.
         """
-        if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
+        if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP_PROPERTY):
             self._next = message
             return
         self._message = message
@@ -150,7 +153,7 @@ class MotionPlayer:
 
     def property_changed(self, path: Path) -> None:
         """Play the last motion again if looping was just switched on."""
-        if path == (*self._above, _LOOP) and self._flag(_LOOP) and not self.is_playing:
+        if path == (*self._group_path, _LOOP_PROPERTY) and self._flag(_LOOP_PROPERTY) and not self.is_playing:
             self.begin_again()
 
     def begin_again(self) -> None:
@@ -166,20 +169,20 @@ class MotionPlayer:
     def draw(self, group: str) -> None:
         """Put the current state and the trail into two marker groups of the display."""
         robot, motion = self._display.robot, self.motion
-        now, trail = [], []
+        state_markers, trail_markers = [], []
         if robot is not None and motion is not None:
             properties = self._display.properties
-            color = properties.text(*self._above, "Robot Color") if self._flag("Color Enabled") else None
+            color = properties.text(*self._group_path, "Robot Color") if self._flag("Color Enabled") else None
             if self.state is not None:
-                now = robot.markers(self.state, look(properties, robot, group, self._above, color))
+                state_markers = robot.markers(self.state, look(properties, robot, group, self._group_path, color))
             if self._flag("Show Trail"):
-                step = int(properties.number(*self._above, "Trail Step Size"))
-                step = max(step, -(-len(motion.states) // _MOST_IN_TRAIL))
-                for place in range(0, len(motion.states), step):
-                    of = look(properties, robot, f"{group} {place}", self._above, color)
-                    trail += robot.markers(motion.states[place], of)
-        self._display.put(group, now)
-        self._display.put(f"{group} trail", trail)
+                step = int(properties.number(*self._group_path, "Trail Step Size"))
+                step = max(step, -(-len(motion.states) // _MAX_TRAIL_STATES))
+                for state_index in range(0, len(motion.states), step):
+                    appearance = look(properties, robot, f"{group} {state_index}", self._group_path, color)
+                    trail_markers += robot.markers(motion.states[state_index], appearance)
+        self._display.put(group, state_markers)
+        self._display.put(f"{group} trail", trail_markers)
 
     def _begin(self) -> None:
         self._stop()
@@ -191,20 +194,20 @@ class MotionPlayer:
         except UnusableStateError as error:
             self.motion = None
             self._display.set_status_row(STATE, "error", foreign(error))
-            self._show()
+            self._on_state()
             return
         self._display.delete_status_row(STATE)
         self._display.report_unknown_joints(self.motion.unknown)
         self._place = 0
         self._wait()
-        self._show()
+        self._on_state()
 
     def _wait(self) -> None:
         assert self.motion is not None
-        text = self._display.properties.text(*self._above, "State Display Time")
+        text = self._display.properties.text(*self._group_path, "State Display Time")
         durations = self.motion.durations
         seconds = display_seconds(text, durations[min(self._place, len(durations) - 1)])
-        self._timer = asyncio.get_running_loop().call_later(max(_LEAST_WAIT, seconds), self._step)
+        self._timer = asyncio.get_running_loop().call_later(max(_MIN_WAIT, seconds), self._step)
 
     def _step(self) -> None:
         self._timer = None
@@ -220,10 +223,10 @@ class MotionPlayer:
             self._message, self._next = self._next, None
             self._begin()
             return
-        elif self._flag(_LOOP):
+        elif self._flag(_LOOP_PROPERTY):
             self._place = 0
             self._wait()
-        self._show()
+        self._on_state()
 
     def _stop(self) -> None:
         if self._timer is not None:
@@ -231,7 +234,7 @@ class MotionPlayer:
             self._timer = None
 
     def _flag(self, name: str) -> bool:
-        return self._display.properties.flag(*self._above, name)
+        return self._display.properties.flag(*self._group_path, name)
 
 
 class TrajectoryDisplay(MoveItDisplay):

@@ -15,8 +15,8 @@ from linkwright.rviz.markers.shapes import make_marker
 
 _OCCUPIED, _FREE, _ALL = "Occupied Voxels", "Free Voxels", "All Voxels"
 _BY_HEIGHT, BY_PROBABILITY = "Z-Axis", "Cell Probability"
-_LIKELY = 0.5
-"""Cells that are occupied with a higher probability."""
+_OCCUPIED_THRESHOLD = 0.5
+"""Cells with a higher probability are occupied."""
 
 VOXEL_RENDERING = PropertySpec(
     "Voxel Rendering", "enum", _OCCUPIED, "The cells of the octomap to draw.", options=(_OCCUPIED, _FREE, _ALL)
@@ -30,11 +30,11 @@ VOXEL_COLORING = PropertySpec(
 )
 
 
-def rendered(cells: Cells, rendering: str) -> Cells:
-    """Return the cells that a value of `VOXEL_RENDERING` selects: all, occupied or free ones."""
+def select_rendered(cells: Cells, rendering: str) -> Cells:
+    """Return the cells that a value of `VOXEL_RENDERING` selects: all, occupied or free cells."""
     if rendering == _ALL:
         return cells
-    return cells.chosen((cells.probabilities > _LIKELY) == (rendering == _OCCUPIED))
+    return cells.chosen((cells.probabilities > _OCCUPIED_THRESHOLD) == (rendering == _OCCUPIED))
 
 
 def octomap_markers(
@@ -62,16 +62,16 @@ def octomap_markers(
         colors[:, 2] = 0.0
     else:
         height = cells.centers[:, 2]
-        least, span = float(height.min()), float(np.ptp(height))
-        share = np.zeros_like(height) if span == 0.0 else (height - least) / span
-        colors[:, :3] = _RAINBOW[(share * (len(_RAINBOW) - 1)).astype(np.intp)]
-    made = []
+        lowest, span = float(height.min()), float(np.ptp(height))
+        fractions = np.zeros_like(height) if span == 0.0 else (height - lowest) / span
+        colors[:, :3] = _RAINBOW[(fractions * (len(_RAINBOW) - 1)).astype(np.intp)]
+    markers = []
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
         points = np.ascontiguousarray(cells.centers[mask], dtype=np.float32)
         edges = [float(size)] * 3
         name = f"octomap {size:g}"
-        made.append(
+        markers.append(
             make_marker(
                 namespace,
                 name,
@@ -84,37 +84,37 @@ def octomap_markers(
                 colors=np.ascontiguousarray(colors[mask]),
             )
         )
-    return made
+    return markers
 
 
 _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) for step in range(64)], dtype=np.float32)
 
 
 def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
-    """Return a mask of the cells that have a side without a neighbour of the same size."""
-    seen = np.ones(len(cells.sizes), dtype=np.bool_)
+    """Return a mask of the cells with at least one side without a neighbour of the same size."""
+    is_visible = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
-        codes = _codes(np.floor(cells.centers[mask] / size).astype(np.int64))
-        known = np.sort(codes)
-        around = np.ones(len(codes), dtype=np.bool_)
-        for step in _STEPS:
-            places = np.searchsorted(known, codes + step)
-            around &= known[np.minimum(places, len(known) - 1)] == codes + step
-        seen[mask] = ~around
-    return seen
+        codes = _cell_codes(np.floor(cells.centers[mask] / size).astype(np.int64))
+        sorted_codes = np.sort(codes)
+        is_enclosed = np.ones(len(codes), dtype=np.bool_)
+        for step in _NEIGHBOUR_OFFSETS:
+            positions = np.searchsorted(sorted_codes, codes + step)
+            is_enclosed &= sorted_codes[np.minimum(positions, len(sorted_codes) - 1)] == codes + step
+        is_visible[mask] = ~is_enclosed
+    return is_visible
 
 
 _BITS = 20
-_STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
-"""The differences between the code of a cell and those of its neighbours."""
+_NEIGHBOUR_OFFSETS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
+"""The differences between the codes of the six neighbours of a cell and its own code."""
 
 
-def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return a unique integer for the grid indices of each cell.
+def _cell_codes(indices: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return an integer for the grid indices of each cell, which is unique among cells of the same size.
 
     There are at most 2^16 cells of one size along each axis.
     """
-    shifted = places + (1 << (_BITS - 1))
+    shifted = indices + (1 << (_BITS - 1))
     codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]
     return codes

@@ -34,12 +34,12 @@ from linkwright.sdf.models import Include
 from linkwright.sdf.resources import Missing, ResourceFinder, model_file
 
 
-def entities_of(world: WorldText) -> list[WorldEntity]:
-    """Return the models and lights of a world, as they are sent to pages."""
-    return [_entity(entity) for entity in world.entities.values()]
+def world_entities(world: WorldText) -> list[WorldEntity]:
+    """Return the models and lights of a world in the form in which pages receive them."""
+    return [_to_message(entity) for entity in world.entities.values()]
 
 
-def _entity(entity: Entity) -> WorldEntity:
+def _to_message(entity: Entity) -> WorldEntity:
     pose, shape = pose_of_entity(entity), entity.shape
     colour = shape.colour if shape is not None else entity.light.diffuse if entity.light is not None else None
     return WorldEntity(
@@ -56,9 +56,9 @@ def _entity(entity: Entity) -> WorldEntity:
 
 
 def choices(packages: PackageFinder) -> ModelChoices:
-    """Return the message that offers the models on the search path, sorted by name."""
-    found = ResourceFinder(packages).models()
-    names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
+    """Return the message that lists the models on the search path, sorted by name."""
+    folders = ResourceFinder(packages).models()
+    names = sorted(name for name, folder in folders.items() if not isinstance(model_file(folder), Missing))
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
 
 
@@ -80,7 +80,7 @@ def apply_edit(world: WorldText, message: PageMessage) -> WorldText:
         case AddEntity(_, _, pose, _):
             return add_light(world, "spot", pose)[0]
         case ChangeEntities(changes):
-            return change(world, map(_change, changes))
+            return change(world, map(_to_change, changes))
         case CopyEntities(names, offset):
             return copy(world, names, offset)[0]
         case DeleteEntities(names):
@@ -93,7 +93,7 @@ def apply_edit(world: WorldText, message: PageMessage) -> WorldText:
             raise TypeError(f"{type(message).__name__} changes no world")
 
 
-def _change(change: EntityChange) -> Change:
+def _to_change(change: EntityChange) -> Change:
     return Change(
         change.name,
         pose=None if change.pose is None else tuple(change.pose),

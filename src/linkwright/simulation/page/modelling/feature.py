@@ -1,8 +1,8 @@
 """World editing in the page: pages edit the text of the world, and the simulation loads the result.
 
-The text is read from the file in the simulator's parameter ``world``. If there is no such file, or if it contains
-another world, the text is the description that the simulator publishes. All pages edit the same text, and their
-requests are handled one after the other.
+The text comes from the file that the simulator's parameter ``world`` names. If there is no such file, or if it
+contains another world, the text is the description that the simulator publishes. All pages edit the same text, and
+their requests are handled in the order in which they arrive.
 """
 
 from __future__ import annotations
@@ -33,51 +33,51 @@ from linkwright.simulation.page.services import SimulationServices, refuse
 if TYPE_CHECKING:
     from linkwright.simulation.page.modelling.edited_world import EditedWorld
 
-_DESCRIPTION = "/world_description"
-_EMPTY, _LOAD = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
+_DESCRIPTION_TOPIC = "/world_description"
+_EMPTY_SERVICE, _LOAD_SERVICE = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
 _PATIENCE = 30.0
-"""Seconds to wait for an answer of the simulation, or its description."""
+"""The maximum time to wait for a response or the description of the simulation, in seconds."""
 
 
 class ModellingFeature(PageFeature):
-    """The feature that shows pages the models and lights of the world, and applies the pages' edits."""
+    """The feature that shows the models and lights of the world in pages, and applies the pages' edits."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._services = SimulationServices(self.context)
-        self._listening = False
-        self._available = False
+        self._is_watching = False
+        self._can_edit = False
         self._active = False
-        self._edited: EditedWorld | None = None
+        self._edited_world: EditedWorld | None = None
         self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._worker: asyncio.Task[None] | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the message that describes whether the world can be edited, and its entities once read."""
-        if not self._listening:
-            self._listening = True
-            self.context.graph_changes.watch(self._review)
-            self._available = self._is_available()
+        """Return the initial message for a new page: whether the world can be edited, and its entities."""
+        if not self._is_watching:
+            self._is_watching = True
+            self.context.graph_changes.watch(self._update_availability)
+            self._can_edit = self._is_available()
         return [self._state()]
 
     def page_closed(self, page: Page) -> None:
         """Stop watching the graph after the last page has closed; edits are kept."""
-        if self._listening and len(self.context.pages) == 0:
-            self._listening = False
-            self.context.graph_changes.unwatch(self._review)
+        if self._is_watching and len(self.context.pages) == 0:
+            self._is_watching = False
+            self.context.graph_changes.unwatch(self._update_availability)
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store the text of an unsaved world in the recovery folder, and return the finding about it.
+        """Store the unsaved text of the world in the recovery folder, and return the finding that reports this.
 
-        The list is empty if nothing is unsaved.
+        The list is empty if there are no unsaved changes.
         """
-        if self._edited is None or not self._edited.unsaved:
+        if self._edited_world is None or not self._edited_world.unsaved:
             return []
-        return [self._edited.store_unsaved(recovery_folder())]
+        return [self._edited_world.store_unsaved(recovery_folder())]
 
     def close(self) -> None:
         """Stop the feature permanently."""
-        self.context.graph_changes.unwatch(self._review)
+        self.context.graph_changes.unwatch(self._update_availability)
         self._services.close()
         if self._worker is not None:
             self._worker.cancel()
@@ -92,24 +92,30 @@ class ModellingFeature(PageFeature):
 
     def _is_available(self) -> bool:
         """Return whether a simulation publishes the description of its world."""
-        return bool(self.context.node.get_publishers_info_by_topic(_DESCRIPTION))
+        return bool(self.context.node.get_publishers_info_by_topic(_DESCRIPTION_TOPIC))
 
-    def _review(self) -> None:
-        available = self._is_available()
-        if available != self._available:
-            self._available = available
+    def _update_availability(self) -> None:
+        is_available = self._is_available()
+        if is_available != self._can_edit:
+            self._can_edit = is_available
             self._publish()
 
     def _state(self) -> ModellingState:
-        edited = self._edited
-        if edited is None:
-            return ModellingState(self._available, self._active, None, False, False, False, [])
-        from linkwright.simulation.page.modelling.entities import entities_of
+        edited_world = self._edited_world
+        if edited_world is None:
+            return ModellingState(self._can_edit, self._active, None, False, False, False, [])
+        from linkwright.simulation.page.modelling.entities import world_entities
 
-        file = None if edited.file is None else str(edited.file)
-        entities = entities_of(edited.world)
+        file = None if edited_world.file is None else str(edited_world.file)
+        entities = world_entities(edited_world.world)
         return ModellingState(
-            self._available, self._active, file, edited.unsaved, edited.can_undo, edited.can_redo, entities
+            self._can_edit,
+            self._active,
+            file,
+            edited_world.unsaved,
+            edited_world.can_undo,
+            edited_world.can_redo,
+            entities,
         )
 
     def _publish(self) -> None:
@@ -118,23 +124,23 @@ class ModellingFeature(PageFeature):
     # --- requests of pages ------------------------------------------------------------------------------------
 
     async def _work(self) -> None:
-        """Handle the queued requests one after the other, because reading a large world takes time."""
+        """Handle the queued requests one at a time, because reading a large world takes long."""
         from linkwright.sdf.editing import EditError
 
         while True:
             page, message = await self._waiting.get()
             try:
-                await self._do(page, message)
+                await self._handle(page, message)
             except EditError as error:
                 refuse(page, error.message)
             except LinkwrightError as error:
-                found = error.diagnostics[0]
-                refuse(page, found.placed_message)
+                finding = error.diagnostics[0]
+                refuse(page, finding.placed_message)
             except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
                 self.context.node.get_logger().error(f"The world cannot be edited: {type(error).__name__}: {error}")
                 refuse(page, f"{type(error).__name__}: {error}")
 
-    async def _do(self, page: Page, message: PageMessage) -> None:
+    async def _handle(self, page: Page, message: PageMessage) -> None:
         if isinstance(message, AskModels):
             from linkwright.simulation.page.modelling.entities import choices
 
@@ -142,63 +148,63 @@ class ModellingFeature(PageFeature):
         elif isinstance(message, SetModelling):
             await self._set_active(page, active=message.active)
         elif isinstance(message, SaveWorld):
-            edited = await self._world()
-            await asyncio.to_thread(edited.save, message.path)
+            edited_world = await self._current_world()
+            await asyncio.to_thread(edited_world.save, message.path)
             self._publish()
         else:
-            edited = await self._world()
-            await asyncio.to_thread(_edit(edited, message))
+            edited_world = await self._current_world()
+            await asyncio.to_thread(_edit(edited_world, message))
             self._publish()
             if self._waiting.empty():
-                await self._load(page, edited)
+                await self._load(page, edited_world)
 
     async def _set_active(self, page: Page, *, active: bool) -> None:
         if active == self._active:
             return
         if active:
-            await self._world()
-            await self._ask(page, _EMPTY, "/pause_physics")
-            await self._ask(page, _EMPTY, "/reset_simulation")
+            await self._current_world()
+            await self._ask(page, _EMPTY_SERVICE, "/pause_physics")
+            await self._ask(page, _EMPTY_SERVICE, "/reset_simulation")
         else:
-            await self._ask(page, _EMPTY, "/unpause_physics")
+            await self._ask(page, _EMPTY_SERVICE, "/unpause_physics")
         self._active = active
         self._publish()
 
-    async def _world(self) -> EditedWorld:
-        """Return the edited world, which is read on first use.
+    async def _current_world(self) -> EditedWorld:
+        """Return the edited world, and read it on first use.
 
-        A world without unsaved edits is read again if its file has changed.
+        If its file has changed and there are no unsaved edits, the world is read again.
         """
         from linkwright.simulation.page.modelling.edited_world import EditedWorld
 
-        edited, packages = self._edited, self.context.finder
-        if edited is not None and edited.file is not None:
-            if not edited.unsaved and await asyncio.to_thread(lambda: edited.is_outdated):
-                fresh = await asyncio.to_thread(EditedWorld.of_file, edited.file, packages)
-                await asyncio.to_thread(fresh.reserve, edited.world.reserved)
-                self._edited = fresh
-        elif edited is None:
-            self._edited = await self._read()
-        assert self._edited is not None, "one of the branches sets it"
-        return self._edited
+        edited_world, packages = self._edited_world, self.context.finder
+        if edited_world is not None and edited_world.file is not None:
+            if not edited_world.unsaved and await asyncio.to_thread(lambda: edited_world.is_outdated):
+                reloaded = await asyncio.to_thread(EditedWorld.of_file, edited_world.file, packages)
+                await asyncio.to_thread(reloaded.reserve, edited_world.world.reserved)
+                self._edited_world = reloaded
+        elif edited_world is None:
+            self._edited_world = await self._read()
+        assert self._edited_world is not None, "one of the branches sets it"
+        return self._edited_world
 
     async def _read(self) -> EditedWorld:
-        """Return the simulated world from its file, or else from the published description."""
+        """Return the simulated world from its file, or from the published description if the file is unusable."""
         from linkwright.sdf.editing import EditError
         from linkwright.sdf.resources import ResourceFinder
         from linkwright.simulation.page.modelling.edited_world import EditedWorld
 
         packages = self.context.finder
-        described = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
+        published_world = await asyncio.to_thread(EditedWorld.from_text, await self._receive_description(), packages)
         name = await self._request_world_file()
         path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
         if path is not None:
             with suppress(EditError, LinkwrightError):  # On another machine, this path may be a different file.
-                found = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
-                if found.world.world.name == described.world.world.name:
-                    await asyncio.to_thread(found.reserve, described.world.entities)
-                    return found
-        return described
+                file_world = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
+                if file_world.world.world.name == published_world.world.world.name:
+                    await asyncio.to_thread(file_world.reserve, published_world.world.entities)
+                    return file_world
+        return published_world
 
     async def _request_world_file(self) -> str:
         """Return the value of the simulator's parameter ``world``.
@@ -206,7 +212,7 @@ class ModellingFeature(PageFeature):
         An empty string is returned if there is no such parameter, or if the simulator does not respond.
         """
         node = self.context.node
-        publishers = node.get_publishers_info_by_topic(_DESCRIPTION)
+        publishers = node.get_publishers_info_by_topic(_DESCRIPTION_TOPIC)
         if not publishers:
             return ""
         name = f"{publishers[0].node_namespace.rstrip('/')}/{publishers[0].node_name}/get_parameters"
@@ -227,11 +233,11 @@ class ModellingFeature(PageFeature):
         finally:
             node.destroy_client(client)
 
-    async def _described(self) -> str:
-        """Return the description that the simulator publishes.
+    async def _receive_description(self) -> str:
+        """Wait for the description that the simulator publishes, and return it.
 
         Raises:
-            EditError: the simulator does not publish one.
+            EditError: no simulator publishes a description.
         """
         from linkwright.sdf.editing import EditError
 
@@ -242,20 +248,24 @@ class ModellingFeature(PageFeature):
             if not text.done():
                 text.set_result(message.data)
 
-        subscription = node.create_subscription(get_message("std_msgs/msg/String"), _DESCRIPTION, receive, LATCHED_QOS)
+        subscription = node.create_subscription(
+            get_message("std_msgs/msg/String"), _DESCRIPTION_TOPIC, receive, LATCHED_QOS
+        )
         try:
             return await asyncio.wait_for(text, _PATIENCE if self._is_available() else 0)
         except asyncio.TimeoutError:
-            raise EditError(phrase("there is no world to edit: no simulation publishes one")) from None
+            raise EditError(
+                phrase("there is no world to edit, because no simulation publishes one; start a simulation")
+            ) from None
         finally:
             node.destroy_subscription(subscription)
 
-    async def _load(self, page: Page, edited: EditedWorld) -> None:
+    async def _load(self, page: Page, edited_world: EditedWorld) -> None:
         """Ask the simulator to load the edited world in place of the current one."""
         resource = get_message("simulation_interfaces/msg/Resource")
-        named = resource(uri=str(edited.path.absolute()), resource_string=edited.world.text)
-        fields = {"world_resource": named, "ignore_missing_or_unsupported_assets": True}
-        await self._ask(page, _LOAD, "/load_world", fields)
+        world_resource = resource(uri=str(edited_world.path.absolute()), resource_string=edited_world.world.text)
+        fields = {"world_resource": world_resource, "ignore_missing_or_unsupported_assets": True}
+        await self._ask(page, _LOAD_SERVICE, "/load_world", fields)
 
     async def _ask(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
         """Call a service, wait for the response, and report a timeout to the page."""
@@ -272,12 +282,12 @@ class ModellingFeature(PageFeature):
             refuse(page, phrase("'{name}' did not respond", name=name))
 
 
-def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
-    """Return a slow function, to be run in a thread, that applies a page's request to a world."""
+def _edit(edited_world: EditedWorld, message: PageMessage) -> Callable[[], None]:
+    """Return a slow function that applies a page's request to a world; the caller runs it in a thread."""
     from linkwright.simulation.page.modelling.entities import apply_edit
 
     if isinstance(message, UndoWorld):
-        return edited.undo
+        return edited_world.undo
     if isinstance(message, RedoWorld):
-        return edited.redo
-    return partial(edited.edit, partial(apply_edit, message=message))
+        return edited_world.redo
+    return partial(edited_world.edit, partial(apply_edit, message=message))

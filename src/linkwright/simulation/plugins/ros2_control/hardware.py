@@ -24,14 +24,14 @@ from linkwright.graph.log.logger import Logger
 from linkwright.simulation.plugins.plugin import PluginPlace
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
 from linkwright.simulation.plugins.ros2_control.pids import pids_of
-from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, sensors_of, simulated_sensor
+from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, sensors_of
 from linkwright.simulation.simulation import Simulation
 
-_KINDS = (POSITION, VELOCITY, EFFORT)
+_COMMAND_KINDS = (POSITION, VELOCITY, EFFORT)
 
 
 class ControlledModel(Protocol):
-    """The part of the interface of `SimulatedControl` that the hardware uses."""
+    """The attributes and methods of `SimulatedControl` that the hardware uses."""
 
     simulation: Simulation
     place: PluginPlace
@@ -48,8 +48,8 @@ class SimulatedSystem(Hardware):
 
     Args:
         description: the description of the hardware in the URDF.
-        logger: the logger of the hardware.
-        plugin: the plugin of the model.
+        logger: receives warnings about joints and sensors that the model does not have.
+        plugin: the plugin that runs the hardware.
         holds: whether joints hold their positions while they have no command.
         gain: the fraction of a position error that each update corrects; with NaN, an update corrects the whole error.
         values: parameters of the plugin's node, which may include gains of PID controllers.
@@ -72,43 +72,51 @@ class SimulatedSystem(Hardware):
         super().__init__(description, logger)
         self.has_pids = bool(gains)
         self._joints: dict[str, SimulatedJoint] = {}
-        for each in description.joints:
+        for joint_description in description.joints:
             try:
-                name = plugin.joint(each.name)
+                name = plugin.joint(joint_description.name)
             except LinkwrightError as error:
-                logger.warning(f"Skipping joint in the URDF named '{each.name}' which is not in the gazebo model.")
+                logger.warning(
+                    f"Skipping joint in the URDF named '{joint_description.name}' which is not in the gazebo model."
+                )
                 logger.debug(error.diagnostics[0].message)
-                self._forget(each.name)
+                self._remove_interfaces(joint_description.name)
                 continue
-            self._joints[each.name] = SimulatedJoint(
+            self._joints[joint_description.name] = SimulatedJoint(
                 plugin.simulation,
                 name,
-                each,
-                {state.kind: state for state in self.states if state.component == each.name},
+                joint_description,
+                {state.kind: state for state in self.states if state.component == joint_description.name},
                 {
                     command.kind: command
                     for command in self.commands
-                    if command.component == each.name and command.kind in _KINDS and each.mimic is None
+                    if command.component == joint_description.name
+                    and command.kind in _COMMAND_KINDS
+                    and joint_description.mimic is None
                 },
-                holds=holds,
+                holds_position=holds,
                 gain=gain,
-                pids={kind: Pid(each_gains) for (joint, kind), each_gains in gains.items() if joint == each.name},
+                pids={
+                    kind: Pid(each_gains)
+                    for (joint, kind), each_gains in gains.items()
+                    if joint == joint_description.name
+                },
             )
         for joint in self._joints.values():
             joint.begin()
         self._sensors = self._create_sensors(plugin)
 
-    def _forget(self, component: str) -> None:
-        """Remove the interfaces of a component that the model does not have."""
+    def _remove_interfaces(self, component: str) -> None:
+        """Remove the state and command interfaces of a component that the model does not have."""
         self.states = [state for state in self.states if state.component != component]
         self.commands = [command for command in self.commands if command.component != component]
 
     def _create_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
-        found = []
-        there = sensors_of(plugin.place)
+        simulated_sensors = []
+        placed_sensors = sensors_of(plugin.place)
         for sensor in self.description.sensors:
-            placed = there.get(sensor.name)
-            if placed is None:
+            placed_sensor = placed_sensors.get(sensor.name)
+            if placed_sensor is None:
                 message = phrase(
                     "sensor '{name}' of <ros2_control> has no IMU or force-torque sensor of this name in the "
                     "model, so its states do not change",
@@ -117,8 +125,10 @@ class SimulatedSystem(Hardware):
                 self.logger.warning(message)
                 continue
             states = [state for state in self.states if state.component == sensor.name]
-            found.append(simulated_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))
-        return found
+            simulated_sensors.append(
+                create_sensor(plugin.simulation, placed_sensor, states, plugin.random_of(placed_sensor.name))
+            )
+        return simulated_sensors
 
     def begin(self) -> None:
         """Restore the initial state of the joints when the world restarts, and keep their modes."""

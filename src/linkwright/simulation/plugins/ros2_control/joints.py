@@ -1,4 +1,4 @@
-"""Simulated joints, which the hardware reads and commands."""
+"""Simulated joints, whose states the hardware reads and to which it applies commands."""
 
 from __future__ import annotations
 
@@ -12,85 +12,87 @@ from linkwright.control.motion.pid import Pid
 from linkwright.simulation.actuators import Motor, Servo
 from linkwright.simulation.simulation import Simulation
 
-_GAIN = 20.0
-"""Torque of a motor in N m for each rad/s that its joint is too slow."""
-_FASTEST = 1000.0
-"""Speed in rad/s (m/s) of a joint without a velocity limit."""
+_VELOCITY_GAIN = 20.0
+"""The velocity gain of motors, in N m per rad/s of velocity error (N per m/s for prismatic joints)."""
+_MAX_SERVO_SPEED = 1000.0
+"""The maximum speed of servos in rad/s, or in m/s for prismatic joints."""
 
 
 class SimulatedJoint:
-    """A simulated joint of the hardware.
+    """A joint in the simulation that a joint of ``<ros2_control>`` reads and commands.
 
     Call `begin` only after all joints are created, so that the model is compiled only once.
 
-    A constraint holds positions, because Gazebo puts joints exactly where they are commanded. A motor with the effort
-    limit of the joint holds velocities. Efforts and PID controllers apply forces.
+    Position commands use a constraint, because Gazebo moves joints exactly to the commanded positions. Velocity
+    commands use a motor with the effort limit of the joint. Effort commands and PID controllers apply forces.
 
     Args:
         simulation: the simulation of the world.
         name: the joint's name in the simulation.
-        described: the joint in ``<ros2_control>``.
-        states, commands: the interfaces of the joint, by kind.
-        holds: whether the joint holds its position while it has no command.
-        gain: the fraction of a position error that each update corrects; with NaN, an update corrects the whole error.
-        pids: PID controllers that apply forces, by the kind of command that they follow.
+        description: the description of the joint in ``<ros2_control>``.
+        states, commands: the interfaces of the joint, by kind, such as ``position``.
+        holds_position: whether the joint holds its position while no controller commands it.
+        gain: the fraction of a position error that each update corrects; NaN for the whole error.
+        pids: the PID controllers that apply forces, by the kind of command that they follow.
     """
 
     def __init__(
         self,
         simulation: Simulation,
         name: str,
-        described: ComponentDescription,
+        description: ComponentDescription,
         states: dict[str, StateInterface],
         commands: dict[str, CommandInterface],
         *,
-        holds: bool,
+        holds_position: bool,
         gain: float = nan,
         pids: Mapping[str, Pid] = MappingProxyType({}),
     ) -> None:
         self._simulation = simulation
         self._name = name
-        self._described = described
-        self._holds, self._gain = holds, gain
+        self._description = description
+        self._holds_position, self._gain = holds_position, gain
         self._position, self._velocity = states.get(POSITION), states.get(VELOCITY)
         self._effort = states.get(EFFORT)
         self._commands = commands
         self._pids = pids
         self._target = 0.0
         self._mode = ""
-        placed = simulation.scene.joints[name]
-        simulation.keep_awake(placed.child)
-        limit = placed.axes[0][0].limit.effort
-        self._greatest = limit if isfinite(limit) and limit > 0.0 else inf
-        self._is_endless = placed.joint.type == "continuous"
-        self._pushed = bool(pids) or EFFORT in commands
+        placed_joint = simulation.scene.joints[name]
+        simulation.keep_awake(placed_joint.child)
+        limit = placed_joint.axes[0][0].limit.effort
+        self._max_effort = limit if isfinite(limit) and limit > 0.0 else inf
+        self._is_continuous = placed_joint.joint.type == "continuous"
+        self._accepts_forces = bool(pids) or EFFORT in commands
         self._motor: Motor | None = None
         self._servo: Servo | None = None
         if VELOCITY in commands and VELOCITY not in pids:
-            self._motor = simulation.add_velocity_motor(name, _GAIN, self._greatest)
-        if (POSITION in commands and POSITION not in pids) or (self._pushed and self._motor is None and holds):
-            self._servo = simulation.add_servo(name, _FASTEST)
+            self._motor = simulation.add_velocity_motor(name, _VELOCITY_GAIN, self._max_effort)
+        if (POSITION in commands and POSITION not in pids) or (
+            self._accepts_forces and self._motor is None and holds_position
+        ):
+            self._servo = simulation.add_servo(name, _MAX_SERVO_SPEED)
 
     def begin(self) -> None:
-        """Set the initial position of the description if there is one, and clear the command mode."""
-        for state in self._described.states:
+        """Set the initial position, if the description has one, and clear the command mode."""
+        for state in self._description.states:
             if state.name == POSITION and not isnan(state.initial_value):
                 self._simulation.set_joint_position(self._name, state.initial_value)
         self.set_mode("")
 
     def set_mode(self, kind: str) -> None:
         """Set the kind of interface that commands the joint; empty if no controller commands the joint."""
-        before, self._mode = self._mode, kind
-        if before in (VELOCITY, EFFORT) and self._motor is not None:  # other motors already hold 0
+        previous_mode, self._mode = self._mode, kind
+        if previous_mode in (VELOCITY, EFFORT) and self._motor is not None:  # In other modes the target is already 0.
             self._motor.target = 0.0
-        if self._pushed:
+        if self._accepts_forces:
             self._simulation.push_joint(self._name, 0.0)
         if kind in self._pids:
             self._pids[kind].reset()
             self._target = self._simulation.joint_state(self._name)[0] if kind == POSITION else 0.0
         if self._servo is not None:
             self._servo.restart()
-            if kind not in ("", POSITION) or kind in self._pids or (not kind and not self._holds):
+            if kind not in ("", POSITION) or kind in self._pids or (not kind and not self._holds_position):
                 self._servo.release()
 
     @property
@@ -110,13 +112,13 @@ class SimulatedJoint:
             self._effort.value = float(joint.qfrc_actuator[0] + joint.qfrc_applied[0])
 
     def write(self, period_s: float) -> None:
-        """Apply the command of the current mode, except one that a PID controller follows.
+        """Apply the command of the current mode, unless a PID controller follows it.
 
-        A command that is NaN has no effect. Without a command mode, the motor is released unless the joint is held.
+        A NaN command has no effect. Without a command mode, the motor is released unless the joint holds its position.
         """
         command = self._commands.get(self._mode)
         if command is None:
-            if self._motor is not None and not self._holds:
+            if self._motor is not None and not self._holds_position:
                 self._motor.release()
             return
         value = command.value
@@ -134,7 +136,7 @@ class SimulatedJoint:
             self._simulation.push_joint(self._name, value)
 
     def push(self, period_s: float) -> None:
-        """Apply the force of the PID controller; call this after each step of the world."""
+        """Apply the force of the current mode's PID controller, if it has one; call this after each simulation step."""
         pid = self._pids.get(self._mode)
         if pid is None:
             return
@@ -145,7 +147,7 @@ class SimulatedJoint:
             self._motor.release()
         position, velocity = self._simulation.joint_state(self._name)
         error = self._target - (velocity if self._mode == VELOCITY else position)
-        if self._is_endless and self._mode == POSITION:
+        if self._is_continuous and self._mode == POSITION:
             error = remainder(error, tau)
         force = pid.command(error, period_s)
-        self._simulation.push_joint(self._name, min(max(force, -self._greatest), self._greatest))
+        self._simulation.push_joint(self._name, min(max(force, -self._max_effort), self._max_effort))

@@ -24,21 +24,21 @@ from linkwright.graph.log.logger import Logger
 
 _PREFIXES = {POSITION: "pos_", VELOCITY: "vel_"}
 _SUFFIX = "_pid"
-_TRUE = ("true", "True", True)
+_TRUE_VALUES = ("true", "True", True)
 
 
 def pids_of(
     description: HardwareDescription, values: Mapping[str, Any], logger: Logger
 ) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
-    """Return a description with the interface names that controllers use, and the PID gains.
+    """Return a description with the interface names that controllers use, and the declared PID gains.
 
     Args:
-        description: the description in the URDF.
-        values: parameters of the plugin's node, by names with dots.
-        logger: receives a warning for each value that is not a number.
+        description: the hardware description in the URDF.
+        values: the parameters of the plugin's node, by their dotted names.
+        logger: receives a warning for each gain that is not a number.
 
     Returns:
-        The description, and gains by joint and kind of command.
+        The description without ``_pid`` suffixes, and the gains by joint name and kind of command.
     """
     gains: dict[tuple[str, str], PidGains] = {}
     joints = []
@@ -47,9 +47,9 @@ def pids_of(
         for command in joint.commands:
             kind = command.name.removesuffix(_SUFFIX)
             if kind in _PREFIXES:
-                found = _given(joint, kind, values, is_pid=kind != command.name)
-                if found is not None:
-                    gains[joint.name, kind] = _gains(joint.name, found, logger)
+                declared_gains = _declared_gains(joint, kind, values, is_pid=kind != command.name)
+                if declared_gains is not None:
+                    gains[joint.name, kind] = _pid_gains(joint.name, declared_gains, logger)
                 commands.append(replace(command, name=kind))
             else:
                 commands.append(command)
@@ -57,38 +57,42 @@ def pids_of(
     return replace(description, joints=tuple(joints)), gains
 
 
-def _given(
+def _declared_gains(
     joint: ComponentDescription, kind: str, values: Mapping[str, Any], *, is_pid: bool
 ) -> Mapping[str, Any] | None:
-    """Return the gains of a PID controller, by name without prefix; None if there is no controller."""
-    start = f"pid_gains.{kind}.{joint.name}."
-    found = {name.removeprefix(start): each for name, each in values.items() if name.startswith(start)}
-    if found or not is_pid:
-        return found or None
+    """Return the gains of a joint's PID controller, by name without prefix; None if it has no controller."""
+    prefix_of_parameters = f"pid_gains.{kind}.{joint.name}."
+    node_gains = {
+        name.removeprefix(prefix_of_parameters): value
+        for name, value in values.items()
+        if name.startswith(prefix_of_parameters)
+    }
+    if node_gains or not is_pid:
+        return node_gains or None
     prefix = _PREFIXES[kind]
     return {name.removeprefix(prefix): each for name, each in joint.parameters.items() if name.startswith(prefix)}
 
 
-def _gains(joint: str, given: Mapping[str, Any], logger: Logger) -> PidGains:
+def _pid_gains(joint: str, declared_gains: Mapping[str, Any], logger: Logger) -> PidGains:
     def number(name: str, default: float) -> float:
         try:
-            return float(given.get(name, default))
+            return float(declared_gains.get(name, default))
         except (TypeError, ValueError):
             warning = phrase(
-                "PID controller of joint '{joint}': {name} is not a number: '{value}'",
+                "the PID parameter {name} of joint '{joint}' is not a number: '{value}'",
                 joint=joint,
                 name=name,
-                value=str(given[name]),
+                value=str(declared_gains[name]),
             )
             logger.warning(warning)
             return default
 
-    greatest = number("max_integral_error", inf)
+    max_integral_error = number("max_integral_error", inf)
     return PidGains(
         p=number("kp", 0.0),
         i=number("ki", 0.0),
         d=number("kd", 0.0),
-        i_max=greatest,
-        i_min=number("min_integral_error", -greatest),
-        antiwindup=CLAMPED if given.get("antiwindup") in _TRUE else NONE,
+        i_max=max_integral_error,
+        i_min=number("min_integral_error", -max_integral_error),
+        antiwindup=CLAMPED if declared_gains.get("antiwindup") in _TRUE_VALUES else NONE,
     )

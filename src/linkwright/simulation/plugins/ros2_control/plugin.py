@@ -2,7 +2,7 @@
 
 Controllers are updated in the thread of the world, in simulated time, at the manager's ``update_rate``.
 
-Source: gazebo_ros2_control and gz_ros2_control (parameters, node names, source of the description).
+Source: gazebo_ros2_control and gz_ros2_control (parameters, node names, how the description is obtained).
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
 
     PARAMETERS = Parameters
     IGNORED = (
-        "robot_param",  # the description arrives on its topic
+        "robot_param",  # the description is received on a topic
         "robot_param_node",
         "e_stop_topic",
         "control_period",
@@ -56,21 +56,25 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     )
 
     def start(self) -> None:
-        """Create the controller manager, and subscribe to the robot's description."""
+        """Create the controller manager, and subscribe to the topics of the robot's description."""
         namespace = self.node.name.rpartition("/")[0] or "/"
-        rules = ParameterRules()
+        parameter_rules = ParameterRules()
         for path in self.parameters.parameters:
-            rules.add(read_parameter_file(path))
-        described = node_of(self.place.name, self.place.element, namespace)
-        self._values = {**rules.for_node(self.node.name), **described.parameters}
+            parameter_rules.add(read_parameter_file(path))
+        node_description = node_of(self.place.name, self.place.element, namespace)
+        self._values = {**parameter_rules.for_node(self.node.name), **node_description.parameters}
         name = self.parameters.controller_manager_name
-        values = {"use_sim_time": True, **rules.for_node(join(namespace, name)), **described.parameters}
+        values = {
+            "use_sim_time": True,
+            **parameter_rules.for_node(join(namespace, name)),
+            **node_description.parameters,
+        }
         node = Node(
             self.node.graph_node.graph,
             name,
             namespace=namespace,
             parameters=values,
-            remappings=[remapping for remapping in described.remappings if not remapping[0].startswith("__")],
+            remappings=[remapping for remapping in node_description.remappings if not remapping[0].startswith("__")],
             allow_undeclared_parameters=True,
             automatically_declare_parameters_from_overrides=True,
         )
@@ -81,55 +85,59 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             node,
             self.node.exchange,
             Resources(node.get_logger()),
-            ProcessArguments(rules, described.remappings),
+            ProcessArguments(parameter_rules, node_description.remappings),
             update_rate=float(rate),
         )
-        self._gain = float(values.get("position_proportional_gain", self.parameters.position_proportional_gain))
+        self._position_gain = float(
+            values.get("position_proportional_gain", self.parameters.position_proportional_gain)
+        )
         self._systems: list[SimulatedSystem] = []
-        self._last = self.simulation.time
-        self._loaded = False
+        self._last_update = self.simulation.time
+        self._is_loaded = False
         node.get_logger().info("Loading controller_manager")
         topics = dict.fromkeys(
-            node.handle.resolve_topic_name(item) for item in ("robot_description", "~/robot_description")
+            node.handle.resolve_topic_name(topic_name) for topic_name in ("robot_description", "~/robot_description")
         )
         for topic in topics:
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
-        """Restore the initial state of the hardware; active controllers remain active."""
-        self._last = self.simulation.time
+        """Restore the initial state of the hardware; active controllers stay active."""
+        self._last_update = self.simulation.time
         for system in self._systems:
             system.begin()
-        for loaded in self._manager.controllers.values():
-            loaded.next_ns = 0
+        for controller in self._manager.controllers.values():
+            controller.next_ns = 0
 
     def stop(self) -> None:
-        """Close the controller manager, and store its state for the successor in a changed model."""
+        """Close the controller manager, and save its state for the plugin that replaces this one in a changed model."""
         if hasattr(self, "_manager"):
             self.left[self._manager_node.name] = self._manager.saved_state()
             self._manager.close()
             self._manager_node.close()
 
     def random_of(self, name: str) -> Any:
-        """Return the random number generator of a sensor, which depends on the seed."""
+        """Return the random number generator of a sensor, seeded from the simulation's seed and the sensor's name."""
         return self._environment.random(name)
 
     def _on_description(self, message: Any) -> None:
-        if self._loaded:
+        if self._is_loaded:
             return
         manager = self._manager
-        self._loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._create_system)
-        if not self._loaded:
+        self._is_loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._create_system)
+        if not self._is_loaded:
             return
         services = ManagerServices(manager, self._manager_node)
         self.every(1.0, services.publish_diagnostics)
-        self._last = self.simulation.time
+        self._last_update = self.simulation.time
         self.every(manager.update_rate, self._update)
         manager.resume(self.left.pop(self._manager_node.name, SavedState()))
 
     def _create_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
-        holds = self.parameters.hold_joints
-        system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain, values=self._values)
+        holds_joints = self.parameters.hold_joints
+        system = SimulatedSystem(
+            description, logger, self, holds=holds_joints, gain=self._position_gain, values=self._values
+        )
         self._systems.append(system)
         if system.has_pids:
             self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS_PER_SECOND))
@@ -137,5 +145,5 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
 
     def _update(self) -> None:
         now = self.simulation.time
-        period, self._last = now - self._last, now
-        self._manager.cycle(now, period / NANOSECONDS_PER_SECOND)
+        period_ns, self._last_update = now - self._last_update, now
+        self._manager.cycle(now, period_ns / NANOSECONDS_PER_SECOND)

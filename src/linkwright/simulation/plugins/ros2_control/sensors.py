@@ -1,6 +1,6 @@
 """Simulated sensors that the hardware reads: IMUs, and force-torque sensors in joints.
 
-Source: gazebo_ros2_control and gz_ros2_control (which sensors, names of interfaces).
+Source: gazebo_ros2_control and gz_ros2_control (the supported sensors, the names of interfaces).
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.simulation import Simulation
 
-_TYPES = ("imu", "force_torque")
+_SENSOR_TYPES = ("imu", "force_torque")
 
 
 class SimulatedSensor:
-    """A simulated sensor of the hardware.
+    """A sensor in the simulation that a sensor of ``<ros2_control>`` reads.
 
     Args:
-        measure: returns the measured values, by interface name.
-        states: the state interfaces of the sensor.
+        measure: returns the measured values, by interface name, such as ``force.x``.
+        states: the state interfaces that receive the values.
     """
 
     def __init__(self, measure: Callable[[], dict[str, float]], states: Sequence[StateInterface]) -> None:
@@ -33,50 +33,50 @@ class SimulatedSensor:
         self._states = states
 
     def read(self) -> None:
-        """Measure, and update the state interfaces; interfaces without a measured value keep theirs."""
-        measured = self._measure()
+        """Measure, and update the state interfaces; an interface without a measured value keeps its value."""
+        values = self._measure()
         for state in self._states:
-            state.value = measured.get(state.kind, state.value)
+            state.value = values.get(state.kind, state.value)
 
 
 def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
-    """Return the IMUs and force-torque sensors of a model, by name."""
+    """Return the IMUs and force-torque sensors of the plugin's model, by sensor name."""
     assert place.model is not None
     places: Iterator[PluginPlace] = model_plugins(place.world, place.model, place.path)
     return {
         place.sensor.sensor.name: place.sensor
         for place in places
-        if place.sensor is not None and place.sensor.sensor.type in _TYPES
+        if place.sensor is not None and place.sensor.sensor.type in _SENSOR_TYPES
     }
 
 
-def simulated_sensor(
+def create_sensor(
     simulation: Simulation, placed: PlacedSensor, states: Sequence[StateInterface], generator: np.random.Generator
 ) -> SimulatedSensor:
-    """Return the IMU or force-torque sensor that measures values for state interfaces."""
+    """Create an IMU or force-torque sensor that updates the given state interfaces."""
     if placed.sensor.type == "imu":
-        return SimulatedSensor(_imu(simulation, placed, generator), states)
-    return SimulatedSensor(_forces(simulation, placed, generator), states)
+        return SimulatedSensor(_imu_reader(simulation, placed, generator), states)
+    return SimulatedSensor(_wrench_reader(simulation, placed, generator), states)
 
 
-def _imu(
+def _imu_reader(
     simulation: Simulation, placed: PlacedSensor, generator: np.random.Generator
 ) -> Callable[[], dict[str, float]]:
     mount = Mount(simulation, placed.link, placed.pose)
     sensor = ImuSensor(mount, placed.sensor.imu, generator=generator)
 
     def measure() -> dict[str, float]:
-        measured = sensor.measure()
+        measurement = sensor.measure()
         return {
-            **_named("orientation", "xyzw", measured.orientation),
-            **_named("angular_velocity", "xyz", measured.angular_velocity),
-            **_named("linear_acceleration", "xyz", measured.linear_acceleration),
+            **_by_interface("orientation", "xyzw", measurement.orientation),
+            **_by_interface("angular_velocity", "xyz", measurement.angular_velocity),
+            **_by_interface("linear_acceleration", "xyz", measurement.linear_acceleration),
         }
 
     return measure
 
 
-def _forces(
+def _wrench_reader(
     simulation: Simulation, placed: PlacedSensor, generator: np.random.Generator
 ) -> Callable[[], dict[str, float]]:
     simulation.keep_awake(placed.link)
@@ -84,10 +84,10 @@ def _forces(
 
     def measure() -> dict[str, float]:
         force, torque = sensor.measure()
-        return {**_named("force", "xyz", force.tolist()), **_named("torque", "xyz", torque.tolist())}
+        return {**_by_interface("force", "xyz", force.tolist()), **_by_interface("torque", "xyz", torque.tolist())}
 
     return measure
 
 
-def _named(name: str, axes: str, values: Sequence[float]) -> dict[str, float]:
+def _by_interface(name: str, axes: str, values: Sequence[float]) -> dict[str, float]:
     return {f"{name}.{axis}": float(value) for axis, value in zip(axes, values, strict=True)}

@@ -1,4 +1,4 @@
-"""Base classes of sensors, which handle mounts, rates, frames and topics."""
+"""Base classes of sensor plugins, which handle mounts, rates, frames and topics."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linkwright.simulation.sensors.mount import Mount
 
 P = TypeVar("P")
 SENSOR_QOS = QoSProfile(depth=5)
-"""gazebo_ros's profile: the depth of sensor data, and reliable, so that every subscription is compatible."""
+"""gazebo_ros's profile: the depth of sensor data, but reliable, so that it is compatible with every subscription."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +28,7 @@ class FrameName:
 
 
 class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
-    """A sensor that measures at its rate while one of its topics has a subscription."""
+    """A sensor that measures at its update rate while one of its topics has a subscription."""
 
     def start(self) -> None:
         """Create the sensor model and the topics, and schedule measurements."""
@@ -42,7 +42,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @abstractmethod
     def make_sensor(self) -> None:
-        """Create the sensor model that measures."""
+        """Create the sensor model with which `measure` measures."""
 
     @abstractmethod
     def make_topics(self) -> None:
@@ -53,7 +53,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         """Return whether a topic of the sensor has a subscription."""
 
     def is_needed(self) -> bool:
-        """Return whether a measurement has a recipient; by default, whether a topic has a subscription."""
+        """Return whether to measure; by default, whether a topic has a subscription."""
         return self.is_wanted()
 
     @abstractmethod
@@ -62,43 +62,43 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @property
     def rate(self) -> float:
-        """The number of measurements per simulated second; 0 for one after each step."""
+        """The number of measurements per simulated second; 0 for a measurement after each step."""
         return self.sensor.sensor.update_rate
 
     @property
     def mount(self) -> Mount:
-        """The link and the pose at which the sensor is fixed."""
+        """The link to which the sensor is fixed, and the pose of the sensor on this link."""
         return Mount(self.simulation, self.sensor.link, self.sensor.pose)
 
     def classic_frame(self) -> str:
-        """Return the message frame for Gazebo classic: the parameter ``frame_name``, or else the link."""
+        """Return the frame of Gazebo classic's messages: the parameter ``frame_name``, or the link if it is empty."""
         frame: str = getattr(self.parameters, "frame_name", "")
         return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
 
     def gz_frame(self) -> str:
-        """Return the message frame for gz: from the sensor's element, or else ``model/link/sensor``."""
+        """Return the frame of gz's messages: the one that the sensor declares, or else ``model/link/sensor``."""
         return self.sensor.sensor.frame_id or self.sensor.name.replace(SEPARATOR, "/")
 
     def gz_topic(self, leaf: str) -> str:
         """Return the default topic that gz gives a sensor; `leaf` is the last part of the name."""
-        model, *inside = self.sensor.name.split(SEPARATOR)
-        holder = "joint" if self.sensor.joint else "link"
-        place = f"/world/{self.place.world.name}/model/{model}/{holder}/{'/'.join(inside[:-1])}"
-        return f"{place}/sensor/{inside[-1]}/{leaf}"
+        model, *nested_names = self.sensor.name.split(SEPARATOR)
+        entity_type = "joint" if self.sensor.joint else "link"
+        place = f"/world/{self.place.world.name}/model/{model}/{entity_type}/{'/'.join(nested_names[:-1])}"
+        return f"{place}/sensor/{nested_names[-1]}/{leaf}"
 
     def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
-        """Create the topic of a gz sensor, with the name from its element or the default name of gz.
+        """Create the publisher of a gz sensor, on the topic that the sensor declares or on the default topic of gz.
 
         Args:
             kind: the message type.
             leaf: the last part of the default name.
-            usual: the usual name of the topic on robots; ``/`` and `leaf` if empty.
+            usual: the usual name of such a topic on robots; if empty, ``/`` followed by `leaf`.
         """
         topic = self.sensor.sensor.topic
         return self.node.publisher(kind, topic or self.gz_topic(leaf), usual="" if topic else usual or f"/{leaf}")
 
     def message(self, kind: str, frame: str) -> Any:
-        """Return a new message of a type, with its header set."""
+        """Create a message of a type, with the current stamp and a frame in its header."""
         return get_message(kind)(header=Header(stamp=self.stamp(), frame_id=frame))
 
     def _measure(self) -> None:

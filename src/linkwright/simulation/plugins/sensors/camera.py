@@ -1,7 +1,7 @@
-"""Cameras: ``gazebo_ros_camera`` and the cameras of ROS 1; cameras and depth cameras of gz.
+"""Cameras: ``gazebo_ros_camera``, the cameras of ROS 1, and the cameras and depth cameras of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, point clouds), for ROS 1 (names), gz-sensors (topics).
-Red and blue in a point cloud have the byte order that PCL and RViz expect; ``gazebo_ros_camera`` swaps them.
+The colours of point clouds have the byte order that PCL and RViz expect; ``gazebo_ros_camera`` swaps red and blue.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ class MountedCamera:
     """One camera of a sensor.
 
     Attributes:
-        description: the parsed camera.
+        description: the parsed ``<camera>``.
         optics: the projection of the camera.
         pose: the pose of the camera in the frame of the link.
         noise: the noise on the colours of the images.
-        encoding: the encoding of the images.
+        encoding: the ROS encoding of the images, such as ``rgb8``.
     """
 
     description: Camera
@@ -77,10 +77,10 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         """Release the shared renderer."""
         self._shared.release()
 
-    def see(self, camera: MountedCamera, wanted: Channels) -> RenderedImage:
+    def see(self, camera: MountedCamera, channels: Channels) -> RenderedImage:
         """Render the requested channels of one of the sensor's cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
-        rendered = self._shared.render(camera.optics, pose, wanted, self._log_renderer)
+        rendered = self._shared.render(camera.optics, pose, channels, self._log_renderer)
         if rendered.colour is None:
             return rendered
         return RenderedImage(camera.noise.apply(rendered.colour), rendered.depth, rendered.geoms)
@@ -96,13 +96,15 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         if encoding is None:
             encoding = DEFAULT_ENCODING
             if camera.image.format.upper() not in DEPTH_FORMATS:
-                unknown = phrase("'{format}' is not an image format; bgr8 is used", format=camera.image.format)
-                self.node.logger.warning(unknown)
+                warning = phrase(
+                    ("'{format}' is not a supported image format; bgr8 is used instead"), format=camera.image.format
+                )
+                self.node.logger.warning(warning)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))
         return MountedCamera(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
 
-    def _log_renderer(self, way: Phrase) -> None:
-        self.node.logger.info(phrase("camera images are rendered by {way}", way=way))
+    def _log_renderer(self, renderer_description: Phrase) -> None:
+        self.node.logger.info(phrase("camera images are rendered by {way}", way=renderer_description))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,8 +164,8 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         parameters, sensor = self.parameters, self.sensor.sensor
         name = parameters.camera_name or sensor.name
         self._frame = self.classic_frame()
-        several = sensor.type == "multicamera"
-        bases = [f"{name}/{camera.description.name}" if several else name for camera in self.cameras]
+        is_multicamera = sensor.type == "multicamera"
+        bases = [f"{name}/{camera.description.name}" if is_multicamera else name for camera in self.cameras]
         self._images = [self._output(IMAGE, base, parameters.image_topic_name) for base in bases]
         self._infos = [self._output(INFO, base, parameters.camera_info_topic_name) for base in bases]
         self._depths: list[Output] = []
@@ -173,7 +175,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
                 self._output(INFO, name, parameters.depth_info_topic_name),
                 self._output(CLOUD, name, parameters.point_cloud_topic_name),
             ]
-        self._asked = not parameters.triggered
+        self._is_image_requested = not parameters.triggered
         if parameters.triggered:
             kind = get_message("std_msgs/msg/Empty")
             self.node.subscribe(kind, f"{name}/image_trigger", self._trigger)
@@ -182,29 +184,31 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         return self.node.publisher(kind, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
 
     def _trigger(self, _message: Any) -> None:
-        self._asked = True
+        self._is_image_requested = True
 
     @property
     def rate(self) -> float:
-        """The images per simulated second, from the sensor, or else from the plugin."""
+        """The number of images per simulated second that the sensor declares, or else the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
-        """Return whether a topic has a subscription and, if a trigger is used, an image was requested."""
-        return self._asked and any(image.is_wanted for image in (*self._images, *self._infos, *self._depths))
+        """Return whether a topic has a subscription and, if the camera is triggered, an image was requested."""
+        return self._is_image_requested and any(
+            image.is_wanted for image in (*self._images, *self._infos, *self._depths)
+        )
 
     def measure(self) -> None:
-        """Render and publish the images whose topics have subscriptions."""
-        self._asked = not self.parameters.triggered
+        """Render the images whose topics have subscriptions, and publish them with their camera info."""
+        self._is_image_requested = not self.parameters.triggered
         for camera, image, info in zip(self.cameras, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
             has_cloud = cloud is not None and cloud.is_wanted
-            wanted = Channels(0)
+            channels = Channels(0)
             if image.is_wanted or has_cloud:
-                wanted |= Channels.COLOUR
+                channels |= Channels.COLOUR
             if has_cloud or (depth is not None and depth.is_wanted):
-                wanted |= Channels.DEPTH
-            rendered = self.see(camera, wanted) if wanted else RenderedImage(None, None, None)
+                channels |= Channels.DEPTH
+            rendered = self.see(camera, channels) if channels else RenderedImage(None, None, None)
             if image.is_wanted:
                 self.publish_image(image, camera, rendered, self._frame)
             self._publish_info(info, camera)
@@ -221,7 +225,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         if cloud.is_wanted and rendered.depth is not None and rendered.colour is not None:
             message = self.message(CLOUD, self._frame)
             points = points_of(camera.optics, clip_depth(rendered.depth, nearest, farthest))
-            fill_camera_cloud(message, points, rendered.colour, swapped=self.gazebo_mistakes)
+            fill_camera_cloud(message, points, rendered.colour, swap_red_blue=self.gazebo_mistakes)
             cloud.publish(message)
 
     def _publish_info(self, output: Output, camera: MountedCamera) -> None:
@@ -248,22 +252,22 @@ def points_of(optics: Optics, depth: Any) -> Any:
 
 
 class GzCamera(CameraPlugin[NoParameters]):
-    """The cameras of gz of the types ``camera``, ``depth_camera`` and ``rgbd_camera``.
+    """The sensors ``camera``, ``depth_camera`` and ``rgbd_camera`` of gz.
 
-    The points of depth and RGB-D cameras have the x axis pointing forwards.
+    In the point clouds of depth and RGB-D cameras, the x axis points forwards.
     """
 
     def make_topics(self) -> None:
-        """Create the topics for images, depth images, points and camera info that the type requires."""
+        """Create the topics for images, depth images, points and camera info that the sensor type requires."""
         kind = self.sensor.sensor.type
         self._frame = self.gz_frame()
         camera = self.cameras[0].description
         self._optical = camera.optical_frame_id or self._frame
         self._image = self._depth = self._cloud = None
         if kind in ("rgbd_camera", "rgbd"):
-            self._image = self._below(IMAGE, "image")
-            self._depth = self._below(IMAGE, "depth_image")
-            self._cloud = self._below(CLOUD, "points")
+            self._image = self._leaf_output(IMAGE, "image")
+            self._depth = self._leaf_output(IMAGE, "depth_image")
+            self._cloud = self._leaf_output(CLOUD, "points")
         elif kind in _DEPTH_TYPES:
             self._depth = self.gz_output(IMAGE, "depth_image")
             topic = self.sensor.sensor.topic or self.gz_topic("depth_image")
@@ -273,7 +277,7 @@ class GzCamera(CameraPlugin[NoParameters]):
         topic = camera.camera_info_topic or self._info_topic()
         self._info = self.node.publisher(INFO, topic, usual="" if self.sensor.sensor.topic else "/camera_info")
 
-    def _below(self, kind: str, leaf: str) -> Output:
+    def _leaf_output(self, kind: str, leaf: str) -> Output:
         topic = self.sensor.sensor.topic
         return self.node.publisher(
             kind, f"{topic}/{leaf}" if topic else self.gz_topic(leaf), usual="" if topic else f"/{leaf}"
@@ -285,8 +289,8 @@ class GzCamera(CameraPlugin[NoParameters]):
             return self.gz_topic("camera_info")
         if self._image is not None and self._depth is not None:
             return f"{topic}/camera_info"
-        above, slash, _ = topic.rpartition("/")
-        return f"{above}{slash}camera_info"
+        parent_topic, slash, _ = topic.rpartition("/")
+        return f"{parent_topic}{slash}camera_info"
 
     def _outputs(self) -> Iterator[Output]:
         yield from (output for output in (self._image, self._depth, self._cloud, self._info) if output is not None)
@@ -296,14 +300,14 @@ class GzCamera(CameraPlugin[NoParameters]):
         return any(output.is_wanted for output in self._outputs())
 
     def measure(self) -> None:
-        """Render and publish the channels whose topics have subscriptions."""
+        """Render and publish the images, points and camera info whose topics have subscriptions."""
         (camera, *_) = self.cameras
-        wanted = Channels(0)
+        channels = Channels(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):
-            wanted |= Channels.COLOUR
+            channels |= Channels.COLOUR
         if any(output is not None and output.is_wanted for output in (self._depth, self._cloud)):
-            wanted |= Channels.DEPTH
-        rendered = self.see(camera, wanted) if wanted else RenderedImage(None, None, None)
+            channels |= Channels.DEPTH
+        rendered = self.see(camera, channels) if channels else RenderedImage(None, None, None)
         if self._image is not None and self._image.is_wanted:
             self.publish_image(self._image, camera, rendered, self._optical)
         clip = camera.description.depth_clip or camera.description.clip
@@ -314,8 +318,8 @@ class GzCamera(CameraPlugin[NoParameters]):
         if self._cloud is not None and self._cloud.is_wanted:
             message = self.message(CLOUD, self._frame)
             points = points_of(camera.optics, clip_depth(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
-            forwards = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
-            fill_camera_cloud(message, forwards, rendered.colour)  # type: ignore[arg-type]  # it was asked for
+            forward_points = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
+            fill_camera_cloud(message, forward_points, rendered.colour)  # type: ignore[arg-type]  # it was asked for
             self._cloud.publish(message)
         if self._info.is_wanted:
             message = self.message(INFO, self._optical)

@@ -1,4 +1,4 @@
-"""Fills ``sensor_msgs/msg/PointCloud2`` messages with the points of lidars and depth cameras."""
+"""``sensor_msgs/msg/PointCloud2`` messages with the points of lidars and depth cameras."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ import numpy as np
 
 from linkwright.messages import get_message
 
-_NUMBERS = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
-"""The types of sensor_msgs/msg/PointField by those of numpy."""
+_FIELD_TYPES = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
+"""The data types of sensor_msgs/msg/PointField, by NumPy type."""
 Points = np.ndarray[Any, np.dtype[Any]]
 
 
 def _layout(size: int, **offsets: int) -> np.dtype[Any]:
-    kinds = [np.uint16 if name == "ring" else np.float32 for name in offsets]
-    return np.dtype({"names": [*offsets], "formats": kinds, "offsets": [*offsets.values()], "itemsize": size})
+    formats = [np.uint16 if name == "ring" else np.float32 for name in offsets]
+    return np.dtype({"names": [*offsets], "formats": formats, "offsets": [*offsets.values()], "itemsize": size})
 
 
 CLASSIC = _layout(16, x=0, y=4, z=8, intensity=12)
-"""A point of ``gazebo_ros_ray_sensor``."""
+"""The layout of a point of ``gazebo_ros_ray_sensor``."""
 VELODYNE = _layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=18)
-"""A point of velodyne_simulator, as velodyne_pointcloud has it; all points of a turn have time 0."""
+"""The layout of a point of velodyne_simulator, as in velodyne_pointcloud; all points of a revolution have time 0."""
 GZ = _layout(32, x=0, y=4, z=8, intensity=16, ring=24)
-"""A point of gz-sensors, each field at a multiple of 8 bytes."""
+"""The layout of a point of gz-sensors; the fields after x, y and z start at multiples of 8 bytes."""
 _COLOURED = _layout(32, x=0, y=4, z=8, rgb=16)
 
 
 @cache
 def _fields(layout: np.dtype[Any]) -> tuple[Any, ...]:
     kind = get_message("sensor_msgs/msg/PointField")
-    places = {name: layout.fields[name] for name in layout.names or ()} if layout.fields else {}
+    layout_fields = {name: layout.fields[name] for name in layout.names or ()} if layout.fields else {}
     return tuple(
-        kind(name=name, offset=offset, datatype=_NUMBERS[number], count=1)
-        for name, (number, offset, *_) in places.items()
+        kind(name=name, offset=offset, datatype=_FIELD_TYPES[number], count=1)
+        for name, (number, offset, *_) in layout_fields.items()
     )
 
 
@@ -53,38 +53,39 @@ def fill_lidar_cloud(
         message: the PointCloud2.
         points: the points in m, shape (n, 3).
         intensities: the intensities, shape (n,).
-        rings: for layouts with rings, the index of the laser that measured each point, 0 for the lowest, shape (n,).
+        rings: the index of the laser that measured each point, 0 for the lowest, shape (n,); None for a layout
+            without rings.
         layout: the layout of a point.
-        height: the number of rows.
+        height: the number of rows of the cloud.
     """
-    rows = np.zeros(len(points), layout)
-    rows["x"], rows["y"], rows["z"] = points.T
-    rows["intensity"] = intensities
+    records = np.zeros(len(points), layout)
+    records["x"], records["y"], records["z"] = points.T
+    records["intensity"] = intensities
     if rings is not None:
-        rows["ring"] = rings
-    _fill(message, rows, height)
+        records["ring"] = rings
+    _fill(message, records, height)
     message.is_dense = bool(np.isfinite(points).all() and np.isfinite(intensities).all())
 
 
-def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
+def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swap_red_blue: bool = False) -> None:
     """Fill a PointCloud2 with the points of an image, shape (height, width, 3), and their colours.
 
-    With `swapped`, red and blue are exchanged as in Gazebo classic.
+    With `swap_red_blue`, red and blue are exchanged as in Gazebo classic.
 
-    Source of the layout: ``gazebo_ros_camera``, 32 bytes per point with the colour at byte 16.
+    Each point has 32 bytes with the colour at byte 16, as in ``gazebo_ros_camera``.
     """
     height, width, _ = points.shape
-    rows = np.zeros((height * width, 8), np.float32)
-    rows[:, :3] = points.reshape(-1, 3)
-    bytes_of = rows.view(np.uint8).reshape(height * width, 32)
+    records = np.zeros((height * width, 8), np.float32)
+    records[:, :3] = points.reshape(-1, 3)
+    record_bytes = records.view(np.uint8).reshape(height * width, 32)
     # PCL stores blue in the lowest byte.
-    bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swapped else -1]
-    _fill(message, rows.view(_COLOURED).reshape(-1), height)
+    record_bytes[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swap_red_blue else -1]
+    _fill(message, records.view(_COLOURED).reshape(-1), height)
     message.is_dense = False
 
 
 def _fill(message: Any, rows: Points, height: int) -> None:
-    """Fill a PointCloud2 with points of a structured type, shape (n,), arranged in `height` rows."""
+    """Fill a PointCloud2 with points of a structured NumPy type, shape (n,), arranged in `height` rows."""
     message.fields = list(_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
     message.point_step = rows.dtype.itemsize

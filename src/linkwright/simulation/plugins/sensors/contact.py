@@ -1,7 +1,7 @@
 """Contact sensors: ``gazebo_ros_bumper``, and ``contact`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame of forces), gz-sim (topic, when a message is
-published), ros_gz (messages).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame of forces), gz-sim (topic, the condition for
+a message), ros_gz (messages).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, OneTopic, vec
 from linkwright.simulation.sensors.contact import Contact, ContactSensor
 
 P = TypeVar("P")
-_TYPE, _CONTACTS = "gazebo_msgs/msg/ContactsState", "ros_gz_interfaces/msg/Contacts"
-_NO_TOPIC = "__default_topic__"
+_STATE_TYPE, _CONTACTS_TYPE = "gazebo_msgs/msg/ContactsState", "ros_gz_interfaces/msg/Contacts"
+_DEFAULT_TOPIC = "__default_topic__"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,26 +38,26 @@ class _Contacts(OneTopic[P], Generic[P]):
         If the element names no collision, the sensor measures all contacts of the link.
         """
         contact = self.sensor.sensor.contact
-        named = [] if contact is None or contact.collision == "__default__" else [contact.collision]
-        self.contacts = ContactSensor(self.mount, named)
+        collision_names = [] if contact is None or contact.collision == "__default__" else [contact.collision]
+        self.contacts = ContactSensor(self.mount, collision_names)
 
 
 class ClassicBumper(_Contacts[BumperParameters]):
     """The substitute for ``libgazebo_ros_bumper.so``.
 
-    Positions and forces are expressed in the world, whatever frame the message names.
+    Positions and forces are in the world frame, regardless of the frame in the message's header.
     """
 
     PARAMETERS = BumperParameters
 
     def make_topics(self) -> None:
         """Create the topic for ``gazebo_msgs/msg/ContactsState``."""
-        self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
+        self.output = self.node.publisher(_STATE_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def measure(self) -> None:
         """Measure and publish, even if there are no contacts."""
-        message = self.message(_TYPE, self.parameters.frame_name)
-        message.states = [_state(contact) for contact in self.contacts.measure()]
+        message = self.message(_STATE_TYPE, self.parameters.frame_name)
+        message.states = [_contact_state(contact) for contact in self.contacts.measure()]
         self.output.publish(message)
 
 
@@ -65,22 +65,22 @@ class GzContact(_Contacts[NoParameters]):
     """The sensor ``contact`` of gz, which publishes nothing while there is no contact."""
 
     def make_topics(self) -> None:
-        """Create the topic, with the name from ``<contact>`` or the default name of gz."""
+        """Create the topic that ``<contact>`` names, or the default topic of gz."""
         contact = self.sensor.sensor.contact
-        named = "" if contact is None or contact.topic == _NO_TOPIC else contact.topic
-        usual = "" if named else "/contacts"
-        self.output = self.node.publisher(_CONTACTS, named or self.gz_topic("contact"), usual=usual)
+        declared_topic = "" if contact is None or contact.topic == _DEFAULT_TOPIC else contact.topic
+        usual = "" if declared_topic else "/contacts"
+        self.output = self.node.publisher(_CONTACTS_TYPE, declared_topic or self.gz_topic("contact"), usual=usual)
 
     def measure(self) -> None:
         """Measure, and publish if there is a contact."""
-        touching = self.contacts.measure()
-        if touching:
-            message = self.message(_CONTACTS, "")
-            message.contacts = [_contact(contact) for contact in touching]
+        contacts = self.contacts.measure()
+        if contacts:
+            message = self.message(_CONTACTS_TYPE, "")
+            message.contacts = [_contact_message(contact) for contact in contacts]
             self.output.publish(message)
 
 
-def _contact(contact: Contact) -> Any:
+def _contact_message(contact: Contact) -> Any:
     """Return the ``ros_gz_interfaces/msg/Contact`` of a contact.
 
     Positions, normals and forces are in world axes.
@@ -92,14 +92,14 @@ def _contact(contact: Contact) -> Any:
     message.normals = [vector(normal) for normal in contact.normals]
     message.depths = [float(depth) for depth in contact.depths]
     for force, torque in zip(contact.forces, contact.torques, strict=True):
-        pair = get_message("ros_gz_interfaces/msg/JointWrench")()
-        pair.body_1_name.data, pair.body_2_name.data = contact.collision1, contact.collision2
-        pair.body_1_wrench, pair.body_2_wrench = wrench(force, torque), wrench(-force, -torque)
-        message.wrenches.append(pair)
+        joint_wrench = get_message("ros_gz_interfaces/msg/JointWrench")()
+        joint_wrench.body_1_name.data, joint_wrench.body_2_name.data = contact.collision1, contact.collision2
+        joint_wrench.body_1_wrench, joint_wrench.body_2_wrench = wrench(force, torque), wrench(-force, -torque)
+        message.wrenches.append(joint_wrench)
     return message
 
 
-def _state(contact: Contact) -> Any:
+def _contact_state(contact: Contact) -> Any:
     state = get_message("gazebo_msgs/msg/ContactState")()
     state.collision1_name, state.collision2_name = contact.collision1, contact.collision2
     state.wrenches = [wrench(*pair) for pair in zip(contact.forces, contact.torques, strict=True)]

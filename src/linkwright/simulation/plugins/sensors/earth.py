@@ -1,6 +1,6 @@
 """Sensors of geographic position, magnetic field, altitude and air pressure.
 
-They replace ``gazebo_ros_gps_sensor`` and the sensors of gz.
+These plugins replace ``gazebo_ros_gps_sensor`` and the corresponding sensors of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics), ros_gz (messages).
 """
@@ -14,43 +14,43 @@ from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, On
 from linkwright.simulation.sensors.earth import AltimeterSensor, Barometer, Fix, MagnetometerSensor, NavsatSensor
 
 P = TypeVar("P")
-_FIX = "sensor_msgs/msg/NavSatFix"
-_FIELD = "sensor_msgs/msg/MagneticField"
-_HEIGHT = "ros_gz_interfaces/msg/Altimeter"
-_PRESSURE = "sensor_msgs/msg/FluidPressure"
-_DIAGONAL_KNOWN = 2
+_FIX_TYPE = "sensor_msgs/msg/NavSatFix"
+_MAGNETIC_FIELD_TYPE = "sensor_msgs/msg/MagneticField"
+_ALTIMETER_TYPE = "ros_gz_interfaces/msg/Altimeter"
+_PRESSURE_TYPE = "sensor_msgs/msg/FluidPressure"
+_COVARIANCE_TYPE_DIAGONAL = 2
 
 
 class _Receiver(SensorPlugin[P], Generic[P]):
     """A satellite navigation receiver that publishes ``sensor_msgs/msg/NavSatFix``."""
 
     def make_sensor(self) -> None:
-        """Create the receiver for the geographic position of the world's origin."""
+        """Create the receiver, which uses the geographic position of the world's origin."""
         place = self.place.world.spherical_coordinates
         self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
 
     def receive(self, frame: str) -> tuple[Fix, Any]:
         """Measure, and return the fix and its NavSatFix message."""
         fix = self._receiver.measure()
-        message = self.message(_FIX, frame)
+        message = self.message(_FIX_TYPE, frame)
         message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
         message.status.status, message.status.service = 0, 1
         message.position_covariance = self._receiver.position_noise.covariance.copy()
-        message.position_covariance_type = _DIAGONAL_KNOWN
+        message.position_covariance_type = _COVARIANCE_TYPE_DIAGONAL
         return fix, message
 
 
 class ClassicGps(_Receiver[FrameName]):
     """The substitute for ``libgazebo_ros_gps_sensor.so``.
 
-    It publishes the position, and the velocity towards east, north and up.
+    It publishes the geographic position, and the velocity in m/s towards east, north and up.
     """
 
     PARAMETERS = FrameName
 
     def make_topics(self) -> None:
         """Create the topics for the position and the velocity."""
-        self._fixes = self.node.publisher(_FIX, "~/out", SENSOR_QOS)
+        self._fixes = self.node.publisher(_FIX_TYPE, "~/out", SENSOR_QOS)
         self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
 
     def is_wanted(self) -> bool:
@@ -71,7 +71,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
     def make_topics(self) -> None:
         """Create the topic for ``sensor_msgs/msg/NavSatFix``."""
-        self.output = self.gz_output(_FIX, "navsat")
+        self.output = self.gz_output(_FIX_TYPE, "navsat")
 
     def measure(self) -> None:
         """Measure, and publish the position."""
@@ -79,7 +79,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
-    """The sensor ``magnetometer`` of gz, in tesla as ros_gz_bridge publishes it."""
+    """The sensor ``magnetometer`` of gz, which publishes in tesla as ros_gz_bridge does."""
 
     def make_sensor(self) -> None:
         """Create the magnetometer for the magnetic field of the world."""
@@ -88,11 +88,11 @@ class GzMagnetometer(OneTopic[NoParameters]):
 
     def make_topics(self) -> None:
         """Create the topic for ``sensor_msgs/msg/MagneticField``."""
-        self.output = self.gz_output(_FIELD, "magnetometer")
+        self.output = self.gz_output(_MAGNETIC_FIELD_TYPE, "magnetometer")
 
     def measure(self) -> None:
         """Measure, and publish the magnetic field."""
-        message = self.message(_FIELD, self.gz_frame())
+        message = self.message(_MAGNETIC_FIELD_TYPE, self.gz_frame())
         message.magnetic_field = vector(self._sensor.measure())
         message.magnetic_field_covariance = self._sensor.noise.covariance.copy()
         self.output.publish(message)
@@ -106,12 +106,12 @@ class GzAltimeter(OneTopic[NoParameters]):
         self._sensor = AltimeterSensor(self.mount, self.sensor.sensor.altimeter, self.random)
 
     def make_topics(self) -> None:
-        """Create the topic for altimeter messages."""
-        self.output = self.gz_output(_HEIGHT, "altimeter")
+        """Create the topic for ``ros_gz_interfaces/msg/Altimeter``."""
+        self.output = self.gz_output(_ALTIMETER_TYPE, "altimeter")
 
     def measure(self) -> None:
         """Measure, and publish the height and the vertical velocity."""
-        message = self.message(_HEIGHT, self.gz_frame())
+        message = self.message(_ALTIMETER_TYPE, self.gz_frame())
         message.vertical_position, message.vertical_velocity = self._sensor.measure()
         message.vertical_reference = self._sensor.reference
         self.output.publish(message)
@@ -126,10 +126,10 @@ class GzAirPressure(OneTopic[NoParameters]):
 
     def make_topics(self) -> None:
         """Create the topic for ``sensor_msgs/msg/FluidPressure``."""
-        self.output = self.gz_output(_PRESSURE, "air_pressure")
+        self.output = self.gz_output(_PRESSURE_TYPE, "air_pressure")
 
     def measure(self) -> None:
         """Measure, and publish the air pressure."""
-        message = self.message(_PRESSURE, self.gz_frame())
+        message = self.message(_PRESSURE_TYPE, self.gz_frame())
         message.fluid_pressure, message.variance = self._sensor.measure(), self._sensor.noise.variance
         self.output.publish(message)

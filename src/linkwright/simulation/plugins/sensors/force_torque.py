@@ -17,7 +17,7 @@ from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 
 P = TypeVar("P")
 
-_TYPE = "geometry_msgs/msg/WrenchStamped"
+_MESSAGE_TYPE = "geometry_msgs/msg/WrenchStamped"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +37,7 @@ class _ForceTorque(OneTopic[P], Generic[P]):
 
     def measure(self) -> None:
         """Measure, and publish the wrench."""
-        message = self.message(_TYPE, self._frame)
+        message = self.message(_MESSAGE_TYPE, self._frame)
         message.wrench = wrench(*self._sensor.measure())
         self.output.publish(message)
 
@@ -53,7 +53,7 @@ class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
 
     @property
     def rate(self) -> float:
-        """The measurements per simulated second, from the plugin's parameters."""
+        """The number of measurements per simulated second, from the plugin's parameters."""
         return self.parameters.update_rate
 
     def make_sensor(self) -> None:
@@ -65,21 +65,21 @@ class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
     def make_topics(self) -> None:
         """Create the topic that the parameters name."""
         self._frame = self.parameters.frame_name.lstrip("/") or self._child.rpartition("::")[2]
-        self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
+        self.output = self.node.publisher(_MESSAGE_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
 
 class GzForceTorque(_ForceTorque[NoParameters]):
-    """The sensor ``force_torque`` of gz, in a joint."""
+    """The sensor ``force_torque`` of gz, which belongs to a joint."""
 
     def make_sensor(self) -> None:
         """Find the joint that contains the sensor, and create the sensor model."""
         joint = self.joint(self.sensor.joint.rpartition("::")[2])
-        placed = self.simulation.scene.joints[joint]
-        child = self.simulation.link_pose(placed.child)
-        offset = compose(invert(placed.pose), compose(child, self.sensor.pose))
+        placed_joint = self.simulation.scene.joints[joint]
+        child = self.simulation.link_pose(placed_joint.child)
+        offset = compose(invert(placed_joint.pose), compose(child, self.sensor.pose))
         self._sensor = ForceTorqueSensor(self.simulation, joint, self.sensor.sensor.force_torque, self.random, offset)
 
     def make_topics(self) -> None:
-        """Create the topic for wrenches, with the name from the sensor's element or the default name."""
+        """Create the topic that the sensor declares, or the default topic of gz."""
         self._frame = self.gz_frame()
-        self.output = self.gz_output(_TYPE, "forcetorque", "/force_torque")
+        self.output = self.gz_output(_MESSAGE_TYPE, "forcetorque", "/force_torque")

@@ -1,6 +1,6 @@
 """Image messages: encodings, noise and ``CameraInfo``.
 
-Source: gazebo_ros_pkgs for ROS 2 (formats, camera_info), REP 118 for depths.
+Source: gazebo_ros_pkgs for ROS 2 (formats, camera_info), REP 118 (depth images).
 """
 
 from __future__ import annotations
@@ -22,57 +22,62 @@ ENCODINGS = {
     "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8", "BAYER_GBRG8": "bayer_gbrg8",
     "BAYER_GRBG8": "bayer_grbg8", "BAYER_RGGR8": "bayer_rggb8",
 }  # fmt: skip
-"""The formats of SDF, and their names in ROS."""
+"""The ROS encodings, by the image formats of SDF."""
 DEPTH_FORMATS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
-"""The formats of depth cameras in files for gz; they do not specify colours."""
+"""The formats that depth cameras in files for gz declare; they do not determine the encoding of colours."""
 DEFAULT_ENCODING = "bgr8"
-"""For formats that are unknown."""
-_GREY = np.array([0.299, 0.587, 0.114], np.float32)
-_PLACES = 1 << 16
-"""Random numbers are drawn once, so many more than an image needs; each image starts at another offset."""
+"""The encoding of images whose format is not in `ENCODINGS`."""
+_GREY_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
+_SURPLUS_NUMBERS = 1 << 16
+"""The number of surplus random numbers, which are drawn once; the noise of each image starts at a random offset."""
 
 
 class PixelNoise:
     """Noise on the colours of images.
 
     Args:
-        noise: the noise on each colour value, in the range from 0 to 1.
-        generator: the source of random numbers.
+        noise: the noise on each colour value, for colours from 0 to 1.
+        generator: the random number generator.
     """
 
     def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
         self._noise = noise
         self._generator = generator
-        self._more: Pixels = np.empty(0, np.uint8)  # separate arrays for positive and negative noise of each colour
-        self._less: Pixels = np.empty(0, np.uint8)
+        self._positive_noise: Pixels = np.empty(0, np.uint8)  # bytes are unsigned
+        self._negative_noise: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
-        """Return an image with noise added."""
+        """Return RGB colours with noise added; the colours themselves if there is no noise."""
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
             return colour
-        if len(self._more) < colour.size + _PLACES:
-            drawn = self._generator.normal(noise.mean * 255, noise.stddev * 255, colour.size + _PLACES)
-            drawn = np.clip(np.round(drawn), -255, 255)
-            self._more, self._less = (np.maximum(array, 0).astype(np.uint8) for array in (drawn, -drawn))
-        start = int(self._generator.integers(_PLACES))
-        more, less = (array[start : start + colour.size].reshape(colour.shape) for array in (self._more, self._less))
-        noisy: Pixels = np.maximum(colour, less)  # clipping bytes takes a sixth of the time of clipping integers
-        noisy -= less
-        np.invert(noisy, out=noisy)  # clip the sum at white by inverting the image
-        np.maximum(noisy, more, out=noisy)
-        noisy -= more
+        if len(self._positive_noise) < colour.size + _SURPLUS_NUMBERS:
+            noise_values = self._generator.normal(noise.mean * 255, noise.stddev * 255, colour.size + _SURPLUS_NUMBERS)
+            noise_values = np.clip(np.round(noise_values), -255, 255)
+            self._positive_noise, self._negative_noise = (
+                np.maximum(array, 0).astype(np.uint8) for array in (noise_values, -noise_values)
+            )
+        start = int(self._generator.integers(_SURPLUS_NUMBERS))
+        positive, negative = (
+            array[start : start + colour.size].reshape(colour.shape)
+            for array in (self._positive_noise, self._negative_noise)
+        )
+        noisy: Pixels = np.maximum(colour, negative)  # clipping bytes takes a sixth of the time of clipping integers
+        noisy -= negative
+        np.invert(noisy, out=noisy)  # inverted, so that the sum is clipped at white
+        np.maximum(noisy, positive, out=noisy)
+        noisy -= positive
         return np.invert(noisy, out=noisy)
 
 
 def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
-    """Fill an Image from RGB colours, shape (height, width, 3), in an encoding of `ENCODINGS`."""
+    """Fill an Image with RGB colours, shape (height, width, 3), in an encoding of `ENCODINGS`."""
     pixels = colour
     if encoding.startswith("mono"):
-        pixels = np.round(colour @ _GREY).astype(np.uint8)
+        pixels = np.round(colour @ _GREY_WEIGHTS).astype(np.uint8)
     elif encoding.startswith("bgr"):
         pixels = np.empty_like(colour)
-        for channel in range(3):  # an eighth of the time of reversing all channels at once
+        for channel in range(3):  # takes an eighth of the time of reversing all channels at once
             pixels[:, :, channel] = colour[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
         pixels = _bayer_mosaic(colour, encoding.removeprefix("bayer_")[:4])
@@ -84,13 +89,13 @@ def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
 def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> None:
     """Fill an Image with depths in m, shape (height, width).
 
-    Depths up to the minimum become -inf, and depths from the maximum become inf.
+    Depths of at most `nearest` become -inf, and depths of at least `farthest` become inf.
     """
     _fill(message, clip_depth(depth, nearest, farthest), "32FC1")
 
 
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
-    """Return depths with -inf up to the minimum and inf from the maximum."""
+    """Return depths with -inf where they are at most `nearest`, and inf where they are at least `farthest`."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
     np.copyto(result, -np.inf, where=depth <= nearest)
@@ -107,10 +112,10 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
 
 
 def _bayer_mosaic(colour: Pixels, order: str) -> Pixels:
-    """Return a Bayer mosaic: one colour per pixel, in the given order within two by two pixels."""
+    """Return a Bayer mosaic with one colour per pixel; `order` names the colours of each square of 2 x 2 pixels."""
     mosaic = np.empty(colour.shape[:2], np.uint8)
-    for place, letter in enumerate(order):
-        row, column = divmod(place, 2)
+    for index, letter in enumerate(order):
+        row, column = divmod(index, 2)
         mosaic[row::2, column::2] = colour[row::2, column::2, "rgb".index(letter)]
     return mosaic
 
@@ -127,11 +132,11 @@ def fill_camera_info(
     """Fill a CameraInfo with the projection and the distortion of a camera.
 
     Args:
-        message: the message.
+        message: the CameraInfo.
         optics: the projection of the camera.
         lens: the distortion of the lens; None for a camera without distortion.
-        center: the published principal point, in pixels; None for the camera's own.
-        focal: the published focal length in pixels; 0 for the camera's own.
+        center: the principal point to publish, in pixels; None for that of `optics`.
+        focal: the focal length to publish, in pixels; 0 for those of `optics`.
         baseline: the distance from the left camera of a stereo pair to this one, in m.
     """
     lens = lens or Distortion()

@@ -20,12 +20,12 @@ from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
 
 P = TypeVar("P")
-_TYPE = "sensor_msgs/msg/Imu"
+_MESSAGE_TYPE = "sensor_msgs/msg/Imu"
 
 
 @cache
 def _message_class() -> Any:
-    return get_message(_TYPE)
+    return get_message(_MESSAGE_TYPE)
 
 
 class _ImuPlugin(OneTopic[P], Generic[P]):
@@ -39,13 +39,13 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
 
     def measure(self) -> None:
         """Measure, and publish orientation, angular velocity and linear acceleration."""
-        measured = self.imu.measure()
+        measurement = self.imu.measure()
         message = _message_class()(
             header=Header(self.stamp(), self.frame),
-            orientation=Quaternion(*measured.orientation),
-            angular_velocity=Vector3(*measured.angular_velocity),
+            orientation=Quaternion(*measurement.orientation),
+            angular_velocity=Vector3(*measurement.angular_velocity),
             angular_velocity_covariance=self.imu.angular_velocity_noise.covariance,
-            linear_acceleration=Vector3(*measured.linear_acceleration),
+            linear_acceleration=Vector3(*measurement.linear_acceleration),
             linear_acceleration_covariance=self.imu.acceleration_noise.covariance,
         )
         self.output.publish(message)
@@ -66,7 +66,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
 
     def make_sensor(self) -> None:
-        """Create the IMU, which measures relative to the initial orientation if the parameters request it."""
+        """Create the IMU; if the parameters request it, orientations are relative to the initial orientation."""
         initial = self.parameters.initial_orientation_as_reference
         imu = self.sensor.sensor.imu
         self.imu = ImuSensor(self.mount, imu, generator=self.random, initial_reference=initial)
@@ -74,7 +74,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     def make_topics(self) -> None:
         """Create the topic that the parameters name, or ``~/out``."""
         self.frame = self.classic_frame()
-        self.output = self.node.publisher(_TYPE, self.parameters.topic_name or "~/out", SENSOR_QOS)
+        self.output = self.node.publisher(_MESSAGE_TYPE, self.parameters.topic_name or "~/out", SENSOR_QOS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,40 +90,42 @@ class OldImuParameters(FrameName):
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
-    """The substitute for ``libgazebo_ros_imu.so`` of ROS 1, a plugin of a model that names its link."""
+    """The substitute for the model plugin ``libgazebo_ros_imu.so`` of ROS 1, of which a parameter names the link."""
 
     PARAMETERS = OldImuParameters
     IGNORED = ("serviceName",)
 
     @property
     def rate(self) -> float:
-        """The measurements per simulated second, from the plugin's parameters."""
+        """The number of measurements per simulated second, from the plugin's parameters."""
         return self.parameters.update_rate
 
     @property
     def mount(self) -> Mount:
         """The mount on the link that the parameters name, with the configured offset."""
         parameters = self.parameters
-        turned = (0.0, 0.0, 0.0, *quaternion_from_rpy(parameters.rpy_offset))
-        offset = compose((*parameters.xyz_offset, 0.0, 0.0, 0.0, 1.0), turned)
+        rotation = (0.0, 0.0, 0.0, *quaternion_from_rpy(parameters.rpy_offset))
+        offset = compose((*parameters.xyz_offset, 0.0, 0.0, 0.0, 1.0), rotation)
         return Mount(self.simulation, self.link(parameters.body_name), offset)
 
     def make_sensor(self) -> None:
         """Create an IMU with the same noise on all measured values."""
-        each = Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
-        noise = NoiseXyz(each, each, each)
+        axis_noise = (
+            Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
+        )
+        noise = NoiseXyz(axis_noise, axis_noise, axis_noise)
         self.imu = ImuSensor(self.mount, Imu(noise, noise), generator=self.random)
 
     def make_topics(self) -> None:
         """Create the topic that the parameters name."""
         self.frame = self.parameters.frame_name.lstrip("/") or self.parameters.body_name
-        self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
+        self.output = self.node.publisher(_MESSAGE_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
 
 class GzImu(_ImuPlugin[NoParameters]):
     """The sensor ``imu`` of gz."""
 
     def make_topics(self) -> None:
-        """Create the topic for measurements, with the name from the sensor's element or the default name."""
+        """Create the topic that the sensor declares, or the default topic of gz."""
         self.frame = self.gz_frame()
-        self.output = self.gz_output(_TYPE, "imu")
+        self.output = self.gz_output(_MESSAGE_TYPE, "imu")

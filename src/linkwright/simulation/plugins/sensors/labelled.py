@@ -1,6 +1,6 @@
 """Cameras that publish ground truth about their images: ``segmentation_camera``, ``boundingbox_camera``.
 
-``gz-sim-label-system`` with a ``<label>`` in visuals or models labels objects; everything else is background, 0.
+The plugin ``gz-sim-label-system`` of a model or visual contains its ``<label>``; anything else has the label 0.
 
 Source: gz-sensors (topics, the channels of a label map).
 """
@@ -25,9 +25,9 @@ from linkwright.simulation.sensors.mount import GeomTable, part_of
 from linkwright.simulation.simulation import Simulation
 
 _LABEL_SYSTEM = "gz-sim-label-system"
-_DETECTIONS = "vision_msgs/msg/Detection2DArray"
-_FRAME_COLOUR = (0, 255, 0)
-_LABELS = 256
+_DETECTIONS_TYPE = "vision_msgs/msg/Detection2DArray"
+_BOX_COLOUR = (0, 255, 0)
+_LABEL_COUNT = 256
 
 
 class Labels:
@@ -39,71 +39,71 @@ class Labels:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._labels = GeomTable(simulation, self._labelled)
-        self._instances = GeomTable(simulation, self._numbered)
+        self._labels = GeomTable(simulation, self._geom_labels)
+        self._instances = GeomTable(simulation, self._geom_instances)
 
     def labels(self, geoms: Pixels) -> Pixels:
-        """Return the labels of geoms, in an array of the same shape."""
+        """Return the labels of geoms, in an array of the shape of `geoms`."""
         labels: Pixels = self._labels.array()[geoms].astype(np.uint8)
         return labels
 
     def instances(self, geoms: Pixels) -> Pixels:
-        """Return the instance number of the labelled model of each geom, in an array of the same shape.
+        """Return the instance number of each geom's model, in an array of the shape of `geoms`.
 
-        Numbers begin with 1; geoms without a label have 0.
+        Numbers start at 1; geoms without a label have the number 0.
         """
         instances: Pixels = self._instances.array()[geoms].astype(np.uint16)
         return instances
 
-    def _labelled(self, names: list[str]) -> list[float]:
-        known = dict(self._known())
-        return [float(_label_of(known, part_of(name))) for name in names]
+    def _geom_labels(self, names: list[str]) -> list[float]:
+        labels = dict(self._labelled_parts())
+        return [float(_label_of(labels, part_of(name))) for name in names]
 
-    def _numbered(self, names: list[str]) -> list[float]:
-        labels = self._labelled(names)
+    def _geom_instances(self, names: list[str]) -> list[float]:
+        labels = self._geom_labels(names)
         models = [name.partition(SEPARATOR)[0] for name in names]
-        numbers: dict[str, int] = {}
+        instance_numbers: dict[str, int] = {}
         for model, label in zip(models, labels, strict=True):
             if label:
-                numbers.setdefault(model, len(numbers) + 1)
-        return [float(numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
+                instance_numbers.setdefault(model, len(instance_numbers) + 1)
+        return [float(instance_numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
 
-    def _known(self) -> Iterator[tuple[str, int]]:
-        """Yield the names of labelled models and visuals, with their labels."""
+    def _labelled_parts(self) -> Iterator[tuple[str, int]]:
+        """Yield the name and the label of each labelled model and visual."""
         for model in self._simulation.scene.models.values():
-            yield from _labels_in(model.model, model.name)
+            yield from _labels_of_model(model.model, model.name)
 
 
-def _labels_in(model: Model, path: str) -> Iterator[tuple[str, int]]:
-    for label in _written(model.plugins):
+def _labels_of_model(model: Model, path: str) -> Iterator[tuple[str, int]]:
+    for label in _declared_labels(model.plugins):
         yield path, label
     for link in model.links:
         for visual in link.visuals:
-            for label in _written(visual.plugins):
+            for label in _declared_labels(visual.plugins):
                 yield f"{path}{SEPARATOR}{link.name}{SEPARATOR}{visual.name}#visual", label
-    for inner in model.models:
-        yield from _labels_in(inner, f"{path}{SEPARATOR}{inner.name}")
+    for nested_model in model.models:
+        yield from _labels_of_model(nested_model, f"{path}{SEPARATOR}{nested_model.name}")
 
 
-def _written(plugins: tuple[Plugin, ...]) -> Iterator[int]:
+def _declared_labels(plugins: tuple[Plugin, ...]) -> Iterator[int]:
     for plugin in plugins:
         element = plugin.element.first("label") if plugin.element is not None else None
         if element is not None and library_name(plugin.filename) == _LABEL_SYSTEM and element.text().strip().isdigit():
-            yield int(element.text()) % _LABELS
+            yield int(element.text()) % _LABEL_COUNT
 
 
-def _label_of(known: dict[str, int], part: str) -> int:
-    """Return the label of a visual or of its closest enclosing model; 0 if neither has a label."""
+def _label_of(labels: dict[str, int], part: str) -> int:
+    """Return the label of a visual, or else of the closest enclosing model with a label; 0 if there is none."""
     name = part
     while name:
-        if name in known:
-            return known[name]
+        if name in labels:
+            return labels[name]
         name = name.rpartition(SEPARATOR)[0]
     return 0
 
 
 class _LabellingCamera(CameraPlugin[NoParameters]):
-    """A camera that renders the labels of visuals."""
+    """The base class of cameras that need the labels of the visible geoms."""
 
     def make_sensor(self) -> None:
         """Create the camera and the table of labels."""
@@ -136,7 +136,7 @@ class GzSegmentation(_LabellingCamera):
         self._maps = self.node.publisher(IMAGE, f"{base}/labels_map", usual=names["labels_map"])
         self._coloured = self.node.publisher(IMAGE, f"{base}/colored_map", usual=names["colored_map"])
         self._info = self.node.publisher(INFO, f"{base}/camera_info", usual=names["camera_info"])
-        self._colours = np.random.default_rng(0).integers(40, 256, (_LABELS, 3), dtype=np.uint8)
+        self._colours = np.random.default_rng(0).integers(40, 256, (_LABEL_COUNT, 3), dtype=np.uint8)
         self._colours[0] = 0
 
     def is_wanted(self) -> bool:
@@ -153,12 +153,15 @@ class GzSegmentation(_LabellingCamera):
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
         if camera.description.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
-            numbers, coloured = np.stack([low, high, labels], axis=-1), self._colours[(labels + 31 * low) % _LABELS]
+            label_map, coloured = (
+                np.stack([low, high, labels], axis=-1),
+                self._colours[(labels + 31 * low) % _LABEL_COUNT],
+            )
             coloured[labels == 0] = 0
         else:
-            numbers, coloured = np.stack([labels] * 3, axis=-1), self._colours[labels]
+            label_map, coloured = np.stack([labels] * 3, axis=-1), self._colours[labels]
         if self._maps.is_wanted:
-            self.publish_colours(self._maps, numbers)
+            self.publish_colours(self._maps, label_map)
         if self._coloured.is_wanted:
             self.publish_colours(self._coloured, coloured)
 
@@ -166,18 +169,18 @@ class GzSegmentation(_LabellingCamera):
 class GzBoxes(_LabellingCamera):
     """The sensor ``boundingbox_camera`` of gz.
 
-    It publishes boxes around the visible part of each labelled model, and an image with these boxes. Unlike in gz,
-    boxes of the types ``full_2d`` and ``3d`` also cover only the visible part.
+    It publishes bounding boxes of the visible parts of labelled models, and an image with these boxes. Unlike in gz,
+    boxes of the types ``full_2d`` and ``3d`` also cover only the visible parts.
     """
 
     def make_topics(self) -> None:
         """Create the topics for the boxes, the image with boxes and the camera info."""
         topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
         usual = "" if self.sensor.sensor.topic else "/boundingbox"
-        self._boxes = self.node.publisher(_DETECTIONS, topic, usual=usual)
+        self._boxes = self.node.publisher(_DETECTIONS_TYPE, topic, usual=usual)
         self._images = self.node.publisher(IMAGE, f"{topic}_image", usual=f"{usual}_image" if usual else "")
-        above, slash, _ = topic.rpartition("/")
-        self._info = self.node.publisher(INFO, f"{above}{slash}camera_info")
+        parent_topic, slash, _ = topic.rpartition("/")
+        self._info = self.node.publisher(INFO, f"{parent_topic}{slash}camera_info")
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
@@ -189,22 +192,22 @@ class GzBoxes(_LabellingCamera):
         self.publish_info(self._info, camera)
         if not (self._boxes.is_wanted or self._images.is_wanted):
             return
-        wanted = Channels.GEOMS | (Channels.COLOUR if self._images.is_wanted else Channels(0))
-        rendered = self.see(camera, wanted)
-        boxes = list(self._outlines(rendered.geoms))
+        channels = Channels.GEOMS | (Channels.COLOUR if self._images.is_wanted else Channels(0))
+        rendered = self.see(camera, channels)
+        boxes = list(self._boxes_of(rendered.geoms))
         if self._boxes.is_wanted:
-            message = self.message(_DETECTIONS, self.frame)
+            message = self.message(_DETECTIONS_TYPE, self.frame)
             message.detections = [self._detection(message.header, *box) for box in boxes]
             self._boxes.publish(message)
         if rendered.colour is not None:
             colour = rendered.colour.copy()
             for _, left, top, right, bottom in boxes:
-                colour[[top, bottom], left : right + 1] = _FRAME_COLOUR
-                colour[top : bottom + 1, [left, right]] = _FRAME_COLOUR
+                colour[[top, bottom], left : right + 1] = _BOX_COLOUR
+                colour[top : bottom + 1, [left, right]] = _BOX_COLOUR
             self.publish_colours(self._images, colour)
 
-    def _outlines(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
-        """Yield the label, left, top, right and bottom of each box, in pixels; all four are inclusive."""
+    def _boxes_of(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
+        """Yield the label, left, top, right and bottom of each box, in pixels; the box includes all four edges."""
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
         for instance in np.unique(instances[instances > 0]):
             for label in np.unique(labels[(instances == instance) & (labels > 0)]):

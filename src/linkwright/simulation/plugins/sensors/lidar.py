@@ -1,6 +1,6 @@
 """Lidars and sonars: ``gazebo_ros_ray_sensor``, the lasers of ROS 1, and ``gpu_lidar`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 (output types, the use of the middle row, the value of a Range), for ROS 1 (names),
+Source: gazebo_ros_pkgs for ROS 2 (output types, the row in a LaserScan, the value of a Range) and for ROS 1 (names),
 velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
 """
 
@@ -25,19 +25,19 @@ from linkwright.simulation.plugins.sensors.clouds import GZ, VELODYNE, fill_lida
 from linkwright.simulation.sensors.lidar import LidarSensor, Scan
 
 P = TypeVar("P")
-_SCAN, _CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
+_SCAN_TYPE, _CLOUD_TYPE = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 RAYS, OTHER_RAYS = "/world_rays", "/world_rays/others"
-"""The rays of lidars with ``<visualize>true</visualize>``, and of other lidars."""
-_RADIATIONS = {"ultrasound": 0, "infrared": 1}
+"""The topics for the rays of lidars with ``<visualize>true</visualize>``, and of other lidars."""
+_RADIATION_TYPES = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """The base class of lidars, which also publish their rays while a page displays them."""
+    """The base class of lidars, which also publish their rays for pages that display them."""
 
     def start(self) -> None:
         """Create the lidar and the topics for measurements and rays."""
         visualize = self.sensor.sensor.visualize
-        self._rays = self.node.publisher(_SCAN, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
+        self._rays = self.node.publisher(_SCAN_TYPE, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
         super().start()
 
     def is_needed(self) -> bool:
@@ -73,16 +73,16 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
             self.mount, lidar, sees_visuals=sensor.type not in ("ray", "sonar"), generator=self.random
         )
 
-    def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """Return a LaserScan of the middle row of a scan; lower intensities become `least_intensity`."""
+    def scan_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
+        """Return a LaserScan of the middle row of a scan; intensities are at least `min_intensity`."""
         message, row = self._empty_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
-        message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
+        message.intensities = np.maximum(scan.intensities[row], min_intensity).astype(np.float32)
         return message
 
     def _empty_scan(self, frame: str) -> Any:
-        """Return a LaserScan with angles and limits, but without ranges."""
-        lidar, message = self.lidar, self.message(_SCAN, frame)
+        """Return a LaserScan with the angles and range limits of the lidar, but without ranges."""
+        lidar, message = self.lidar, self.message(_SCAN_TYPE, frame)
         message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
         message.angle_increment = float(lidar.horizontal.step)
         message.range_min, message.range_max = float(lidar.range_min), float(lidar.range_max)
@@ -96,16 +96,16 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         with np.errstate(invalid="ignore"):  # A ray without a hit has an infinite range, and 0 times infinity is NaN.
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
 
-    def finite(self, scan: Scan, least_intensity: float = 0.0) -> tuple[Any, Any]:
-        """Return the points in m, shape (n, 3), and the intensities of a scan, without rays that had no hit."""
+    def hit_points(self, scan: Scan, min_intensity: float = 0.0) -> tuple[Any, Any]:
+        """Return the points in m, shape (n, 3), and the intensities of the rays of a scan that hit something."""
         points, intensities = self.points(scan), scan.intensities.ravel()
-        kept = np.isfinite(scan.ranges.ravel())
-        return points[kept], np.maximum(intensities[kept], least_intensity)
+        is_hit = np.isfinite(scan.ranges.ravel())
+        return points[is_hit], np.maximum(intensities[is_hit], min_intensity)
 
-    def point_cloud_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
+    def point_cloud_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
         """Return the hits of a scan as ``sensor_msgs/msg/PointCloud``."""
         message = self.message("sensor_msgs/msg/PointCloud", frame)
-        points, intensities = self.finite(scan, least_intensity)
+        points, intensities = self.hit_points(scan, min_intensity)
         point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
         message.points = [point(x=float(x), y=float(y), z=float(z)) for x, y, z in points]
         message.channels = [channel(name="intensity", values=intensities.astype(np.float32))]
@@ -115,8 +115,8 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         """Return a ``sensor_msgs/msg/Range`` with the minimum distance of a scan."""
         message = self.message("sensor_msgs/msg/Range", frame)
         lidar = self.lidar
-        spans = [sweep.max_angle - sweep.min_angle for sweep in (lidar.horizontal, lidar.vertical)]
-        message.radiation_type = _RADIATIONS.get(radiation.lower(), 1)
+        spans = [axis_sweep.max_angle - axis_sweep.min_angle for axis_sweep in (lidar.horizontal, lidar.vertical)]
+        message.radiation_type = _RADIATION_TYPES.get(radiation.lower(), 1)
         message.field_of_view = float(max(spans))
         message.min_range, message.max_range = float(lidar.range_min), float(lidar.range_max)
         message.range = float(scan.ranges.min())
@@ -142,44 +142,44 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
     PARAMETERS = RayParameters
 
     def make_topics(self) -> None:
-        """Create the topic with the message type that the parameters request.
+        """Create the topic for messages of the type that the parameters request.
 
         Raises:
             LinkwrightError: SIM137, the message type is not an output type of a lidar.
         """
-        kinds = {
-            "LaserScan": self._scan,
-            "PointCloud2": self._cloud,
-            "PointCloud": self._old_cloud,
-            "Range": self._range,
+        converters = {
+            "LaserScan": self._to_scan,
+            "PointCloud2": self._to_cloud,
+            "PointCloud": self._to_old_cloud,
+            "Range": self._to_range,
         }
         kind = self.parameters.output_type.rpartition("/")[2]
-        if kind not in kinds:
+        if kind not in converters:
             element = self.place.element
             message = phrase("'{type}' is not an output type of a lidar", type=self.parameters.output_type)
             hint = phrase("use sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
             span, source = (element.span(), element.source) if element is not None else (None, None)
             raise LinkwrightError(Diagnostic("SIM137", message, span, hint=hint, source=source))
         self._frame = self.classic_frame()
-        self._publish = kinds[kind]
+        self._publish = converters[kind]
         self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
         """Publish a scan in the message type that the parameters request."""
         self.output.publish(self._publish(scan))
 
-    def _scan(self, scan: Scan) -> Any:
+    def _to_scan(self, scan: Scan) -> Any:
         return self.scan_message(self._frame, scan, self.parameters.min_intensity)
 
-    def _cloud(self, scan: Scan) -> Any:
-        message = self.message(_CLOUD, self._frame)
-        fill_lidar_cloud(message, *self.finite(scan, self.parameters.min_intensity))
+    def _to_cloud(self, scan: Scan) -> Any:
+        message = self.message(_CLOUD_TYPE, self._frame)
+        fill_lidar_cloud(message, *self.hit_points(scan, self.parameters.min_intensity))
         return message
 
-    def _old_cloud(self, scan: Scan) -> Any:
+    def _to_old_cloud(self, scan: Scan) -> Any:
         return self.point_cloud_message(self._frame, scan, self.parameters.min_intensity)
 
-    def _range(self, scan: Scan) -> Any:
+    def _to_range(self, scan: Scan) -> Any:
         return self.range_message(self._frame, scan, self.parameters.radiation_type)
 
 
@@ -196,28 +196,28 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     PARAMETERS = LaserParameters
     IGNORED = ("gaussianNoise", "hokuyoMinIntensity")
-    KIND: ClassVar[str] = _SCAN
+    KIND: ClassVar[str] = _SCAN_TYPE
 
     def make_topics(self) -> None:
-        """Create the topic that the parameters name, with the plugin's message type."""
+        """Create the topic that the parameters name, for messages of type `KIND`."""
         self.output = self.node.publisher(self.KIND, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
 
     @property
     def rate(self) -> float:
-        """The scans per simulated second, from the sensor, or else from the plugin."""
+        """The number of scans per simulated second that the sensor declares, or else the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan in the plugin's message type."""
+        """Publish a scan as a message of type `KIND`."""
         self.output.publish(self.output_message(self.classic_frame(), scan))
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return a scan in the plugin's message type; by default a LaserScan."""
+        """Return a scan as a message of type `KIND`; by default a LaserScan."""
         return self.scan_message(frame, scan)
 
 
 class OldBlockLaser(OldLaser):
-    """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1, which publishes points."""
+    """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1, which publishes a PointCloud."""
 
     KIND = "sensor_msgs/msg/PointCloud"
 
@@ -260,8 +260,8 @@ class VelodyneParameters(LaserParameters):
 class Velodyne(_OneLidar[VelodyneParameters]):
     """The substitute for ``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator.
 
-    Points have an intensity, a ring and a time. They are ordered by the firings of all lasers; in an organized cloud,
-    each firing is a row.
+    Points have an intensity, a ring and a time. They are ordered by firing, in which all lasers measure at once; in an
+    organized cloud, each firing is a row.
     """
 
     PARAMETERS = VelodyneParameters
@@ -269,26 +269,30 @@ class Velodyne(_OneLidar[VelodyneParameters]):
 
     def make_topics(self) -> None:
         """Create the topic for the point cloud."""
-        self.output = self.node.publisher(_CLOUD, self.parameters.topic_name, SENSOR_QOS)
+        self.output = self.node.publisher(_CLOUD_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
         """Publish the points whose ranges and intensities are within the limits of the parameters."""
         parameters = self.parameters
-        message = self.message(_CLOUD, self.classic_frame())
+        message = self.message(_CLOUD_TYPE, self.classic_frame())
         shape = scan.ranges.shape
         points: Array = self.points(scan).reshape(*shape, 3).swapaxes(0, 1).reshape(-1, 3)
         ranges: Array = scan.ranges.T.ravel()
         intensities: Array = scan.intensities.T.ravel()
         rings = np.tile(np.arange(shape[0], dtype=np.uint16), shape[1])
-        seen = (
+        is_within_limits = (
             (ranges > parameters.min_range)
             & (ranges < parameters.max_range)
             & (intensities >= parameters.min_intensity)
         )
         if parameters.organize_cloud:
-            points[~seen], intensities[~seen] = np.nan, np.nan
+            points[~is_within_limits], intensities[~is_within_limits] = np.nan, np.nan
         else:
-            points, intensities, rings = points[seen], intensities[seen], rings[seen]
+            points, intensities, rings = (
+                points[is_within_limits],
+                intensities[is_within_limits],
+                rings[is_within_limits],
+            )
         height = shape[1] if parameters.organize_cloud else 1
         fill_lidar_cloud(message, points, intensities, rings, layout=VELODYNE, height=height)
         self.output.publish(message)
@@ -303,10 +307,10 @@ class GzLidar(_LidarPlugin[NoParameters]):
     def make_topics(self) -> None:
         """Create the topics for scans and points."""
         self._frame = self.gz_frame()
-        self._scans = self.gz_output(_SCAN, "scan")
+        self._scans = self.gz_output(_SCAN_TYPE, "scan")
         topic = self.sensor.sensor.topic or self.gz_topic("scan")
         self._clouds = self.node.publisher(
-            _CLOUD, f"{topic}/points", usual="" if self.sensor.sensor.topic else "/scan/points"
+            _CLOUD_TYPE, f"{topic}/points", usual="" if self.sensor.sensor.topic else "/scan/points"
         )
 
     def is_wanted(self) -> bool:
@@ -317,7 +321,7 @@ class GzLidar(_LidarPlugin[NoParameters]):
         """Publish the scan and the points."""
         self._scans.publish(self.scan_message(self._frame, scan))
         if self._clouds.is_wanted:
-            message = self.message(_CLOUD, self._frame)
+            message = self.message(_CLOUD_TYPE, self._frame)
             height, width = scan.ranges.shape
             rings = np.repeat(np.arange(height, dtype=np.uint16), width)
             points, intensities = self.points(scan), scan.intensities.ravel()

@@ -1,6 +1,6 @@
 """The logical camera of gz, which publishes the models in its view instead of an image.
 
-Source: gz-sensors (topic, view), ros_gz (messages). A model is in view if the origin of its frame is in view.
+Source: gz-sensors (topic, view frustum), ros_gz (messages). A model is in view if the origin of its frame is in view.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from linkwright.simulation.plugins.entities import pose_message
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.base import OneTopic
 
-_IMAGE, _MODEL = "ros_gz_interfaces/msg/LogicalCameraImage", "ros_gz_interfaces/msg/LogicalCameraImageModel"
+_IMAGE_TYPE, _MODEL_TYPE = "ros_gz_interfaces/msg/LogicalCameraImage", "ros_gz_interfaces/msg/LogicalCameraImageModel"
 
 
 class GzLogicalCamera(OneTopic[NoParameters]):
@@ -26,26 +26,30 @@ class GzLogicalCamera(OneTopic[NoParameters]):
 
     def make_topics(self) -> None:
         """Create the topic for ``ros_gz_interfaces/msg/LogicalCameraImage``."""
-        self.output = self.gz_output(_IMAGE, "logical_camera")
+        self.output = self.gz_output(_IMAGE_TYPE, "logical_camera")
 
     def measure(self) -> None:
         """Publish the names and poses of the models in view."""
         camera = compose(self.simulation.link_pose(self.sensor.link), self.sensor.pose)
-        message = self.message(_IMAGE, self.gz_frame())
+        message = self.message(_IMAGE_TYPE, self.gz_frame())
         message.pose = pose_message(camera)
-        into = invert(camera)
+        world_to_camera = invert(camera)
         for name in self.simulation.scene.models:
-            pose = compose(into, self.simulation.model_pose(name))
+            pose = compose(world_to_camera, self.simulation.model_pose(name))
             if is_in_view(self._view, pose):
-                message.model.append(get_message(_MODEL)(name, pose_message(pose)))
+                message.model.append(get_message(_MODEL_TYPE)(name, pose_message(pose)))
         self.output.publish(message)
 
 
 def is_in_view(view: LogicalCamera, pose: Transform) -> bool:
-    """Return whether the origin of a frame is in view.
+    """Return whether the origin of a frame is in the view frustum of a logical camera.
 
-    `pose` is the pose of the frame in the frame of the camera, which looks along x.
+    `pose` is the pose of this frame in the frame of the camera, which looks along x.
     """
     x, y, z = pose[:3]
-    across = tan(view.horizontal_fov / 2)
-    return view.near <= x <= view.far and abs(y) <= x * across and abs(z) <= x * across / view.aspect_ratio
+    half_width_ratio = tan(view.horizontal_fov / 2)
+    return (
+        view.near <= x <= view.far
+        and abs(y) <= x * half_width_ratio
+        and abs(z) <= x * half_width_ratio / view.aspect_ratio
+    )

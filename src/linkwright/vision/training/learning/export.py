@@ -17,22 +17,24 @@ from torch import Tensor, nn
 from linkwright.vision.training.learning.network import STRIDES, Network
 
 _OPSET = 17
-_LARGE = 64  # weights with fewer numbers than this are not halved
+_MIN_HALVED_SIZE = 64  # weights with fewer numbers than this are not halved
 
 
-class _Decoded(nn.Module):
+class _YoloOutput(nn.Module):
     """A network whose output concatenates boxes and scores as YOLOv8 does."""
 
-    def __init__(self, network: Network, balance: float) -> None:
+    def __init__(self, network: Network, threshold: float) -> None:
         super().__init__()
         self.network = network
-        self.shift = math.log((1 - balance) / balance)
+        self.shift = math.log((1 - threshold) / threshold)
 
     def forward(self, images: Tensor) -> Tensor:
         """Return a tensor of shape (batch, 4 + classes, cells): centre, width and height in pixels, then the scores."""
         boxes, logits = self.network(images)
-        first, last = boxes[..., :2], boxes[..., 2:]
-        return torch.cat(((first + last) / 2, last - first, (logits + self.shift).sigmoid()), 2).transpose(1, 2)
+        top_left, bottom_right = boxes[..., :2], boxes[..., 2:]
+        return torch.cat(
+            ((top_left + bottom_right) / 2, bottom_right - top_left, (logits + self.shift).sigmoid()), 2
+        ).transpose(1, 2)
 
 
 def to_onnx(
@@ -41,12 +43,12 @@ def to_onnx(
     width: int,
     height: int,
     facts: Mapping[str, str],
-    balance: float = 0.5,
+    threshold: float = 0.5,
 ) -> bytes:
     """Export a network as the content of an ONNX file.
 
-    The input is one image of the given size, the output has shape ``[1, 4 + classes, cells]``. Weights are stored with
-    16 bits and used with 32, which halves the file and changes scores by less than a thousandth.
+    The input is one image with the given width and height; the output has shape ``[1, 4 + classes, cells]``. Weights
+    are stored in 16 bits and used in 32, which halves the file and changes scores by less than a thousandth.
 
     Args:
         network: the network to export.
@@ -54,7 +56,7 @@ def to_onnx(
         width: the width of its images, a multiple of 32.
         height: the height of its images, a multiple of 32.
         facts: further metadata for the file.
-        balance: the network's score that becomes 0.5; all other scores shift accordingly and keep their order.
+        threshold: the score of the network that becomes 0.5 in the file; the order of the scores stays the same.
     """
     file = BytesIO()
     image = torch.zeros(1, 3, height, width)
@@ -62,7 +64,7 @@ def to_onnx(
         # The newer exporter, which the warning recommends, needs another library and produces the same graph.
         warnings.simplefilter("ignore")
         torch.onnx.export(
-            _Decoded(network, balance).eval(),
+            _YoloOutput(network, threshold).eval(),
             (image,),
             file,
             dynamo=False,
@@ -92,11 +94,11 @@ def _halve(model: Any) -> None:
     """Store weights as 16-bit floats that the graph casts back to 32 bits."""
     casts = []
     for weights in model.graph.initializer:
-        values = numpy_helper.to_array(weights)
-        if values.dtype != np.float32 or values.size < _LARGE:
+        array = numpy_helper.to_array(weights)
+        if array.dtype != np.float32 or array.size < _MIN_HALVED_SIZE:
             continue
         name = weights.name
-        weights.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}_16"))
+        weights.CopyFrom(numpy_helper.from_array(array.astype(np.float16), f"{name}_16"))
         casts.append(helper.make_node("Cast", [f"{name}_16"], [name], to=TensorProto.FLOAT))
-    for place, cast in enumerate(casts):
-        model.graph.node.insert(place, cast)
+    for index, cast in enumerate(casts):
+        model.graph.node.insert(index, cast)

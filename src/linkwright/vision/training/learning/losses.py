@@ -14,9 +14,9 @@ from torch.nn import functional
 
 _SCORE_POWER, _OVERLAP_POWER = 1.0, 4.0
 _CELLS_PER_OBJECT = 10
-_NEAR = 8.0  # for small objects: cells within this many pixels of the centre may be assigned
+_MIN_HALF_SIZE = 8.0  # for small objects: cells within this many pixels of the centre may be assigned
 _BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
-_SMALL = 1e-7
+_EPSILON = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +24,11 @@ class Assignment:
     """The targets of each cell.
 
     Attributes:
-        boxes: shape (batch, cells, 4), pixels; meaningless for cells without an object.
-        scores: shape (batch, cells, classes), between 0 and 1.
+        boxes: shape (batch, cells, 4), pixels; only meaningful for cells with an object.
+        scores: shape (batch, cells, classes), the target scores between 0 and 1.
         taken: shape (batch, cells), whether an object is assigned to the cell.
-        unasked: shape (batch, cells), whether the cell has no target because its object is ignored.
+        unasked: shape (batch, cells), whether the cell counts for no score, because it is inside an ignored object
+            only.
     """
 
     boxes: Tensor
@@ -37,7 +38,7 @@ class Assignment:
 
 
 def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the IoU and the generalised IoU of boxes.
+    """Return the IoU and the generalised IoU of pairs of boxes.
 
     Args:
         first: shape (..., 4), left, top, right, bottom.
@@ -47,67 +48,76 @@ def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
         The intersection over union, and the generalised one (Rezatofighi and others 2019), which also differs between
         boxes that do not touch. Both have the broadcast shape without the last axis.
     """
-    inner = (torch.minimum(first[..., 2:], second[..., 2:]) - torch.maximum(first[..., :2], second[..., :2])).clamp(0)
-    outer = (torch.maximum(first[..., 2:], second[..., 2:]) - torch.minimum(first[..., :2], second[..., :2])).clamp(0)
-    common = inner.prod(-1)
-    union = (first[..., 2:] - first[..., :2]).prod(-1) + (second[..., 2:] - second[..., :2]).prod(-1) - common
-    hull = outer.prod(-1)
-    iou = common / (union + _SMALL)
-    return iou, iou - (hull - union) / (hull + _SMALL)
+    intersection_sizes = (
+        torch.minimum(first[..., 2:], second[..., 2:]) - torch.maximum(first[..., :2], second[..., :2])
+    ).clamp(0)
+    hull_sizes = (
+        torch.maximum(first[..., 2:], second[..., 2:]) - torch.minimum(first[..., :2], second[..., :2])
+    ).clamp(0)
+    intersection = intersection_sizes.prod(-1)
+    union = (first[..., 2:] - first[..., :2]).prod(-1) + (second[..., 2:] - second[..., :2]).prod(-1) - intersection
+    hull = hull_sizes.prod(-1)
+    iou = intersection / (union + _EPSILON)
+    return iou, iou - (hull - union) / (hull + _EPSILON)
 
 
 @torch.no_grad()
-def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> Assignment:
-    """Assign cells to each object.
+def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> Assignment:
+    """Assign cells to each object, and return the targets of all cells.
 
     Args:
         boxes: the boxes of the network, shape (batch, cells, 4).
         logits: the class logits of the network, shape (batch, cells, classes).
-        middles: the centres of the cells, shape (cells, 2).
-        objects: shape (batch, most, 5): class, left, top, right, bottom. Class -1 pads images with fewer objects; a
+        centres: the centres of the cells, shape (cells, 2).
+        objects: shape (batch, count, 5): class, left, top, right, bottom. Class -1 pads images with fewer objects; a
             class below -1 marks an ignored object.
     """
-    real = objects[..., 0] >= 0
-    kinds = objects[..., 0].clamp(0).long()
-    places = objects[..., 1:]
+    is_object = objects[..., 0] >= 0
+    class_indices = objects[..., 0].clamp(0).long()
+    object_boxes = objects[..., 1:]
     _, cells, classes = logits.shape
-    iou, _ = overlaps(places[:, :, None], boxes[:, None])
-    scores = logits.sigmoid().transpose(1, 2).gather(1, kinds[..., None].expand(-1, -1, cells))
-    fit = scores**_SCORE_POWER * iou**_OVERLAP_POWER
-    half = ((places[..., 2:] - places[..., :2]) / 2).clamp(_NEAR)
-    middle = (places[..., :2] + places[..., 2:]) / 2
-    near = ((middles - middle[:, :, None]).abs() <= half[:, :, None]).all(3) & real[..., None]
-    fit = (fit + _SMALL * iou) * near
-    best = fit.topk(min(_CELLS_PER_OBJECT, cells), 2).indices
-    chosen = torch.zeros_like(near).scatter_(2, best, value=True) & near & (fit > 0)
-    # A cell claimed by several objects is assigned to the object that its box overlaps most.
-    wanted = torch.where(chosen, iou, torch.full_like(iou, -1.0))
-    most, owner = wanted.max(1)
-    taken = most >= 0
-    chosen = chosen & functional.one_hot(owner, objects.shape[1]).transpose(1, 2).bool()
-    fit = fit * chosen
-    level = fit / (fit.amax(2, keepdim=True) + 1e-12) * (iou * chosen).amax(2, keepdim=True)
-    certainty = level.amax(1) * taken
-    target = functional.one_hot(kinds.gather(1, owner), classes) * certainty[..., None]
-    within = (middles >= places[:, :, None, :2]).all(3) & (middles <= places[:, :, None, 2:]).all(3)
-    unasked = (within & (objects[..., 0] < -1)[..., None]).any(1) & ~taken
-    return Assignment(places.gather(1, owner[..., None].expand(-1, -1, 4)), target.to(boxes.dtype), taken, unasked)
+    iou, _ = overlaps(object_boxes[:, :, None], boxes[:, None])
+    scores = logits.sigmoid().transpose(1, 2).gather(1, class_indices[..., None].expand(-1, -1, cells))
+    alignment = scores**_SCORE_POWER * iou**_OVERLAP_POWER
+    half_sizes = ((object_boxes[..., 2:] - object_boxes[..., :2]) / 2).clamp(_MIN_HALF_SIZE)
+    object_centres = (object_boxes[..., :2] + object_boxes[..., 2:]) / 2
+    is_near = ((centres - object_centres[:, :, None]).abs() <= half_sizes[:, :, None]).all(3) & is_object[..., None]
+    alignment = (alignment + _EPSILON * iou) * is_near
+    best_cells = alignment.topk(min(_CELLS_PER_OBJECT, cells), 2).indices
+    is_candidate = torch.zeros_like(is_near).scatter_(2, best_cells, value=True) & is_near & (alignment > 0)
+    # A cell that is a candidate for several objects is assigned to the object with the highest IoU.
+    candidate_iou = torch.where(is_candidate, iou, torch.full_like(iou, -1.0))
+    max_iou, assigned_object = candidate_iou.max(1)
+    is_assigned = max_iou >= 0
+    is_candidate = is_candidate & functional.one_hot(assigned_object, objects.shape[1]).transpose(1, 2).bool()
+    alignment = alignment * is_candidate
+    cell_scores = alignment / (alignment.amax(2, keepdim=True) + 1e-12) * (iou * is_candidate).amax(2, keepdim=True)
+    target_scores = cell_scores.amax(1) * is_assigned
+    target = functional.one_hot(class_indices.gather(1, assigned_object), classes) * target_scores[..., None]
+    is_inside = (centres >= object_boxes[:, :, None, :2]).all(3) & (centres <= object_boxes[:, :, None, 2:]).all(3)
+    is_ignored = (is_inside & (objects[..., 0] < -1)[..., None]).any(1) & ~is_assigned
+    return Assignment(
+        object_boxes.gather(1, assigned_object[..., None].expand(-1, -1, 4)),
+        target.to(boxes.dtype),
+        is_assigned,
+        is_ignored,
+    )
 
 
-def loss(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the loss of a batch; the arguments are those of `assign`.
+def loss(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
+    """Return the loss of a batch. The arguments are those of `assign`.
 
     Returns:
-        The total loss, and its box and score parts, shape (2,), without gradients.
+        The total loss; and the box loss and the score loss, shape (2,), without gradients.
     """
-    wanted = assign(boxes, logits, middles, objects)
-    whole = wanted.scores.sum().clamp(1.0)
-    of_scores = functional.binary_cross_entropy_with_logits(logits, wanted.scores, reduction="none")
-    # Empty cells with confident scores weigh most; those that are already right weigh next to nothing.
-    weights = torch.where(wanted.scores > 0, wanted.scores, 0.75 * logits.sigmoid().detach() ** 2)
-    of_scores = (of_scores * weights * ~wanted.unasked[..., None]).sum() / whole
-    weight = wanted.scores.sum(2)[wanted.taken]
-    _, overlap = overlaps(boxes[wanted.taken], wanted.boxes[wanted.taken])
-    of_boxes = ((1 - overlap) * weight).sum() / whole
-    total = _BOX_WEIGHT * of_boxes + _SCORE_WEIGHT * of_scores
-    return total, torch.stack((of_boxes, of_scores)).detach()
+    targets = assign(boxes, logits, centres, objects)
+    normalizer = targets.scores.sum().clamp(1.0)
+    score_loss = functional.binary_cross_entropy_with_logits(logits, targets.scores, reduction="none")
+    # Empty cells with high scores weigh most; empty cells with low scores are right already and weigh almost nothing.
+    weights = torch.where(targets.scores > 0, targets.scores, 0.75 * logits.sigmoid().detach() ** 2)
+    score_loss = (score_loss * weights * ~targets.unasked[..., None]).sum() / normalizer
+    box_weights = targets.scores.sum(2)[targets.taken]
+    _, generalised_iou = overlaps(boxes[targets.taken], targets.boxes[targets.taken])
+    box_loss = ((1 - generalised_iou) * box_weights).sum() / normalizer
+    total = _BOX_WEIGHT * box_loss + _SCORE_WEIGHT * score_loss
+    return total, torch.stack((box_loss, score_loss)).detach()

@@ -1,6 +1,6 @@
 """The network: a small anchor-free detector of plain convolutions that two CPU cores train in an hour.
 
-A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features at 8, 16 and 32 pixels per cell. A
+A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features for cells of 8, 16 and 32 pixels. A
 pyramid passes coarse features to the fine ones and back (PANet, Liu and others 2018). One head per scale predicts for
 each cell the class, and the distances of the four sides of a box from the cell's centre (FCOS, Tian and others 2019).
 Depthwise convolutions would have fewer weights, but a CPU computes dense convolutions with few channels in the same
@@ -18,11 +18,11 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 STRIDES = (8, 16, 32)
-"""Pixels of the image a cell, one for each level of the pyramid."""
+"""The size of a cell in pixels of the image, for each level of the pyramid."""
 
 _CPU = torch.device("cpu")
-_PRIOR = 0.01  # the initial score of all cells: low, so that the many empty ones do not dominate the loss
-_FARTHEST = 4.0  # a side is at most e ** this many strides from its cell
+_INITIAL_SCORE = 0.01  # the initial score of all cells: low, so that the many empty ones do not dominate the loss
+_MAX_LOG_DISTANCE = 4.0  # a side is at most e ** this many strides from its cell
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,14 +66,14 @@ class HalfStage(nn.Module):
 
     def forward(self, features: Tensor) -> Tensor:
         """Return features of the same height and width, with `outputs` channels."""
-        kept, worked = self.split(features).chunk(2, 1)
+        bypassed, processed = self.split(features).chunk(2, 1)
         for block in self.blocks:
-            worked = worked + block(worked) if self.residual else block(worked)
-        return self.join(torch.cat((kept, worked), 1))
+            processed = processed + block(processed) if self.residual else block(processed)
+        return self.join(torch.cat((bypassed, processed), 1))
 
 
 class Pooling(nn.Module):
-    """Spatial pyramid pooling that chains one, two and three poolings (SPPF)."""
+    """Spatial pyramid pooling, which concatenates the results of zero to three chained poolings (SPPF)."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()
@@ -83,10 +83,10 @@ class Pooling(nn.Module):
 
     def forward(self, features: Tensor) -> Tensor:
         """Return pooled features of the same shape."""
-        seen = [self.narrow(features)]
+        features_by_scale = [self.narrow(features)]
         for _ in range(3):
-            seen.append(self.pool(seen[-1]))
-        return self.join(torch.cat(seen, 1))
+            features_by_scale.append(self.pool(features_by_scale[-1]))
+        return self.join(torch.cat(features_by_scale, 1))
 
 
 class Head(nn.Module):
@@ -97,14 +97,14 @@ class Head(nn.Module):
         self.shared = Convolution(channels, channels, 3)
         self.box = nn.Sequential(Convolution(channels, channels // 2, 3), nn.Conv2d(channels // 2, 4, 1))
         self.scores = nn.Sequential(Convolution(channels, channels // 2, 3), nn.Conv2d(channels // 2, classes, 1))
-        nn.init.constant_(self.scores[-1].bias, -math.log((1 - _PRIOR) / _PRIOR))
+        nn.init.constant_(self.scores[-1].bias, -math.log((1 - _INITIAL_SCORE) / _INITIAL_SCORE))
         nn.init.constant_(self.box[-1].bias, 1.0)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return the logarithms of the distances of the sides, then the logits of the classes."""
+        """Return the logarithms of the distances of the four sides, then the class logits, shape (batch, n, cells)."""
         shared = self.shared(features)
         boxes, scores = self.box[0](shared), self.scores[0](shared)
-        # With the 8-bit precision of bfloat16 the side distances would be off by up to 1 %.
+        # bfloat16 has 8 significant bits, so the side distances would be off by up to 1 %.
         with torch.autocast(features.device.type, enabled=False):
             return torch.cat((self.box[1](boxes.float()), self.scores[1](scores.float())), 1).flatten(2)
 
@@ -144,34 +144,34 @@ class Network(nn.Module):
         fine = self.fine(self.stem(images))
         middle = self.middle(fine)
         coarse = self.coarse(middle)
-        middle = self.down_middle(torch.cat((_doubled(coarse), middle), 1))
+        middle = self.down_middle(torch.cat((_upsample(coarse), middle), 1))
         narrow = self.narrow(middle)
-        fine = self.down_fine(torch.cat((_doubled(narrow), fine), 1))
+        fine = self.down_fine(torch.cat((_upsample(narrow), fine), 1))
         middle = self.up_middle(torch.cat((self.halve_fine(fine), narrow), 1))
         coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
         levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
         outputs = torch.cat(levels, 2).transpose(1, 2)
-        middles, strides = cells(images.shape[3], images.shape[2], images.device)
-        sides = outputs[..., :4].clamp(max=_FARTHEST).exp() * strides
-        boxes = torch.cat((middles - sides[..., :2], middles + sides[..., 2:]), 2)
+        centres, strides = cells(images.shape[3], images.shape[2], images.device)
+        distances = outputs[..., :4].clamp(max=_MAX_LOG_DISTANCE).exp() * strides
+        boxes = torch.cat((centres - distances[..., :2], centres + distances[..., 2:]), 2)
         return boxes, outputs[..., 4:]
 
 
-def _doubled(features: Tensor) -> Tensor:
+def _upsample(features: Tensor) -> Tensor:
     return functional.interpolate(features, scale_factor=2.0, mode="nearest")
 
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """Return the positions of the cells of all scales in an image of the given size.
+    """Return the centres and strides of the cells of all scales, for an image of a size in pixels.
 
     Returns:
-        The centres in pixels, shape (cells, 2), and the strides of their scales, shape (cells, 1).
+        The centres in pixels, shape (cells, 2), and the strides in pixels, shape (cells, 1).
     """
-    middles, strides = [], []
+    centres, strides = [], []
     for stride in STRIDES:
         rows, columns = height // stride, width // stride
         y, x = torch.meshgrid(torch.arange(rows), torch.arange(columns), indexing="ij")
-        middles.append((torch.stack((x, y), 2).reshape(-1, 2) + 0.5) * stride)
+        centres.append((torch.stack((x, y), 2).reshape(-1, 2) + 0.5) * stride)
         strides.append(torch.full((rows * columns, 1), float(stride)))
-    return torch.cat(middles).to(device), torch.cat(strides).to(device)
+    return torch.cat(centres).to(device), torch.cat(strides).to(device)

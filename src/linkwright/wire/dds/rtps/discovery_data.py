@@ -11,11 +11,11 @@ from linkwright.wire.dds.rtps.values import Address, MalformedError, Parameters
 
 _LITTLE_ENDIAN_LIST = b"\x00\x03\x00\x00"
 _BIG_ENDIAN_LIST = b"\x00\x02"
-_GONE = 0x03
-"""Disposed, unregistered, or both."""
+_GONE_FLAGS = 0x03
+"""The status flags for disposed and unregistered entities."""
 
-_LONGEST_LEASE = 300.0
-_USUAL_LEASE = 100.0
+_MAX_LEASE_S = 300.0
+_DEFAULT_LEASE_S = 100.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ def describe_participant(prefix: bytes, name: str, lease: float, addresses: list
     )
 
 
-def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> bytes:
+def describe_endpoint(guid: bytes, topic: str, type_name: str, user_data: bytes) -> bytes:
     """Return the SEDP sample that announces one of our readers or writers.
 
     The announced QoS is reliable and volatile, as for services.
@@ -77,16 +77,16 @@ def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> 
         (v.PID_TYPE_NAME, v.text(type_name)),
         (v.PID_RELIABILITY, v.RELIABLE),
         (v.PID_DURABILITY, v.VOLATILE),
-        (v.PID_USER_DATA, v.octets(facts)),
+        (v.PID_USER_DATA, v.octets(user_data)),
         (v.PID_PROTOCOL_VERSION, v.VERSION),
         (v.PID_VENDOR, v.VENDOR),
         (v.PID_KEY_HASH, guid),
     )
 
 
-def key_of(guid: bytes, *, gone: bool = False) -> bytes:
-    """Return the inline QoS that identifies an endpoint; with `gone`, that announces its end."""
-    status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE))),) if gone else ()
+def key_parameters(guid: bytes, *, is_gone: bool = False) -> bytes:
+    """Return the inline QoS that identifies an endpoint, and announces its end if `is_gone` is true."""
+    status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE_FLAGS))),) if is_gone else ()
     return v.parameters((v.PID_KEY_HASH, guid), *status)
 
 
@@ -99,12 +99,12 @@ def gone_guid(sample: Data) -> bytes:
         MalformedError: the sample announces a departure without a GUID.
     """
     status = sample.inline.get(v.PID_STATUS_INFO)
-    if not status or not status[0][3:4] or not status[0][3] & _GONE:
+    if not status or not status[0][3:4] or not status[0][3] & _GONE_FLAGS:
         return b""
     key = sample.inline.get(v.PID_KEY_HASH)
     if key is None and sample.payload is not None:
-        found, _ = _list(sample.payload)
-        key = found.get(v.PID_ENDPOINT_GUID) or found.get(v.PID_PARTICIPANT_GUID)
+        parameters, _ = _list(sample.payload)
+        key = parameters.get(v.PID_ENDPOINT_GUID) or parameters.get(v.PID_PARTICIPANT_GUID)
     if not key or len(key[0]) < 16:
         raise MalformedError("the end of an unnamed entity")
     return key[0][:16]
@@ -116,17 +116,17 @@ def read_participant(payload: bytes) -> ParticipantData:
     Raises:
         MalformedError: a required value is missing.
     """
-    found, order = _list(payload)
-    lease = _USUAL_LEASE
-    for value in found.get(v.PID_LEASE, ()):
+    parameters, order = _list(payload)
+    lease = _DEFAULT_LEASE_S
+    for value in parameters.get(v.PID_LEASE, ()):
         if len(value) >= 8:
-            lease = min(float(struct.unpack_from(order + "i", value)[0] & 0x7FFF_FFFF), _LONGEST_LEASE)
+            lease = min(float(struct.unpack_from(order + "i", value)[0] & 0x7FFF_FFFF), _MAX_LEASE_S)
     return ParticipantData(
-        prefix=_needed(found, v.PID_PARTICIPANT_GUID, 16)[: v.PREFIX],
-        vendor=_needed(found, v.PID_VENDOR, 2)[:2],
+        prefix=_required_value(parameters, v.PID_PARTICIPANT_GUID, 16)[: v.PREFIX],
+        vendor=_required_value(parameters, v.PID_VENDOR, 2)[:2],
         lease=lease,
-        discovery=tuple(v.read_locators(found.get(v.PID_METATRAFFIC_UNICAST_LOCATOR, []), order)),
-        user=tuple(v.read_locators(found.get(v.PID_DEFAULT_UNICAST_LOCATOR, []), order)),
+        discovery=tuple(v.read_locators(parameters.get(v.PID_METATRAFFIC_UNICAST_LOCATOR, []), order)),
+        user=tuple(v.read_locators(parameters.get(v.PID_DEFAULT_UNICAST_LOCATOR, []), order)),
     )
 
 
@@ -136,16 +136,16 @@ def read_endpoint(payload: bytes, *, is_writer: bool) -> EndpointData:
     Raises:
         MalformedError: a required value is missing.
     """
-    found, order = _list(payload)
-    reliable = is_writer
-    for value in found.get(v.PID_RELIABILITY, ()):
-        reliable = len(value) >= 4 and struct.unpack_from(order + "I", value)[0] == 2
+    parameters, order = _list(payload)
+    is_reliable = is_writer
+    for value in parameters.get(v.PID_RELIABILITY, ()):
+        is_reliable = len(value) >= 4 and struct.unpack_from(order + "I", value)[0] == 2
     return EndpointData(
-        guid=_needed(found, v.PID_ENDPOINT_GUID, 16)[:16],
-        topic=v.read_text(_needed(found, v.PID_TOPIC_NAME, 4), order),
-        type_name=v.read_text(_needed(found, v.PID_TYPE_NAME, 4), order),
-        is_reliable=reliable,
-        addresses=tuple(v.read_locators(found.get(v.PID_UNICAST_LOCATOR, []), order)),
+        guid=_required_value(parameters, v.PID_ENDPOINT_GUID, 16)[:16],
+        topic=v.read_text(_required_value(parameters, v.PID_TOPIC_NAME, 4), order),
+        type_name=v.read_text(_required_value(parameters, v.PID_TYPE_NAME, 4), order),
+        is_reliable=is_reliable,
+        addresses=tuple(v.read_locators(parameters.get(v.PID_UNICAST_LOCATOR, []), order)),
     )
 
 
@@ -154,8 +154,8 @@ def _list(payload: bytes) -> tuple[Parameters, str]:
     return v.read_parameters(payload, 4, order)[0], order
 
 
-def _needed(found: Parameters, pid: int, size: int) -> bytes:
-    values = found.get(pid)
+def _required_value(parameters: Parameters, pid: int, size: int) -> bytes:
+    values = parameters.get(pid)
     if not values or len(values[0]) < size:
         raise MalformedError(f"nothing under {pid:#06x}")
     return values[0]

@@ -26,9 +26,9 @@ _ACKNACK, _HEARTBEAT, _GAP, _INFO_TS, _INFO_SRC, _INFO_DST = 0x06, 0x07, 0x08, 0
 _NACK_FRAG, _DATA, _DATA_FRAG = 0x12, 0x15, 0x16
 _INLINE = 0x02
 _HAS_DATA = 0x04
-_MOST_MISSING = 256
+_MAX_MISSING = 256
 FRAGMENT = 60_000
-"""Bytes of a sample that go into one datagram, which holds 65 507."""
+"""The maximum number of bytes of a sample in one datagram, which holds 65 507 bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class Heartbeat:
 class Gap:
     """GAP: some samples are not for a reader, or are no longer available.
 
-    These are the samples from `start` to before `base`, and those in `others`.
+    These are the samples from `start` to before `base`, and those in `other_numbers`.
     """
 
     source: bytes
@@ -121,19 +121,19 @@ Submessage = Data | Heartbeat | Gap | AckNack | NackFrag
 @dataclass(slots=True)
 class _Context:
     source: bytes
-    for_us: bool = True
+    is_for_us: bool = True
     time: int = 0
     own: bytes = field(default=b"")
 
 
-def vendor_of(packet: bytes) -> bytes:
+def read_vendor(packet: bytes) -> bytes:
     """Return the vendor id of a message's sender; empty if the packet is not an RTPS message."""
     return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER else b""
 
 
 def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
     """Yield the submessages for a participant, up to the first malformed one."""
-    if not vendor_of(packet):
+    if not read_vendor(packet):
         return
     context = _Context(packet[8:_HEADER], own=own_prefix)
     offset = _HEADER
@@ -144,17 +144,17 @@ def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
         start = offset + 4
         end = start + size if size or kind == _INFO_TS else len(packet)
         try:
-            understood = _read(kind, flags, order, packet[start:end], context)
+            submessage = _read(kind, flags, order, packet[start:end], context)
         except (struct.error, MalformedError):
             return
-        if understood is not None and context.for_us:
-            yield understood
+        if submessage is not None and context.is_for_us:
+            yield submessage
         offset = end
 
 
 def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Submessage | None:
     if kind == _INFO_DST:
-        context.for_us = body[:PREFIX] in (context.own, bytes(PREFIX))
+        context.is_for_us = body[:PREFIX] in (context.own, bytes(PREFIX))
     elif kind == _INFO_SRC:
         context.source = body[8 : 8 + PREFIX]
     elif kind == _INFO_TS:
@@ -165,8 +165,8 @@ def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> 
         first, last = _number(body, 8, order), _number(body, 16, order)
         return Heartbeat(context.source, body[:4], context.source + body[4:8], first, last, bool(flags & _FINAL))
     elif kind == _GAP:
-        base, others = _number_set(body, 16, order)
-        return Gap(context.source, body[:4], context.source + body[4:8], _number(body, 8, order), base, others)
+        base, other_numbers = _number_set(body, 16, order)
+        return Gap(context.source, body[:4], context.source + body[4:8], _number(body, 8, order), base, other_numbers)
     elif kind == _ACKNACK:
         base, missing = _number_set(body, 8, order)
         return AckNack(context.source, context.source + body[:4], body[4:8], base, missing, bool(flags & _FINAL))
@@ -178,8 +178,8 @@ def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> 
 
 
 def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Data:
-    (to_inline,) = struct.unpack_from(order + "H", body, 2)
-    offset = 4 + to_inline
+    (inline_offset,) = struct.unpack_from(order + "H", body, 2)
+    offset = 4 + inline_offset
     first = fragment = size = 0
     has_data = bool(flags & _HAS_DATA)
     if kind == _DATA_FRAG:
@@ -212,7 +212,7 @@ def _number_set(body: bytes, offset: int, order: str) -> tuple[int, list[int]]:
 
 
 def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[int]:
-    if count > _MOST_MISSING:
+    if count > _MAX_MISSING:
         raise MalformedError("a set with more than 256 numbers")
     words = struct.unpack_from(f"{order}{(count + 31) // 32}I", body, offset)
     return [base + bit for bit in range(count) if words[bit // 32] >> (31 - bit % 32) & 1]
@@ -229,8 +229,8 @@ def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
 
 def info_timestamp(nanoseconds: int) -> bytes:
     """Build INFO_TS: when the following submessages were written, in ns since the epoch."""
-    seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
-    return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // NANOSECONDS_PER_SECOND))
+    seconds, remainder = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
+    return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (remainder << 32) // NANOSECONDS_PER_SECOND))
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
@@ -245,14 +245,16 @@ def fragment_count(payload: bytes) -> int:
     return (len(payload) + FRAGMENT - 1) // FRAGMENT
 
 
-def data_fragment(reader: bytes, writer: bytes, number: int, payload: bytes, which: int, inline: bytes = b"") -> bytes:
+def data_fragment(
+    reader: bytes, writer: bytes, number: int, payload: bytes, fragment_number: int, inline: bytes = b""
+) -> bytes:
     """Build DATA_FRAG with one fragment of a payload. Fragments are counted from 1."""
-    head = _fragment_head(reader, writer, number, len(payload), which)
-    part = payload[(which - 1) * FRAGMENT : which * FRAGMENT]
-    return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + part)
+    head = _fragment_head(reader, writer, number, len(payload), fragment_number)
+    fragment = payload[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
+    return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + fragment)
 
 
-def fragment_start(reader: bytes, writer: bytes, number: int, size: int, which: int, length: int) -> bytes:
+def fragment_start(reader: bytes, writer: bytes, number: int, size: int, fragment_number: int, length: int) -> bytes:
     """Build the beginning of DATA_FRAG, which the bytes of the fragment must follow.
 
     Args:
@@ -260,16 +262,16 @@ def fragment_start(reader: bytes, writer: bytes, number: int, size: int, which: 
         writer: the entity that wrote the payload.
         number: the sequence number.
         size: the size of the payload in bytes.
-        which: the number of the fragment, counted from 1.
+        fragment_number: the number of the fragment, counted from 1.
         length: the length of the fragment in bytes, a multiple of four.
     """
-    head = _fragment_head(reader, writer, number, size, which)
+    head = _fragment_head(reader, writer, number, size, fragment_number)
     return struct.pack("<BBH", _DATA_FRAG, _LITTLE, len(head) + length) + head
 
 
-def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, which: int) -> bytes:
+def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, fragment_number: int) -> bytes:
     head = struct.pack("<HH", 0, 28) + reader + writer + _pack(number)
-    return head + struct.pack("<IHHI", which, 1, FRAGMENT, size)
+    return head + struct.pack("<IHHI", fragment_number, 1, FRAGMENT, size)
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:
@@ -308,4 +310,4 @@ def _submessage(kind: int, flags: int, body: bytes) -> bytes:
 
 
 ALL = UNKNOWN
-"""The entity id by which all readers are meant."""
+"""The entity id that means all readers."""

@@ -16,20 +16,20 @@ from linkwright.wire.dds.settings import Range, Settings, max_participants, own_
 _LOOPBACK = "127.0.0.1"
 _GROUP = "239.255.0.1"
 _FIRST_UNICAST, _PORTS_EACH = 10, 2
-_FEW = 33
-"""How many processes of a machine are looked for where ROS's variables set the range, as Cyclone does then."""
+_MAX_SEARCHED = 33
+"""The maximum number of processes to search for on a machine if ROS's variables set the range, as in Cyclone."""
 
 _BUFFER = 4 << 20
-_LARGEST = 0x1_0000
-_BURST = 120_000
-"""Bytes after which sending pauses, so that they fit the buffer of the receiver; the usual one holds 212 992."""
+_MAX_PACKET_SIZE = 0x1_0000
+_MAX_BURST = 120_000
+"""Bytes after which sending pauses, so that they fit into the receiver's buffer (by default 212 992 bytes)."""
 
-_PAUSE = 0.001
+_PAUSE_S = 0.001
 _NETWORK_TTL = 32
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class NetworkAddresses:
     """The addresses of a participant, and the addresses at which it looks for others.
 
     Attributes:
@@ -49,30 +49,30 @@ class Places:
     only_here: bool
 
 
-def addresses_from_settings(settings: Settings) -> Places:
+def addresses_from_settings(settings: Settings) -> NetworkAddresses:
     """Return the addresses that follow from the settings; see `docs/decisions/0011-dds.md`."""
-    others = tuple(own_addresses()[:3])
-    local = settings.range is Range.LOCALHOST and bool(settings.peers)
-    machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not local)
-    first = multicast_port(settings.domain_id) + _FIRST_UNICAST
-    most = max_participants(settings.domain_id)
-    count = most if machine else min(most, _FEW)
-    return Places(
-        own=(_LOOPBACK,) if local or machine or not others else others,
-        ports=range(first, first + _PORTS_EACH * count, _PORTS_EACH),
-        hosts=(_LOOPBACK, *(others if machine else ()), *_resolved(settings.peers)),
-        interfaces=() if local else (_LOOPBACK, *others),
-        ttl=0 if machine else _NETWORK_TTL,
-        only_here=machine,
+    interface_addresses = tuple(own_addresses()[:3])
+    is_localhost = settings.range is Range.LOCALHOST and bool(settings.peers)
+    is_machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not is_localhost)
+    first_port = multicast_port(settings.domain_id) + _FIRST_UNICAST
+    max_count = max_participants(settings.domain_id)
+    count = max_count if is_machine else min(max_count, _MAX_SEARCHED)
+    return NetworkAddresses(
+        own=(_LOOPBACK,) if is_localhost or is_machine or not interface_addresses else interface_addresses,
+        ports=range(first_port, first_port + _PORTS_EACH * count, _PORTS_EACH),
+        hosts=(_LOOPBACK, *(interface_addresses if is_machine else ()), *_resolve_peers(settings.peers)),
+        interfaces=() if is_localhost else (_LOOPBACK, *interface_addresses),
+        ttl=0 if is_machine else _NETWORK_TTL,
+        only_here=is_machine,
     )
 
 
-def _resolved(peers: Iterable[str]) -> list[str]:
-    found = []
+def _resolve_peers(peers: Iterable[str]) -> list[str]:
+    addresses = []
     for peer in peers:
         with suppress(OSError):
-            found.append(socket.gethostbyname(peer))
-    return found
+            addresses.append(socket.gethostbyname(peer))
+    return addresses
 
 
 class Network:
@@ -89,33 +89,40 @@ class Network:
     """The class of its socket."""
 
     def __init__(self, settings: Settings) -> None:
-        self._places = addresses_from_settings(settings)
+        self._network_addresses = addresses_from_settings(settings)
         self._group = (_GROUP, multicast_port(settings.domain_id))
-        self._here = {_LOOPBACK, *own_addresses()}
+        self._local_hosts = {_LOOPBACK, *own_addresses()}
         self.socket = self.SOCKET(socket.AF_INET, socket.SOCK_DGRAM)
         try:
-            self.socket.bind((_LOOPBACK if self._places.own == (_LOOPBACK,) and not self._places.hosts[1:] else "", 0))
+            self.socket.bind(
+                (
+                    _LOOPBACK
+                    if self._network_addresses.own == (_LOOPBACK,) and not self._network_addresses.hosts[1:]
+                    else "",
+                    0,
+                )
+            )
             self.socket.setblocking(False)
             for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
                 with suppress(OSError):
                     self.socket.setsockopt(socket.SOL_SOCKET, option, _BUFFER)
-            self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, self._places.ttl)
+            self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, self._network_addresses.ttl)
         except OSError:
             self.socket.close()
             raise
         port = self.socket.getsockname()[1]
-        self.addresses: list[Address] = [(host, port) for host in self._places.own]
+        self.addresses: list[Address] = [(host, port) for host in self._network_addresses.own]
 
     def receive(self) -> tuple[bytes, Address] | None:
         """Return the next message and its sender; None if there is none."""
         while True:
             try:
-                packet, source = self.socket.recvfrom(_LARGEST)
+                packet, source = self.socket.recvfrom(_MAX_PACKET_SIZE)
             except BlockingIOError:
                 return None
             except OSError:
                 continue  # A receiver of our packets no longer listens (Windows reports this here).
-            if not self._places.only_here or self.is_here(source[0]):
+            if not self._network_addresses.only_here or self.is_here(source[0]):
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
@@ -123,8 +130,8 @@ class Network:
         burst = 0
         for packet, addresses in packets:
             burst += len(packet)
-            if burst > _BURST:
-                time.sleep(_PAUSE)
+            if burst > _MAX_BURST:
+                time.sleep(_PAUSE_S)
                 burst = len(packet)
             for address in addresses:
                 with suppress(OSError):
@@ -132,21 +139,31 @@ class Network:
 
     def send_everywhere(self, packet: bytes) -> None:
         """Send a message to every address where a participant may be."""
-        self.send([(packet, tuple((host, port) for host in self._places.hosts for port in self._places.ports))])
-        for interface in self._places.interfaces:
+        self.send(
+            [
+                (
+                    packet,
+                    tuple(
+                        (host, port) for host in self._network_addresses.hosts for port in self._network_addresses.ports
+                    ),
+                )
+            ]
+        )
+        for interface in self._network_addresses.interfaces:
             with suppress(OSError):
                 self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
                 self.socket.sendto(packet, self._group)
 
-    def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
+    def best_addresses(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
         """Return the addresses to use for one receiver: one on this machine if any, otherwise all."""
-        known = tuple(dict.fromkeys(addresses))
-        here = sorted(
-            (address for address in known if self.is_here(address[0])), key=lambda address: address[0] != _LOOPBACK
+        unique_addresses = tuple(dict.fromkeys(addresses))
+        local_addresses = sorted(
+            (address for address in unique_addresses if self.is_here(address[0])),
+            key=lambda address: address[0] != _LOOPBACK,
         )
-        if here:
-            return (here[0],)
-        return () if self._places.only_here else known
+        if local_addresses:
+            return (local_addresses[0],)
+        return () if self._network_addresses.only_here else unique_addresses
 
     def close(self) -> None:
         """Close the socket."""
@@ -154,4 +171,4 @@ class Network:
 
     def is_here(self, host: str) -> bool:
         """Return whether an address belongs to this machine."""
-        return host in self._here or host.startswith("127.")
+        return host in self._local_hosts or host.startswith("127.")

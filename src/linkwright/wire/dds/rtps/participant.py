@@ -1,7 +1,7 @@
 """An RTPS participant with readers and writers of services, for communication with Fast DDS.
 
-Other participants learn that it exists, because the address of a Fast DDS participant is not known before it has
-answered. But endpoints are announced only to Fast DDS.
+All participants in the domain learn that this participant exists, because the address of a Fast DDS participant is not
+known before it has answered. Endpoints are announced only to Fast DDS.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from linkwright.wire.dds.rtps.discovery_data import (
     describe_endpoint,
     describe_participant,
     gone_guid,
-    key_of,
+    key_parameters,
     read_endpoint,
     read_participant,
 )
@@ -39,7 +39,7 @@ from linkwright.wire.dds.rtps.messages import (
     heartbeat,
     message,
     parse,
-    vendor_of,
+    read_vendor,
 )
 from linkwright.wire.dds.rtps.network import Network
 from linkwright.wire.dds.rtps.reader import Reader
@@ -48,15 +48,15 @@ from linkwright.wire.dds.rtps.writer import Packet, Writer
 from linkwright.wire.dds.settings import Settings
 from linkwright.wire.living_threads import guarded
 
-_LEASE = 10.0
-_ANNOUNCED_EVERY = 3.0
-_LOOKED_FOR_AFTER = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.0)
-"""Seconds between the messages that look for a participant; the last interval repeats for ever."""
+_LEASE_S = 10.0
+_ANNOUNCEMENT_INTERVAL_S = 3.0
+_SEARCH_INTERVALS_S = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.0)
+"""Seconds between the messages that search for a participant; the last interval is repeated."""
 
-_EARLY = 64
-"""How many samples of writers are kept that came before these were known."""
+_MAX_EARLY_SAMPLES = 64
+"""The maximum number of stored samples whose writers are not known yet."""
 
-_IDLE = 1.0
+_MAX_WAIT_S = 1.0
 
 
 @dataclass(slots=True)
@@ -95,84 +95,88 @@ class RtpsParticipant:
     Args:
         settings: the domain and the discovery range.
         name: the name that the participant announces for itself.
-        changed: called when a remote reader or writer was matched, has sent its first packet or has left; in the
-            participant's thread, or in the caller's thread.
+        on_change: called when a remote reader or writer was matched, has sent its first packet or has left. The call
+            is made in the participant's thread or in the caller's thread.
 
     Raises:
         OSError: no socket is available.
     """
 
-    def __init__(self, settings: Settings, name: str, changed: Callable[[], None]) -> None:
+    def __init__(self, settings: Settings, name: str, on_change: Callable[[], None]) -> None:
         self.prefix = v.VENDOR + os.urandom(v.PREFIX - len(v.VENDOR))
-        self.changed = changed
+        self.changed = on_change
         """Called when the graph may have changed; see the argument."""
         self._network = Network(settings)
-        self._self = describe_participant(self.prefix, name, _LEASE, self._network.addresses)
+        self._self = describe_participant(self.prefix, name, _LEASE_S, self._network.addresses)
         self._lock = threading.RLock()
         self._peers: dict[bytes, _Peer] = {}
-        self._expected: frozenset[bytes] = frozenset()
-        self._looked = 0
+        self._expected_prefixes: frozenset[bytes] = frozenset()
+        self._search_count = 0
         self._look_at = 0.0
         self._announce_at = 0.0
-        self._announced = 0
+        self._announcement_count = 0
         self._last_entity = 0
         self._count = 0
-        self._publications = Writer(self.prefix + v.PUBLICATIONS_WRITER, lasting=True)
-        self._subscriptions = Writer(self.prefix + v.SUBSCRIPTIONS_WRITER, lasting=True)
-        self._heard_publications = Reader(self.prefix + v.PUBLICATIONS_READER)
-        self._heard_subscriptions = Reader(self.prefix + v.SUBSCRIPTIONS_READER)
+        self._publications_writer = Writer(self.prefix + v.PUBLICATIONS_WRITER, keeps_history=True)
+        self._subscriptions_writer = Writer(self.prefix + v.SUBSCRIPTIONS_WRITER, keeps_history=True)
+        self._publications_reader = Reader(self.prefix + v.PUBLICATIONS_READER)
+        self._subscriptions_reader = Reader(self.prefix + v.SUBSCRIPTIONS_READER)
         self._readers: dict[bytes, LocalReader] = {}
         self._writers: dict[bytes, LocalWriter] = {}
-        self._early: list[Data] = []
-        self._closing = False
-        self._bell, self._ringer = socket.socketpair()
-        self._bell.setblocking(False)
-        self._ringer.setblocking(False)
+        self._early_samples: list[Data] = []
+        self._is_closing = False
+        self._wake_receiver, self._wake_sender = socket.socketpair()
+        self._wake_receiver.setblocking(False)
+        self._wake_sender.setblocking(False)
         self._thread = threading.Thread(target=self._run, name="linkwright-rtps", daemon=True)
         self._thread.start()
 
     # --- called by services and clients ------------------------------------------------------------------------------
 
-    def add_reader(self, topic: str, type_name: str, facts: bytes, on_data: Callable[[Data], None]) -> LocalReader:
+    def add_reader(self, topic: str, type_name: str, user_data: bytes, on_data: Callable[[Data], None]) -> LocalReader:
         """Create a reader.
 
         Args:
             topic: the DDS topic.
             type_name: the DDS type.
-            facts: the reader's USER_DATA.
+            user_data: the reader's USER_DATA.
             on_data: called in the participant's thread with each sample.
         """
         with self._lock:
             guid = self._new_guid(v.READER_KIND)
-            packets = self._subscriptions.write(describe_endpoint(guid, topic, type_name, facts), inline=key_of(guid))
-            local = LocalReader(Reader(guid), topic, type_name, self._subscriptions.last, on_data)
+            packets = self._subscriptions_writer.write(
+                describe_endpoint(guid, topic, type_name, user_data), inline=key_parameters(guid)
+            )
+            local = LocalReader(Reader(guid), topic, type_name, self._subscriptions_writer.last, on_data)
             self._readers[guid[v.PREFIX :]] = local
             packets += self._match_all(topic)
         self._network.send(packets)
         return local
 
-    def add_writer(self, topic: str, type_name: str, facts: bytes) -> LocalWriter:
+    def add_writer(self, topic: str, type_name: str, user_data: bytes) -> LocalWriter:
         """Create a writer; see `add_reader` for the arguments."""
         with self._lock:
             guid = self._new_guid(v.WRITER_KIND)
-            packets = self._publications.write(describe_endpoint(guid, topic, type_name, facts), inline=key_of(guid))
-            local = LocalWriter(Writer(guid), topic, type_name, self._publications.last)
+            packets = self._publications_writer.write(
+                describe_endpoint(guid, topic, type_name, user_data), inline=key_parameters(guid)
+            )
+            local = LocalWriter(Writer(guid), topic, type_name, self._publications_writer.last)
             self._writers[guid[v.PREFIX :]] = local
             packets += self._match_all(topic)
         self._network.send(packets)
-        self._ring()
+        self._wake()
         return local
 
     def remove(self, local: LocalReader | LocalWriter) -> None:
         """Delete a reader or writer."""
         is_reader = isinstance(local, LocalReader)
         guid = local.reader.guid if isinstance(local, LocalReader) else local.writer.guid
-        announcer = self._subscriptions if is_reader else self._publications
+        announcer = self._subscriptions_writer if is_reader else self._publications_writer
         with self._lock:
             self._readers.pop(guid[v.PREFIX :], None)
             self._writers.pop(guid[v.PREFIX :], None)
             announcer.withdraw(local.announced)
-            packets = announcer.write(None, inline=key_of(guid, gone=True))
+            packets = announcer.write(None, inline=key_parameters(guid, is_gone=True))
         self._network.send(packets)
 
     def write(self, local: LocalWriter, payload: bytes, *, inline: bytes = b"", to: bytes = b"") -> int:
@@ -185,7 +189,7 @@ class RtpsParticipant:
             packets = local.writer.write(payload, inline=inline, to=to)
             number = local.writer.last
         self._network.send(packets)
-        self._ring()
+        self._wake()
         return number
 
     def matched_readers(self, local: LocalWriter) -> list[bytes]:
@@ -201,14 +205,14 @@ class RtpsParticipant:
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
 
-    def address_of(self, reader: bytes) -> Address | None:
+    def reader_address(self, reader: bytes) -> Address | None:
         """Return the address of a remote reader on this machine; None if it is not known."""
         with self._lock:
             peer = self._peers.get(reader[: v.PREFIX])
             endpoint = peer.endpoints.get(reader) if peer is not None else None
             if peer is None or endpoint is None:
                 return None
-            addresses = self._network.best_of(endpoint.addresses) or peer.user
+            addresses = self._network.best_addresses(endpoint.addresses) or peer.user
         return next((address for address in addresses if self._network.is_here(address[0])), None)
 
     def last_of(self, local: LocalReader, writer: bytes) -> int:
@@ -219,34 +223,34 @@ class RtpsParticipant:
     def expect(self, prefixes: Iterable[bytes]) -> None:
         """Look for participants that were discovered elsewhere, until each has answered."""
         with self._lock:
-            expected = frozenset(prefixes)
-            if expected - self._expected:
-                self._looked, self._look_at = 0, 0.0
-            self._expected = expected
-        self._ring()
+            expected_prefixes = frozenset(prefixes)
+            if expected_prefixes - self._expected_prefixes:
+                self._search_count, self._look_at = 0, 0.0
+            self._expected_prefixes = expected_prefixes
+        self._wake()
 
     def close(self) -> None:
         """Announce the departure of the participant, and end the thread."""
-        self._closing = True
-        self._ring()
+        self._is_closing = True
+        self._wake()
         if threading.current_thread() is not self._thread:
             self._thread.join()
         self._send_to_peers(self._spdp(gone=True))
         self._network.close()
-        self._bell.close()
-        self._ringer.close()
+        self._wake_receiver.close()
+        self._wake_sender.close()
 
     # --- the thread ---------------------------------------------------------------------------------------------------
 
     def _run(self) -> None:
-        while not self._closing:
-            due = guarded(self._due)
-            timeout = _IDLE if due is None else due
-            ready, _, _ = select.select([self._network.socket, self._bell], [], [], timeout)
-            if self._bell in ready:
+        while not self._is_closing:
+            seconds = guarded(self._due)
+            timeout = _MAX_WAIT_S if seconds is None else seconds
+            readable, _, _ = select.select([self._network.socket, self._wake_receiver], [], [], timeout)
+            if self._wake_receiver in readable:
                 with suppress(BlockingIOError):
-                    self._bell.recv(4096)
-            if self._network.socket in ready:
+                    self._wake_receiver.recv(4096)
+            if self._network.socket in readable:
                 self._receive()
 
     def _receive(self) -> None:
@@ -270,48 +274,52 @@ class RtpsParticipant:
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
-            lost = [prefix for prefix, peer in self._peers.items() if peer.until < now]
-            for prefix in lost:
+            expired_prefixes = [prefix for prefix, peer in self._peers.items() if peer.until < now]
+            for prefix in expired_prefixes:
                 self._forget_peer(prefix)
-            looks = bool(self._expected - self._peers.keys()) and now >= self._look_at
-            if looks:
-                self._look_at = now + _LOOKED_FOR_AFTER[min(self._looked + 1, len(_LOOKED_FOR_AFTER) - 1)]
-                self._looked += 1
-            announces = now >= self._announce_at
-            if announces:
-                self._announce_at = now + _ANNOUNCED_EVERY
+            must_search = bool(self._expected_prefixes - self._peers.keys()) and now >= self._look_at
+            if must_search:
+                self._look_at = now + _SEARCH_INTERVALS_S[min(self._search_count + 1, len(_SEARCH_INTERVALS_S) - 1)]
+                self._search_count += 1
+            must_announce = now >= self._announce_at
+            if must_announce:
+                self._announce_at = now + _ANNOUNCEMENT_INTERVAL_S
             entities = self._entities()
             for entity in entities:
                 packets += entity.remind(now)
-            due = [reminder for entity in entities if (reminder := entity.next_reminder()) is not None]
-            due.append(self._announce_at)
-            if self._expected - self._peers.keys():
-                due.append(self._look_at)
+            due_times = [reminder for entity in entities if (reminder := entity.next_reminder()) is not None]
+            due_times.append(self._announce_at)
+            if self._expected_prefixes - self._peers.keys():
+                due_times.append(self._look_at)
         self._network.send(packets)
-        if lost:
+        if expired_prefixes:
             self.changed()
-        if looks:
+        if must_search:
             self._network.send_everywhere(self._spdp())
-        if announces:
+        if must_announce:
             self._send_to_peers(self._spdp())
-        return max(0.0, min(_IDLE, min(due) - time.monotonic()))
+        return max(0.0, min(_MAX_WAIT_S, min(due_times) - time.monotonic()))
 
     def _entities(self) -> list[Reader | Writer]:
-        writers = [self._publications, self._subscriptions, *(writer.writer for writer in self._writers.values())]
-        readers = [self._heard_publications, self._heard_subscriptions]
+        writers = [
+            self._publications_writer,
+            self._subscriptions_writer,
+            *(writer.writer for writer in self._writers.values()),
+        ]
+        readers = [self._publications_reader, self._subscriptions_reader]
         return [*writers, *readers, *(reader.reader for reader in self._readers.values())]
 
-    def _ring(self) -> None:
+    def _wake(self) -> None:
         with suppress(OSError):
-            self._ringer.send(b"!")
+            self._wake_sender.send(b"!")
 
     # --- discovery ----------------------------------------------------------------------------------------------------
 
     def _spdp(self, *, gone: bool = False) -> bytes:
-        self._announced += 1
-        inline = key_of(self.prefix + v.PARTICIPANT, gone=gone)
+        self._announcement_count += 1
+        inline = key_parameters(self.prefix + v.PARTICIPANT, is_gone=gone)
         payload = None if gone else self._self
-        return message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announced, payload, inline))
+        return message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announcement_count, payload, inline))
 
     def _send_to_peers(self, packet: bytes) -> None:
         with self._lock:
@@ -328,24 +336,29 @@ class RtpsParticipant:
         participant = read_participant(sample.payload)
         if participant.vendor != v.FAST_DDS or vendor != v.FAST_DDS:
             return []
-        discovery, user = self._network.best_of(participant.discovery), self._network.best_of(participant.user)
-        until = time.monotonic() + participant.lease
+        discovery, user = (
+            self._network.best_addresses(participant.discovery),
+            self._network.best_addresses(participant.user),
+        )
+        expires_at = time.monotonic() + participant.lease
         peer = self._peers.get(participant.prefix)
         if peer is not None and peer.participant == participant:
-            peer.until = until
+            peer.until = expires_at
             return []
         if not discovery or not user:
             return []
-        self._peers[participant.prefix] = _Peer(participant, until, discovery, user, peer.endpoints if peer else {})
+        self._peers[participant.prefix] = _Peer(
+            participant, expires_at, discovery, user, peer.endpoints if peer else {}
+        )
         packets: list[Packet] = [(self._spdp(), discovery)]
         for reader, entity in (
-            (self._heard_publications, v.PUBLICATIONS_WRITER),
-            (self._heard_subscriptions, v.SUBSCRIPTIONS_WRITER),
+            (self._publications_reader, v.PUBLICATIONS_WRITER),
+            (self._subscriptions_reader, v.SUBSCRIPTIONS_WRITER),
         ):
             packets += reader.match(participant.prefix + entity, discovery)
         for writer, entity in (
-            (self._publications, v.PUBLICATIONS_READER),
-            (self._subscriptions, v.SUBSCRIPTIONS_READER),
+            (self._publications_writer, v.PUBLICATIONS_READER),
+            (self._subscriptions_writer, v.SUBSCRIPTIONS_READER),
         ):
             packets += writer.match(participant.prefix + entity, discovery)
         return packets
@@ -356,17 +369,17 @@ class RtpsParticipant:
             return
         for guid in tuple(peer.endpoints):
             self._unmatch(guid)
-        self._heard_publications.unmatch(prefix + v.PUBLICATIONS_WRITER)
-        self._heard_subscriptions.unmatch(prefix + v.SUBSCRIPTIONS_WRITER)
-        self._publications.unmatch(prefix + v.PUBLICATIONS_READER)
-        self._subscriptions.unmatch(prefix + v.SUBSCRIPTIONS_READER)
+        self._publications_reader.unmatch(prefix + v.PUBLICATIONS_WRITER)
+        self._subscriptions_reader.unmatch(prefix + v.SUBSCRIPTIONS_WRITER)
+        self._publications_writer.unmatch(prefix + v.PUBLICATIONS_READER)
+        self._subscriptions_writer.unmatch(prefix + v.SUBSCRIPTIONS_READER)
 
     def _on_endpoint(self, sample: Data, *, is_writer: bool) -> list[Packet]:
         peer = self._peers[sample.source]
-        gone = gone_guid(sample)
-        if gone:
-            peer.endpoints.pop(gone, None)
-            self._unmatch(gone)
+        departed_guid = gone_guid(sample)
+        if departed_guid:
+            peer.endpoints.pop(departed_guid, None)
+            self._unmatch(departed_guid)
             return []
         if sample.payload is None:
             return []
@@ -388,7 +401,7 @@ class RtpsParticipant:
     def _match(self, endpoint: EndpointData, peer: _Peer) -> list[Packet]:
         if not endpoint.is_reliable:
             return []
-        addresses = self._network.best_of(endpoint.addresses) or peer.user
+        addresses = self._network.best_addresses(endpoint.addresses) or peer.user
         packets = []
         if v.is_reader(endpoint.guid):
             for local in self._writers.values():
@@ -414,7 +427,7 @@ class RtpsParticipant:
         Callbacks are appended to `calls`, because they must be called without holding the lock.
         """
         packets: list[Packet] = []
-        vendor = vendor_of(packet)
+        vendor = read_vendor(packet)
         for submessage in parse(packet, self.prefix):
             if submessage.source == self.prefix:
                 return []
@@ -433,21 +446,21 @@ class RtpsParticipant:
         return packets
 
     def _on_unmatched_peer(self, submessage: Submessage, source: Address) -> list[Packet]:
-        """Answer a participant that is not matched that neither side lacks anything.
+        """Tell a participant that is not matched that no samples are missing on either side.
 
         After this answer, the participant stops repeating its messages.
         """
         self._count += 1
         if isinstance(submessage, AckNack) and submessage.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
-            answer = heartbeat(submessage.reader[v.PREFIX :], submessage.writer, 1, 0, self._count, final=True)
+            response = heartbeat(submessage.reader[v.PREFIX :], submessage.writer, 1, 0, self._count, final=True)
         elif isinstance(submessage, Heartbeat) and submessage.writer[v.PREFIX :] in (
             v.PUBLICATIONS_WRITER,
             v.SUBSCRIPTIONS_WRITER,
         ):
-            answer = acknack(submessage.reader, submessage.writer[v.PREFIX :], submessage.last + 1, (), self._count)
+            response = acknack(submessage.reader, submessage.writer[v.PREFIX :], submessage.last + 1, (), self._count)
         else:
             return []
-        return [(message(self.prefix, answer, to=submessage.source), (source,))]
+        return [(message(self.prefix, response, to=submessage.source), (source,))]
 
     def _on_submessage(self, submessage: Submessage, calls: list[Callable[[], None]]) -> list[Packet]:
         if isinstance(submessage, AckNack | NackFrag):
@@ -456,9 +469,9 @@ class RtpsParticipant:
                 return []
             if isinstance(submessage, NackFrag):
                 return writer.on_nack_frag(submessage)
-            was_heard = writer.has_heard(submessage.reader)
+            had_answered = writer.has_answered(submessage.reader)
             packets = writer.on_acknack(submessage)
-            if not was_heard and writer.has_heard(submessage.reader):
+            if not had_answered and writer.has_answered(submessage.reader):
                 calls.append(self.changed)
             return packets
         if isinstance(submessage, Data):
@@ -468,54 +481,54 @@ class RtpsParticipant:
             if isinstance(submessage, Gap):
                 reader.on_gap(submessage)
                 continue
-            heard_before = reader.heard_at(submessage.writer)
+            first_heard_at = reader.heard_at(submessage.writer)
             packets += reader.on_heartbeat(submessage)
-            if heard_before is None and reader.heard_at(submessage.writer) is not None:
+            if first_heard_at is None and reader.heard_at(submessage.writer) is not None:
                 calls.append(self.changed)
         return packets
 
     def _on_sample(self, sample: Data, calls: list[Callable[[], None]]) -> list[Packet]:
         builtin = {
-            v.PUBLICATIONS_WRITER: (self._heard_publications, True),
-            v.SUBSCRIPTIONS_WRITER: (self._heard_subscriptions, False),
+            v.PUBLICATIONS_WRITER: (self._publications_reader, True),
+            v.SUBSCRIPTIONS_WRITER: (self._subscriptions_reader, False),
         }.get(sample.writer[v.PREFIX :])
         if builtin is not None:
             reader, is_writer = builtin
             complete = reader.on_data(sample)
             packets = [] if complete is None else self._on_endpoint(complete, is_writer=is_writer)
             if complete is not None:
-                self._replay(calls)
+                self._deliver_early_samples(calls)
                 calls.append(self.changed)
             return packets
         if sample.writer not in self._peers[sample.source].endpoints:
-            self._early = [*self._early[-_EARLY:], sample]
+            self._early_samples = [*self._early_samples[-_MAX_EARLY_SAMPLES:], sample]
             return []
-        self._hand_on(sample, calls)
+        self._deliver(sample, calls)
         return []
 
-    def _hand_on(self, sample: Data, calls: list[Callable[[], None]]) -> None:
+    def _deliver(self, sample: Data, calls: list[Callable[[], None]]) -> None:
         for local in self._readers.values():
             if sample.reader in (v.UNKNOWN, local.reader.guid[v.PREFIX :]):
                 complete = local.reader.on_data(sample)
                 if complete is not None:
                     calls.append(partial(local.on_data, complete))
 
-    def _replay(self, calls: list[Callable[[], None]]) -> None:
+    def _deliver_early_samples(self, calls: list[Callable[[], None]]) -> None:
         """Pass on the samples that arrived before their writer was known."""
-        early, self._early = self._early, []
-        for sample in early:
+        early_samples, self._early_samples = self._early_samples, []
+        for sample in early_samples:
             peer = self._peers.get(sample.source)
             if peer is not None and sample.writer in peer.endpoints:
-                self._hand_on(sample, calls)
+                self._deliver(sample, calls)
             elif peer is not None:
-                self._early.append(sample)
+                self._early_samples.append(sample)
 
     def _readers_for(self, submessage: Heartbeat | Gap) -> Iterable[Reader]:
         entity = submessage.writer[v.PREFIX :]
         if entity == v.PUBLICATIONS_WRITER:
-            return (self._heard_publications,)
+            return (self._publications_reader,)
         if entity == v.SUBSCRIPTIONS_WRITER:
-            return (self._heard_subscriptions,)
+            return (self._subscriptions_reader,)
         if submessage.reader == v.UNKNOWN:
             return tuple(reader.reader for reader in self._readers.values())
         local = self._readers.get(submessage.reader)
@@ -523,9 +536,9 @@ class RtpsParticipant:
 
     def _writer(self, entity: bytes) -> Writer | None:
         if entity == v.PUBLICATIONS_WRITER:
-            return self._publications
+            return self._publications_writer
         if entity == v.SUBSCRIPTIONS_WRITER:
-            return self._subscriptions
+            return self._subscriptions_writer
         local = self._writers.get(entity)
         return local.writer if local is not None else None
 

@@ -17,12 +17,12 @@ from linkwright.wire.dds.rtps.writer import Packet
 _FIRST_REPEAT, _LAST_REPEAT = 0.05, 2.0
 """Seconds after which a silent writer is asked for its samples, and the limit to which that interval grows."""
 
-_MOST_MISSING = 256
+_MAX_MISSING = 256
 _MAX_AHEAD = 100_000
-"""How far ahead of the next expected number a reader takes note of samples."""
+"""How far the number of a sample may be ahead of the next expected number. Later samples are ignored."""
 
-_LARGEST = 1 << 30
-_MOST_INCOMPLETE = 8
+_MAX_SAMPLE_SIZE = 1 << 30
+_MAX_INCOMPLETE = 8
 
 
 @dataclass(slots=True)
@@ -54,7 +54,7 @@ class _Incomplete:
 class _Writer:
     addresses: tuple[Address, ...]
     low: int = 1
-    """Everything before it is here, or not to be had."""
+    """All samples before this number have arrived, or are not available."""
     later: set[int] = field(default_factory=set)
     incomplete: dict[int, _Incomplete] = field(default_factory=dict)
     count: int = 0
@@ -75,7 +75,11 @@ class _Writer:
         if number > self.low:
             self.low = number
             self.later = {value for value in self.later if value >= number}
-            self.incomplete = {each: part for each, part in self.incomplete.items() if each >= number}
+            self.incomplete = {
+                incomplete_number: incomplete_sample
+                for incomplete_number, incomplete_sample in self.incomplete.items()
+                if incomplete_number >= number
+            }
         self._advance_low()
 
     def _advance_low(self) -> None:
@@ -84,7 +88,7 @@ class _Writer:
             self.low += 1
 
     def missing(self) -> list[int]:
-        end = min(self.last + 1, self.low + _MOST_MISSING)
+        end = min(self.last + 1, self.low + _MAX_MISSING)
         return [number for number in range(self.low, end) if number not in self.later]
 
 
@@ -109,21 +113,21 @@ class Reader:
 
         Returns None if none has arrived. A heartbeat shows that the writer has matched this reader.
         """
-        matched = self._writers.get(writer)
-        return matched.heard_at if matched is not None else None
+        writer_state = self._writers.get(writer)
+        return writer_state.heard_at if writer_state is not None else None
 
     def last_of(self, writer: bytes) -> int:
         """Return the highest sequence number that a writer has announced to this reader."""
-        matched = self._writers.get(writer)
-        return matched.last if matched is not None else 0
+        writer_state = self._writers.get(writer)
+        return writer_state.last if writer_state is not None else 0
 
     def match(self, writer: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
         """Match a writer; return the packets that request its samples."""
         if writer in self._writers:
             self._writers[writer].addresses = addresses
             return []
-        matched = self._writers[writer] = _Writer(addresses)
-        return [self._ask(writer, matched, time.monotonic())]
+        writer_state = self._writers[writer] = _Writer(addresses)
+        return [self._request_heartbeat(writer, writer_state, time.monotonic())]
 
     def unmatch(self, writer: bytes) -> None:
         """Unmatch a writer."""
@@ -131,83 +135,92 @@ class Reader:
 
     def on_data(self, sample: Data) -> Data | None:
         """Handle a sample or fragment; return the sample if it is new and complete, otherwise None."""
-        matched = self._writers.get(sample.writer)
-        if matched is None or matched.has(sample.number) or sample.number > max(matched.low, matched.last) + _MAX_AHEAD:
+        writer_state = self._writers.get(sample.writer)
+        if (
+            writer_state is None
+            or writer_state.has(sample.number)
+            or sample.number > max(writer_state.low, writer_state.last) + _MAX_AHEAD
+        ):
             return None
         complete: Data | None = sample
         if sample.first:
-            payload = self._complete(matched, sample)
+            payload = self._complete(writer_state, sample)
             complete = None if payload is None else replace(sample, payload=payload, first=0)
         if complete is not None:
-            matched.add(sample.number)
-            matched.last = max(matched.last, sample.number)
+            writer_state.add(sample.number)
+            writer_state.last = max(writer_state.last, sample.number)
         return complete
 
     def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
         """Handle a heartbeat; return its acknowledgement, with the numbers of missing samples."""
-        matched = self._writers.get(heartbeat.writer)
-        if matched is None:
+        writer_state = self._writers.get(heartbeat.writer)
+        if writer_state is None:
             return []
-        if matched.heard_at is None:
-            matched.heard_at = time.monotonic()
-        matched.last = max(matched.last, heartbeat.last)
-        matched.start_at(heartbeat.first)
-        if heartbeat.final and not matched.missing():
+        if writer_state.heard_at is None:
+            writer_state.heard_at = time.monotonic()
+        writer_state.last = max(writer_state.last, heartbeat.last)
+        writer_state.start_at(heartbeat.first)
+        if heartbeat.final and not writer_state.missing():
             return []
-        return [self._answer(heartbeat.writer, matched)]
+        return [self._acknowledge(heartbeat.writer, writer_state)]
 
     def on_gap(self, gap: Gap) -> None:
         """Handle a GAP: the samples in it count as received.
 
         Such samples are not for this reader, or the writer no longer has them.
         """
-        matched = self._writers.get(gap.writer)
-        if matched is None:
+        writer_state = self._writers.get(gap.writer)
+        if writer_state is None:
             return
-        if gap.start <= matched.low:
-            matched.start_at(gap.base)
+        if gap.start <= writer_state.low:
+            writer_state.start_at(gap.base)
         else:
             for number in range(gap.start, min(gap.base, gap.start + _MAX_AHEAD)):
-                matched.add(number)
+                writer_state.add(number)
         for number in gap.others:
-            if not matched.has(number):
-                matched.add(number)
+            if not writer_state.has(number):
+                writer_state.add(number)
 
     def remind(self, now: float) -> list[Packet]:
         """Return the packets that repeat a request to silent writers, if a request is due."""
-        silent = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
-        return [self._ask(writer, matched, now) for writer, matched in silent]
+        silent_writers = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
+        return [self._request_heartbeat(writer, writer_state, now) for writer, writer_state in silent_writers]
 
     def next_reminder(self) -> float | None:
         """Return when to call `remind` next, in seconds of the steady clock.
 
         Returns None if all writers have sent a heartbeat.
         """
-        return min((matched.due for matched in self._writers.values() if matched.heard_at is None), default=None)
+        return min(
+            (writer_state.due for writer_state in self._writers.values() if writer_state.heard_at is None), default=None
+        )
 
     @staticmethod
-    def _complete(matched: _Writer, sample: Data) -> bytes | None:
-        if sample.payload is None or sample.size > _LARGEST:
+    def _complete(writer_state: _Writer, sample: Data) -> bytes | None:
+        if sample.payload is None or sample.size > _MAX_SAMPLE_SIZE:
             return None
-        part = matched.incomplete.get(sample.number)
-        if part is None or (part.size, part.fragment) != (sample.size, sample.fragment):
-            while len(matched.incomplete) >= _MOST_INCOMPLETE:
-                matched.incomplete.pop(min(matched.incomplete))
-            part = matched.incomplete[sample.number] = _Incomplete(sample.size, sample.fragment)
-        return part.add(sample.first, sample.payload)
+        incomplete_sample = writer_state.incomplete.get(sample.number)
+        if incomplete_sample is None or (incomplete_sample.size, incomplete_sample.fragment) != (
+            sample.size,
+            sample.fragment,
+        ):
+            while len(writer_state.incomplete) >= _MAX_INCOMPLETE:
+                writer_state.incomplete.pop(min(writer_state.incomplete))
+            incomplete_sample = writer_state.incomplete[sample.number] = _Incomplete(sample.size, sample.fragment)
+        return incomplete_sample.add(sample.first, sample.payload)
 
-    def _ask(self, writer: bytes, matched: _Writer, now: float) -> Packet:
+    def _request_heartbeat(self, writer: bytes, writer_state: _Writer, now: float) -> Packet:
         """Return an acknowledgement of no samples, with base 0, as a request for a heartbeat.
 
         Fast DDS answers base 0, but not base 1, with a heartbeat.
         """
-        matched.due, matched.repeat = now + matched.repeat, min(matched.repeat * 2, _LAST_REPEAT)
-        return self._acknack(writer, matched, 0, [], final=False)
+        writer_state.due, writer_state.repeat = now + writer_state.repeat, min(writer_state.repeat * 2, _LAST_REPEAT)
+        return self._acknack(writer, writer_state, 0, [], final=False)
 
-    def _answer(self, writer: bytes, matched: _Writer) -> Packet:
-        return self._acknack(writer, matched, matched.low, matched.missing(), final=True)
+    def _acknowledge(self, writer: bytes, writer_state: _Writer) -> Packet:
+        return self._acknack(writer, writer_state, writer_state.low, writer_state.missing(), final=True)
 
-    def _acknack(self, writer: bytes, matched: _Writer, base: int, missing: list[int], *, final: bool) -> Packet:
-        matched.count += 1
-        answer = acknack(self.guid[PREFIX:], writer[PREFIX:], base, missing, matched.count, final=final)
-        return message(self.guid[:PREFIX], answer, to=writer[:PREFIX]), matched.addresses
+    def _acknack(self, writer: bytes, writer_state: _Writer, base: int, missing: list[int], *, final: bool) -> Packet:
+        writer_state.count += 1
+        submessage = acknack(self.guid[PREFIX:], writer[PREFIX:], base, missing, writer_state.count, final=final)
+        return message(self.guid[:PREFIX], submessage, to=writer[:PREFIX]), writer_state.addresses

@@ -9,7 +9,7 @@ Address = tuple[str, int]
 """An IPv4 address and a port."""
 
 PREFIX = 12
-"""Bytes of a GUID that name the participant; four more name its entity."""
+"""The number of bytes of a GUID that identify the participant; four more identify its entity."""
 
 UNKNOWN = bytes(4)
 PARTICIPANT = b"\x00\x00\x01\xc1"
@@ -21,7 +21,7 @@ WRITER_KIND, READER_KIND = b"\x03", b"\x04"
 
 FAST_DDS = b"\x01\x0f"
 VENDOR = b"\x4c\x57"
-"""Ours, in no use by others (their list is kept by the OMG)."""
+"""Linkwright's vendor id, which no other vendor uses (the OMG keeps the list)."""
 
 VERSION = b"\x02\x03"
 
@@ -44,7 +44,7 @@ PID_KEY_HASH = 0x0070
 PID_STATUS_INFO = 0x0071
 PID_RELATED_SAMPLE_IDENTITY = 0x0083
 PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS = 0x800F
-"""The identity as Fast DDS before 2.14 writes it."""
+"""The related sample identity as Fast DDS before 2.14 writes it."""
 
 _PID_SENTINEL = 0x0001
 
@@ -89,15 +89,15 @@ def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, i
     Raises:
         MalformedError: the list has no end marker.
     """
-    found: Parameters = {}
+    values: Parameters = {}
     while offset + 4 <= len(data):
         pid, size = struct.unpack_from(order + "HH", data, offset)
         offset += 4
         if pid == _PID_SENTINEL:
-            return found, offset
+            return values, offset
         if offset + size > len(data):
             break
-        found.setdefault(pid, []).append(data[offset : offset + size])
+        values.setdefault(pid, []).append(data[offset : offset + size])
         offset += size
     raise MalformedError("a list of parameters without its end")
 
@@ -134,13 +134,13 @@ def locator(address: Address) -> bytes:
 
 def read_locators(values: list[bytes], order: str) -> list[Address]:
     """Return the UDPv4 addresses among locators. Others, such as shared memory, are ignored."""
-    found = []
+    addresses = []
     for value in values:
         if len(value) >= 24:
-            kind, port = struct.unpack_from(order + "iI", value)
-            if kind == _UDP_V4 and 0 < port < 0x1_0000:
-                found.append((socket.inet_ntoa(value[20:24]), port))
-    return found
+            locator_kind, port = struct.unpack_from(order + "iI", value)
+            if locator_kind == _UDP_V4 and 0 < port < 0x1_0000:
+                addresses.append((socket.inet_ntoa(value[20:24]), port))
+    return addresses
 
 
 def related_identity(guid: bytes, number: int) -> bytes:

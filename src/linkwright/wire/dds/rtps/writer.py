@@ -21,11 +21,14 @@ from linkwright.wire.dds.rtps.messages import (
 from linkwright.wire.dds.rtps.values import PREFIX, Address
 
 _FIRST_REPEAT, _LAST_REPEAT = 0.1, 2.0
-"""Seconds after which a reader that has not acknowledged is reminded, and to which that grows."""
+"""The first and the longest interval, in seconds, between reminders to a reader that has not acknowledged."""
 
-_MOST = 1000
-_MOST_BYTES = 64 << 20
-"""How many samples wait for acknowledgement at most, and how many bytes of them; then the oldest is forgotten."""
+_MAX_SAMPLES = 1000
+_MAX_BYTES = 64 << 20
+"""The maximum number and size of samples that wait for acknowledgement.
+
+When a limit is exceeded, the oldest samples are dropped.
+"""
 
 Packet = tuple[bytes, tuple[Address, ...]]
 """A message and its addresses."""
@@ -46,7 +49,7 @@ class _Change:
 class _Reader:
     addresses: tuple[Address, ...]
     base: int
-    """Everything before it was acknowledged, or is not for this reader."""
+    """All samples before this number were acknowledged, or are not for this reader."""
     due: float = 0.0
     repeat: float = _FIRST_REPEAT
     heard: bool = False
@@ -57,15 +60,15 @@ class Writer:
 
     Args:
         guid: the writer's GUID, 16 bytes.
-        lasting: whether late-joining readers receive earlier samples.
+        keeps_history: whether late-joining readers receive earlier samples.
     """
 
-    def __init__(self, guid: bytes, *, lasting: bool = False) -> None:
+    def __init__(self, guid: bytes, *, keeps_history: bool = False) -> None:
         self.guid = guid
-        self._lasting = lasting
+        self._keeps_history = keeps_history
         self._changes: dict[int, _Change] = {}
-        self._bytes = 0
-        self._last = 0
+        self._byte_count = 0
+        self._last_number = 0
         self._count = 0
         self._readers: dict[bytes, _Reader] = {}
 
@@ -74,23 +77,23 @@ class Writer:
         """The GUIDs of the matched readers."""
         return self._readers.keys()
 
-    def has_heard(self, reader: bytes) -> bool:
+    def has_answered(self, reader: bytes) -> bool:
         """Return whether a reader has answered, which shows that the reader has matched this writer."""
-        matched = self._readers.get(reader)
-        return matched is not None and matched.heard
+        reader_state = self._readers.get(reader)
+        return reader_state is not None and reader_state.heard
 
     def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
         """Match a reader, and return the first packets for it.
 
-        If the writer is `lasting`, these are the samples of its history, otherwise a heartbeat.
+        If the writer keeps its history, these are the samples of the history, otherwise a heartbeat.
         """
         if reader in self._readers:
             self._readers[reader].addresses = addresses
             return []
-        matched = self._readers[reader] = _Reader(addresses, 1 if self._lasting else self._last + 1)
-        if not self._lasting:
-            return [self._packet(reader, matched, self._beat(reader, matched))]
-        return self._history_packets(reader, matched)
+        reader_state = self._readers[reader] = _Reader(addresses, 1 if self._keeps_history else self._last_number + 1)
+        if not self._keeps_history:
+            return [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
+        return self._history_packets(reader, reader_state)
 
     def unmatch(self, reader: bytes) -> None:
         """Remove a reader, to which nothing more is written."""
@@ -108,16 +111,16 @@ class Writer:
         Returns:
             The packets to send.
         """
-        self._last += 1
-        number = self._last
+        self._last_number += 1
+        number = self._last_number
         self._changes[number] = _Change(payload, inline, to, time.time_ns())
-        self._bytes += len(payload or b"")
-        while len(self._changes) > 1 and (len(self._changes) > _MOST or self._bytes > _MOST_BYTES):
+        self._byte_count += len(payload or b"")
+        while len(self._changes) > 1 and (len(self._changes) > _MAX_SAMPLES or self._byte_count > _MAX_BYTES):
             self._drop(min(self._changes))
         packets: list[Packet] = []
-        for reader, matched in self._readers.items():
-            matched.due, matched.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
-            packets += self._sample(reader, matched, number)
+        for reader, reader_state in self._readers.items():
+            reader_state.due, reader_state.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
+            packets += self._sample(reader, reader_state, number)
         return packets
 
     def withdraw(self, number: int) -> None:
@@ -127,45 +130,47 @@ class Writer:
     @property
     def last(self) -> int:
         """The sequence number of the newest sample."""
-        return self._last
+        return self._last_number
 
     def on_acknack(self, acknack: AckNack) -> list[Packet]:
         """Handle an ACKNACK; return the packets that resend the missing samples."""
-        matched = self._readers.get(acknack.reader)
-        if matched is None:
+        reader_state = self._readers.get(acknack.reader)
+        if reader_state is None:
             return []
-        matched.heard = True
-        if acknack.base > matched.base:
-            matched.base = min(acknack.base, self._last + 1)
-            matched.repeat = _FIRST_REPEAT
-            matched.due = time.monotonic() + matched.repeat
+        reader_state.heard = True
+        if acknack.base > reader_state.base:
+            reader_state.base = min(acknack.base, self._last_number + 1)
+            reader_state.repeat = _FIRST_REPEAT
+            reader_state.due = time.monotonic() + reader_state.repeat
             self._forget_acknowledged()
-        packets = [packet for number in acknack.missing for packet in self._again(acknack.reader, matched, number)]
+        packets = [
+            packet for number in acknack.missing for packet in self._repeat_sample(acknack.reader, reader_state, number)
+        ]
         if packets or (not acknack.final and not acknack.missing):
-            packets.append(self._packet(acknack.reader, matched, self._beat(acknack.reader, matched)))
+            packets.append(self._packet(acknack.reader, reader_state, self._heartbeat(acknack.reader, reader_state)))
         return packets
 
     def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
         """Handle a NACK_FRAG; return the packets that resend the missing fragments."""
-        matched, change = self._readers.get(nack.reader), self._changes.get(nack.number)
-        if matched is None or change is None or change.payload is None or not change.is_for(nack.reader):
+        reader_state, change = self._readers.get(nack.reader), self._changes.get(nack.number)
+        if reader_state is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
-        most = fragment_count(change.payload)
-        fragments = [fragment for fragment in nack.missing if 1 <= fragment <= most]
+        fragment_total = fragment_count(change.payload)
+        fragments = [fragment for fragment in nack.missing if 1 <= fragment <= fragment_total]
         packets = [
-            self._fragment(nack.reader, matched, nack.number, change, change.payload, fragment)
+            self._fragment(nack.reader, reader_state, nack.number, change, change.payload, fragment)
             for fragment in fragments
         ]
-        return [*packets, self._packet(nack.reader, matched, self._beat(nack.reader, matched))]
+        return [*packets, self._packet(nack.reader, reader_state, self._heartbeat(nack.reader, reader_state))]
 
     def remind(self, now: float) -> list[Packet]:
         """Return heartbeats for the readers that have not acknowledged all samples, if they are due."""
         packets = []
-        for reader, matched in self._readers.items():
-            if matched.base <= self._last and now >= matched.due:
-                matched.due = now + matched.repeat
-                matched.repeat = min(matched.repeat * 2, _LAST_REPEAT)
-                packets.append(self._packet(reader, matched, self._beat(reader, matched)))
+        for reader, reader_state in self._readers.items():
+            if reader_state.base <= self._last_number and now >= reader_state.due:
+                reader_state.due = now + reader_state.repeat
+                reader_state.repeat = min(reader_state.repeat * 2, _LAST_REPEAT)
+                packets.append(self._packet(reader, reader_state, self._heartbeat(reader, reader_state)))
         return packets
 
     def next_reminder(self) -> float | None:
@@ -173,56 +178,65 @@ class Writer:
 
         Returns None if everything has been acknowledged.
         """
-        return min((matched.due for matched in self._readers.values() if matched.base <= self._last), default=None)
+        return min(
+            (reader_state.due for reader_state in self._readers.values() if reader_state.base <= self._last_number),
+            default=None,
+        )
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _history_packets(self, reader: bytes, matched: _Reader) -> list[Packet]:
-        matched.due = time.monotonic() + _FIRST_REPEAT
-        packets = [packet for number in sorted(self._changes) for packet in self._sample(reader, matched, number)]
-        return packets or [self._packet(reader, matched, self._beat(reader, matched))]
+    def _history_packets(self, reader: bytes, reader_state: _Reader) -> list[Packet]:
+        reader_state.due = time.monotonic() + _FIRST_REPEAT
+        packets = [packet for number in sorted(self._changes) for packet in self._sample(reader, reader_state, number)]
+        return packets or [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
 
-    def _sample(self, reader: bytes, matched: _Reader, number: int) -> Iterator[Packet]:
+    def _sample(self, reader: bytes, reader_state: _Reader, number: int) -> Iterator[Packet]:
         change = self._changes[number]
-        beat = self._beat(reader, matched)
+        heartbeat_submessage = self._heartbeat(reader, reader_state)
         entity = reader[PREFIX:]
         if not change.is_for(reader):
-            yield self._packet(reader, matched, gap(entity, self.guid[PREFIX:], number, number + 1), beat)
+            yield self._packet(
+                reader, reader_state, gap(entity, self.guid[PREFIX:], number, number + 1), heartbeat_submessage
+            )
         elif change.payload is not None and len(change.payload) > FRAGMENT:
-            for which in range(1, fragment_count(change.payload) + 1):
-                yield self._fragment(reader, matched, number, change, change.payload, which)
-            yield self._packet(reader, matched, beat)
+            for fragment_number in range(1, fragment_count(change.payload) + 1):
+                yield self._fragment(reader, reader_state, number, change, change.payload, fragment_number)
+            yield self._packet(reader, reader_state, heartbeat_submessage)
         else:
             sample = data(entity, self.guid[PREFIX:], number, change.payload, change.inline)
-            yield self._packet(reader, matched, info_timestamp(change.time), sample, beat)
+            yield self._packet(reader, reader_state, info_timestamp(change.time), sample, heartbeat_submessage)
 
-    def _again(self, reader: bytes, matched: _Reader, number: int) -> Iterator[Packet]:
+    def _repeat_sample(self, reader: bytes, reader_state: _Reader, number: int) -> Iterator[Packet]:
         if number in self._changes:
-            yield from self._sample(reader, matched, number)
-        elif number <= self._last:
-            yield self._packet(reader, matched, gap(reader[PREFIX:], self.guid[PREFIX:], number, number + 1))
+            yield from self._sample(reader, reader_state, number)
+        elif number <= self._last_number:
+            yield self._packet(reader, reader_state, gap(reader[PREFIX:], self.guid[PREFIX:], number, number + 1))
 
     def _fragment(
-        self, reader: bytes, matched: _Reader, number: int, change: _Change, payload: bytes, which: int
+        self, reader: bytes, reader_state: _Reader, number: int, change: _Change, payload: bytes, fragment_number: int
     ) -> Packet:
-        part = data_fragment(reader[PREFIX:], self.guid[PREFIX:], number, payload, which, change.inline)
-        return self._packet(reader, matched, info_timestamp(change.time), part)
+        submessage = data_fragment(reader[PREFIX:], self.guid[PREFIX:], number, payload, fragment_number, change.inline)
+        return self._packet(reader, reader_state, info_timestamp(change.time), submessage)
 
-    def _beat(self, reader: bytes, matched: _Reader) -> bytes:
+    def _heartbeat(self, reader: bytes, reader_state: _Reader) -> bytes:
         self._count += 1
-        first = min(self._changes, default=self._last + 1) if self._lasting else min(matched.base, self._last + 1)
-        return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first, self._last, self._count)
+        first_number = (
+            min(self._changes, default=self._last_number + 1)
+            if self._keeps_history
+            else min(reader_state.base, self._last_number + 1)
+        )
+        return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first_number, self._last_number, self._count)
 
-    def _packet(self, reader: bytes, matched: _Reader, *submessages: bytes) -> Packet:
-        return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), matched.addresses
+    def _packet(self, reader: bytes, reader_state: _Reader, *submessages: bytes) -> Packet:
+        return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), reader_state.addresses
 
     def _forget_acknowledged(self) -> None:
-        base = min((matched.base for matched in self._readers.values()), default=self._last + 1)
+        base = min((reader_state.base for reader_state in self._readers.values()), default=self._last_number + 1)
         for number in [change for change in self._changes if change < base]:
-            if not self._lasting or self._changes[number].payload is None:
+            if not self._keeps_history or self._changes[number].payload is None:
                 self._drop(number)
 
     def _drop(self, number: int) -> None:
         change = self._changes.pop(number, None)
         if change is not None:
-            self._bytes -= len(change.payload or b"")
+            self._byte_count -= len(change.payload or b"")

@@ -45,19 +45,23 @@ def start(context):
         remappings=[("/tf", "tf"), ("/tf_static", "tf_static")],
         output="screen",
     )
-    common = ("namespace", "use_sim_time", "autostart", "params_file", "use_respawn")
-    composed = (*common, "use_composition", "container_name")
-    where = []
+    shared_names = ("namespace", "use_sim_time", "autostart", "params_file", "use_respawn")
+    composition_names = (*shared_names, "use_composition", "container_name")
+    localization = []
     if is_true(context, "use_localization"):
-        mapping = included(context, "slam_launch.py", *common)
-        where = [mapping if is_true(context, "slam") else included(context, "localization_launch.py", "map", *composed)]
+        mapping = included(context, "slam_launch.py", *shared_names)
+        localization = [
+            mapping
+            if is_true(context, "slam")
+            else included(context, "localization_launch.py", "map", *composition_names)
+        ]
     return [
         GroupAction(
             [
                 PushRosNamespace(context.launch_configurations["namespace"]),
                 *([container] if is_true(context, "use_composition") else []),
-                *where,
-                included(context, "navigation_launch.py", *composed),
+                *localization,
+                included(context, "navigation_launch.py", *composition_names),
             ]
         )
     ]

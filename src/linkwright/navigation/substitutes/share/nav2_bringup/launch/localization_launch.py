@@ -16,7 +16,7 @@ SERVERS = (
 def start(context):
     """Return the actions that start the servers.
 
-    The argument ``map``, if given, overrides the map of the parameters.
+    If the argument ``map`` is not empty, it overrides the map of the parameters.
     """
     file = context.launch_configurations["map"]
     return managed(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Launches the slam_toolbox node that the including launch file names.
 
-The parameters are those of the file in the argument ``slam_params_file``.
+The parameters come from the file in the argument ``slam_params_file``.
 """
 
 from launch.actions import DeclareLaunchArgument

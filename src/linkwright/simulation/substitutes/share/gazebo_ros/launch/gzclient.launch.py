@@ -9,7 +9,7 @@ from launch_ros.actions import Node
 from launch import LaunchDescription
 
 IGNORED = ("extra_gazebo_args", "gdb", "help", "profile", "valgrind", "verbose", "version")
-"""Arguments that mean nothing to a window that is a page."""
+"""Arguments of Gazebo's window that have no effect here."""
 
 
 def start(context):

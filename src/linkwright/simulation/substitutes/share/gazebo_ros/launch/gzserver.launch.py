@@ -34,7 +34,7 @@ IGNORED = {
     "verbose": "false",
     "version": "false",
 }
-"""Arguments that mean nothing here, and their defaults."""
+"""Arguments of gzserver that have no effect here, and their defaults."""
 
 
 def start_server(context):
@@ -43,10 +43,10 @@ def start_server(context):
     def value(name):
         return LaunchConfiguration(name).perform(context)
 
-    words = [value("world")] if value("world") else []
-    words += ["-u"] if value("pause").lower() in ("true", "1") else []
-    words += ["--seed", value("seed")] if value("seed") else []
-    command = classic_server([*words, *shlex.split(value("extra_gazebo_args"))])
+    arguments = [value("world")] if value("world") else []
+    arguments += ["-u"] if value("pause").lower() in ("true", "1") else []
+    arguments += ["--seed", value("seed")] if value("seed") else []
+    command = classic_server([*arguments, *shlex.split(value("extra_gazebo_args"))])
     required = IfCondition(LaunchConfiguration("server_required")).evaluate(context)
     return [
         Node(

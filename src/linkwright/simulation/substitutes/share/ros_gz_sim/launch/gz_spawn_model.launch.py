@@ -22,7 +22,7 @@ ARGUMENTS = {
     "yaw": ("0.0", "rad"),
 }
 PARAMETERS = {"model_string": "string", "entity_name": "name", "roll": "R", "pitch": "P", "yaw": "Y"}
-"""Arguments whose parameter has another name."""
+"""The launch arguments whose node parameters have other names."""
 
 
 def generate_launch_description():
