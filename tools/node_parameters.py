@@ -95,9 +95,9 @@ def _plugins() -> Iterator[tuple[str, str, str, str]]:
         yield "controller_server", "controller_server", "goal_checker_plugins", f"nav2_controller/{kind}"
     for kind in ("SimpleProgressChecker", "PoseProgressChecker"):
         yield "controller_server", "controller_server", "progress_checker_plugins", f"nav2_controller/{kind}"
-    for kind in (planner_server._NAVFN, *planner_server._OTHERS):  # the tables of the node
+    for kind in (planner_server._NAVFN, *planner_server._REPLACED_TYPES):  # the tables of the node
         yield "planner_server", "planner_server", "planner_plugins", kind
-    for kind, _ in behavior_server._TYPES.values():
+    for kind, _ in behavior_server._BEHAVIOR_TYPES.values():
         yield "behavior_server", "behavior_server", "behavior_plugins", kind
     yield "smoother_server", "smoother_server", "smoother_plugins", "nav2_smoother/SimpleSmoother"
     yield (
