@@ -243,7 +243,7 @@ async def test_it_stops_when_it_is_deactivated(wheels):
     command(wheels, 1.0)
     await wheels.graph.settle()
     wheels.exchange.run_commands()
-    assert warnings(wheels) == ["a velocity command is ignored because the controller is not active"]
+    assert warnings(wheels) == ["Can't accept new commands. subscriber is inactive"]
     controller.on_activate()
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
@@ -297,7 +297,7 @@ async def test_others_may_say_where_the_robot_is(wheels):
     [
         (
             {"left_wheel_names": [], "right_wheel_names": []},
-            "the parameters left_wheel_names and right_wheel_names must not be empty",
+            "Wheel names parameters are empty!",
         ),
         (
             {"left_wheel_names": ["left", "other"]},

@@ -142,7 +142,7 @@ async def test_it_stops_when_it_is_deactivated(wheel):
 async def test_a_wheel_that_tells_no_number_ends_it(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     wheel.states["steer/position"].value = nan
-    with pytest.raises(ControllerError, match="the state of the wheel or of the steering is not a number"):
+    with pytest.raises(ControllerError, match="Could not read feedback value"):
         await wheel.step(controller)
 
 

@@ -99,7 +99,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
                 )
             )
         if not left_count:
-            raise ControllerError(phrase("the parameters left_wheel_names and right_wheel_names must not be empty"))
+            raise ControllerError(phrase("Wheel names parameters are empty!"))
         for name in ("wheel_separation", "wheel_radius"):
             problem = above(0.0)(name, getattr(parameters, name))
             if problem is not None:

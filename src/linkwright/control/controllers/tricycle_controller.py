@@ -164,7 +164,7 @@ class TricycleController(Controller[Parameters]):
         """
         measured_speed, measured_angle = (state.value for state in self.states)
         if isnan(measured_speed) or isnan(measured_angle):
-            raise ControllerError(phrase("the state of the wheel or of the steering is not a number"))
+            raise ControllerError(phrase("Could not read feedback value"))
         forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         speed, angle = self._drive.wheel(forward, angular)
         speed = self._traction_limiter.follow(speed * _speed_fraction(abs(angle - measured_angle)), period_s)

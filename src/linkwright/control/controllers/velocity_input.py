@@ -86,14 +86,17 @@ class VelocityInput:
         stamp_ns = stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec
         if not stamp_ns and self._is_open:
             self._logger.warning(
-                phrase("a TwistStamped without a stamp was received, so the current time is used (reported once)"),
+                phrase(
+                    "Received TwistStamped with zero timestamp, setting it to current time, this message will "
+                    "only be shown once"
+                ),
                 once=True,
             )
         self._on_twist(message.twist, stamp_ns)
 
     def _on_twist(self, twist: Any, stamp: int = 0) -> None:
         if not self._is_open:
-            self._logger.warning(phrase("a velocity command is ignored because the controller is not active"))
+            self._logger.warning(phrase("Can't accept new commands. subscriber is inactive"))
             return
         self._new_command = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)), stamp
 

@@ -66,7 +66,7 @@ def read_map_yaml(path: str | Path) -> MapYaml:
         LinkwrightError: NAV201, the file cannot be read; NAV202, the content is invalid.
     """
     if not str(path):
-        raise LinkwrightError(Diagnostic("NAV201", phrase("the name of the map's YAML file is empty")))
+        raise LinkwrightError(Diagnostic("NAV201", phrase("YAML file name is empty, can't load!")))
     path = Path(path)
     return _Reader(read_source(path, phrase("map file"), "NAV201")).read(path)
 
