@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 
 from linkwright.diagnostics.phrase import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.render import display_path
@@ -29,6 +30,12 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     A common word, as in the names of two robots, is not enough: the names may only differ by typing errors, by missing
     words, or in the order of words.
     """
+    return list(_nearest(name, tuple(candidates), limit))
+
+
+@lru_cache(maxsize=256)
+def _nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, ...]:
+    """Return the result of `nearest`; a description without a property asks for the same name again and again."""
     from difflib import get_close_matches  # imported here, because most commands need no hint
 
     by_fold: dict[str, str] = {}
@@ -40,7 +47,7 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
         comparable = [other for other in by_fold if abs(len(other) - len(folded)) < 3 and other[:2] == folded[:2]]
         comparable = comparable[:_MAX_COMPARED]
     matches = get_close_matches(folded, comparable, n=4 * limit, cutoff=0.6)
-    return [by_fold[match] for match in matches if _is_similar(name, by_fold[match])][:limit]
+    return tuple(by_fold[match] for match in matches if _is_similar(name, by_fold[match]))[:limit]
 
 
 def words_of(name: str) -> list[str]:
