@@ -121,7 +121,9 @@ def test_a_dependency_that_is_not_found_is_offered(at):
 
 def test_classes_of_launch_and_their_arguments_are_explained(at):
     assert at("No|de(package='a')").hover().startswith("**Node**: Starts a node.")
-    assert at("Node(pack|age='a')").hover() == "`package`: the package of the executable."
+    assert (
+        at("Node(pack|age='a')").hover() == "`package`: the name of the package of the executable; None for a program."
+    )
     assert "package" in at("Node(|").labels()[0]
     assert at("Node(package='a', exec|").labels()[0] == "executable="
     assert at("Node(package='a', parameters=[{|").labels() == []
@@ -136,7 +138,7 @@ def test_a_configuration_in_a_path_has_its_default(at):
 
 def test_a_value_is_explained_by_its_argument(at):
     assert "Its colour" in at(INCLUDE.format("{'colour': 're|d'}.items()")).hover()
-    assert at("Node(name='ab|c')").hover() == "`name`: the name to give to the node."
+    assert at("Node(name='ab|c')").hover() == "`name`: the name of the node; None for the name that the program sets."
     assert at("Node(package='nowh|ere')").hover() == "package 'nowhere' not found"
 
 

@@ -128,7 +128,7 @@ async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr("linkwright.page.server._is_from_here", lambda _: False)
     async with world() as scene, page(scene.viewer) as client:
         answer = await opened(scene, client, file)
-        assert "only from pages that are open on the machine" in answer["why_not"]
+        assert "only in pages that are open on the machine" in answer["why_not"]
 
 
 async def test_without_the_extra_the_page_is_told_how_to_get_it(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
