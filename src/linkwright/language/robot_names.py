@@ -20,10 +20,11 @@ from linkwright.xmltree.positions import start_tag_end
 
 _ENDINGS = (".urdf", ".xacro")
 _MAX_ROBOTS = 24
+_MAX_STORED = 4 * _MAX_ROBOTS
 _MAX_SECONDS = 0.5
 _KINDS = {"link": NameKind.LINK, "joint": NameKind.JOINT}
 _State = tuple[tuple[str, object], ...]
-"""The files of an expansion, each with its open text or the time of its last change."""
+"""The files of an expansion, each with the hash of its open text or the time of its last change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,10 @@ def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> li
         if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
             if time.monotonic() - begin > _MAX_SECONDS:
                 break  # the next request continues
+            cache.pop(entry, None)
             robot = cache[entry] = _read(project, texts, entry)
+            if len(cache) > _MAX_STORED:
+                del cache[next(iter(cache))]
         robots.append(robot)
     names: dict[tuple[NameKind, str], NameDefinition] = {}
     for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
@@ -113,7 +117,7 @@ def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str
     for file in files:
         text = texts.get(Path(file)) or texts.get(real(file))
         try:
-            state.append((file, text if text is not None else os.stat(file).st_mtime_ns))  # noqa: PTH116
+            state.append((file, os.stat(file).st_mtime_ns if text is None else str(hash(text))))  # noqa: PTH116
         except OSError:
             state.append((file, None))
     return tuple(state)

@@ -28,14 +28,18 @@ from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.positions import UTF_16, TextPositions
+from linkwright.lsp.protocol import LeanProtocol
+from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 T = TypeVar("T")
 
 _log = logging.getLogger(__name__)
-_KEPT_TEXTS = 200
-"""The number of files on the disk whose lines are kept, for the places of findings."""
+_MAX_TEXTS = 200
+"""The number of files on the disk whose lines are stored, for the positions of findings."""
+_CACHE_DIVISOR = 8
 
 
 class FormattedText(NamedTuple):
@@ -54,7 +58,7 @@ class LinkwrightServer(LanguageServer):
     """
 
     def __init__(self) -> None:
-        super().__init__("linkwright", __version__)
+        super().__init__("linkwright", __version__, protocol_cls=LeanProtocol)
         self.project: Workspace | None = None
         self._uris: dict[Path, str] = {}
         self._files: dict[Path, tuple[int, TextPositions]] = {}
@@ -69,6 +73,8 @@ class LinkwrightServer(LanguageServer):
 
     def begin(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and check what changes from now on."""
+        BoundedCache.divisor = _CACHE_DIVISOR
+        seldom_collected.ages_objects = False
         self.project = Workspace(folders)
         self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
 
@@ -188,7 +194,7 @@ class LinkwrightServer(LanguageServer):
             if known is None or known[0] != changed_ns:
                 known = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
                 self._files[file] = known
-                if len(self._files) > _KEPT_TEXTS:
+                if len(self._files) > _MAX_TEXTS:
                     del self._files[next(iter(self._files))]
         except (OSError, LinkwrightError):
             return None

@@ -26,8 +26,13 @@ class BoundedCache(Generic[_Key, _Value]):
         size_of: the function that returns the size of a value.
 
     Attributes:
+        divisor: what the maximum sizes of all caches are divided by. The limits suit a command that reads a thousand
+            robots once. A process that runs for days and expands a text again after each edit needs less, because it
+            never reads the earlier versions of the text again.
         values: the cached values, by key. This is a plain dict because it is read for each text of a description.
     """
+
+    divisor = 1
 
     def __init__(self, max_size: int, size_of: Callable[[_Key, _Value], int]) -> None:
         self.values: dict[_Key, _Value] = {}
@@ -38,13 +43,13 @@ class BoundedCache(Generic[_Key, _Value]):
 
     def store(self, key: _Key, value: _Value) -> None:
         """Store a value, replacing an old value with the same key."""
-        values, size_of = self.values, self._size_of
+        values, size_of, max_size = self.values, self._size_of, self._max_size // self.divisor
         values.pop(key, None)
         value_size = size_of(key, value)
         self._size += value_size  # too large if the key existed; the sum below corrects it
-        while self._size > self._max_size and values:
+        while self._size > max_size and values:
             self._size = value_size + sum(size_of(*item) for item in list(values.items()))
-            if self._size > self._max_size:
+            if self._size > max_size:
                 self._start = (self._start + 1) % _STRIDE
                 for dropped in list(values)[self._start :: _STRIDE]:
                     values.pop(dropped, None)

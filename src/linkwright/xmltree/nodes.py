@@ -25,8 +25,13 @@ _before = (0, 0, 0)
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """A context in which the garbage collector runs less often.
 
-    At the end of the context, all objects become part of the oldest generation.
+    Attributes:
+        ages_objects: whether all objects become part of the oldest generation at the end of the context, which spares
+            a command the search of the result. A process that runs for days sets it to False. Otherwise, the garbage
+            of each expansion gathers in the oldest generation, which Python seldom searches.
     """
+
+    ages_objects = True
 
     def __enter__(self) -> None:
         global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
@@ -42,7 +47,9 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _depth_lock:
             _active -= 1
             if _active == 0:
-                if gc.get_freeze_count() == 0:  # move new objects to the oldest generation without a collection
+                if (
+                    self.ages_objects and gc.get_freeze_count() == 0
+                ):  # move new objects to the oldest generation without a collection
                     gc.freeze()
                     gc.unfreeze()
                 gc.set_threshold(*_before)
