@@ -227,13 +227,12 @@ class _Call:
         try:
             body = macro.body
             container = Container(body.tag)
-            for name, value in body.attributes.items():
+            for name, value in body.attributes.items():  # xacro evaluates `params` here, too, and fails if it cannot
                 if name == "xmlns:xacro" or ("$" not in value and not name.startswith("xmlns:")):
                     continue
-                if name.startswith("xmlns:") or session.changes(value):
-                    evaluated_value = expander.text_value(body, name, scope)
-                    if name.startswith("xmlns:"):
-                        container.attributes[name] = evaluated_value
+                evaluated_value = expander.text_value(body, name, scope)
+                if name.startswith("xmlns:"):
+                    container.attributes[name] = evaluated_value
             expander.children(body, container, scope, macros)
         finally:
             session.frame = outer_frame
