@@ -25,7 +25,7 @@ XML_FILES = (*DESCRIPTIONS, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.
 _EMPTY_FILE = "XML105"
 _COMMENT = lazy_pattern(rf"{COMMENT}|<\?xml\s[^>]*\?>")
 _WEB_PAGE = "package.json"
-"""A file that marks the folder of a JavaScript program, which is skipped inside a package."""
+"""A file that marks a folder as a JavaScript program. Such a folder is skipped inside a package."""
 _OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
 _INCLUDE = lazy_pattern(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""")
 _ARGUMENT = lazy_pattern(r"<xacro:arg\b[^>]*>")
@@ -38,9 +38,9 @@ _HEADER_CHARACTERS = 2_000
 """The number of characters at the beginning of a file that contain this comment."""
 _DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
 _WITHOUT_LINKS = frozenset({"gazebo", "material", "ros2_control", "transmission", "webots"})
-"""Elements of a partial robot, which another file may include by a name that no text search finds."""
+"""Elements of a partial robot. Another file may include it by a name that no text search finds."""
 _PART_ROOTS = _WITHOUT_LINKS | {"link", "joint", "inertial", "visual", "collision", "geometry"}
-"""The roots of files with one element of a robot, which a program inserts into other files."""
+"""The root elements of files that a program inserts into other files."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,9 @@ _STRIDE = 16
 class BoundedCache(Generic[_Key, _Value]):
     """A cache of values with a limit on their total size.
 
-    A full cache drops every sixteenth value, each time starting at a different position. A user that cycles through
-    more values than fit, such as a collection of robots, therefore still finds most of the values. If the oldest
-    values were dropped first, such a user would find none.
+    A full cache drops every sixteenth value, each time starting at a different position. A caller that cycles through
+    more values than fit, such as a check of many robots, therefore still finds most of the values. If the oldest
+    values were dropped first, the check would find none.
 
     Args:
         max_size: the maximum total size.
@@ -100,9 +100,9 @@ documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCac
 
 
 def read_document(path: str, overlay: Overlay | None = None) -> Document:
-    """Return the document of a file, which is shared and must not be changed.
+    """Return the parsed document of a file.
 
-    A file is parsed once in a process until it changes.
+    A file is parsed again only if it has changed. The document is shared, so callers must not change it.
 
     Args:
         path: the file.

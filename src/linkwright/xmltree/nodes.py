@@ -71,7 +71,7 @@ class Text:
 
 
 class Comment:
-    """A comment; `data` is the text between ``<!--`` and ``-->``."""
+    """A comment with the text `data` between ``<!--`` and ``-->``."""
 
     __slots__ = ("data", "offset", "source")
 
@@ -154,13 +154,13 @@ class Element:
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """Return the location of the ``<`` and the name in the start tag; None if a program created the element."""
+        """Return the location of the ``<`` and the name in the start tag, or None if the node has no source."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))
 
     def attribute_span(self, name: str) -> Span | None:
-        """Return the location of an attribute's value in the source.
+        """Return the location of an attribute's value in the source, or None if the node has no source.
 
         If the attribute is absent or was created by a program, the location of the element is returned.
         """

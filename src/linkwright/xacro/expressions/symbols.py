@@ -133,7 +133,7 @@ _PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """Return the parts of a text between any of some separator characters."""
+    """Split a text at each of the separator characters, and return the parts."""
     inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
         parts = bounded.split(f"[{inside}]", text)

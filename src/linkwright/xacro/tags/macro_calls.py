@@ -55,7 +55,7 @@ def call_dynamically(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:call macro>``: call the macro that the attribute names."""
     node = site.node
     if not node.attributes.get("macro"):
-        expander.fail_at("XAC301", phrase("'xacro:call' lacks its attribute 'macro'"), node, node.span())
+        expander.fail_at("XAC301", phrase("'xacro:call' needs the attribute 'macro'"), node, node.span())
     name = expander.text_value(node, "macro", site.scope)
     attributes = {attribute: value for attribute, value in node.attributes.items() if attribute != "macro"}
     call = Element(PREFIX + name, attributes, node.source, node.offset)

@@ -1,4 +1,4 @@
-"""The values of all expressions of a description, and of the texts that contain them, in each macro call."""
+"""The values of expressions, and of the texts that contain them, in each macro call."""
 
 from __future__ import annotations
 
