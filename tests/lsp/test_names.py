@@ -68,6 +68,7 @@ async def test_a_hover_explains_elements_attributes_and_names(editor):
     assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
     assert "`name length`" in await look(editor, "<xacro:ba", hover)
     assert "**property reach** = `0.2`" in await look(editor, "* rea", hover)
+    assert await look(editor, "<xacro:bar na", hover) == "**parameter name**, macro bar, parts.xacro"
     assert "name" in await look(editor, "<link na", hover)
     assert await look(editor, "\n", hover) == ""
 
@@ -82,6 +83,7 @@ async def test_a_definition_is_found_in_an_included_file(editor):
 
     assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
     assert await look(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
+    assert await look(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
 
 
 async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, package):
