@@ -114,3 +114,11 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
     joint = await hover("urdf/parts.xacro", PARTS, "${name}_jo")
     assert "**joint upper_joint**" in joint
     assert "- continuous joint from `base` to `upper`" in joint
+
+
+async def test_an_editor_can_filter_each_completion(editor):
+    """Neovim offers an item with an edit and without a filter text whatever is typed."""
+    editor.open(FILE, MAIN.replace("<link", "<li"))
+    asked = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
+    found = await editor.client.text_document_completion_async(asked)
+    assert {item.filter_text for item in found} >= {"link", "xacro:bar"}

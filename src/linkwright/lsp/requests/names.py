@@ -84,7 +84,8 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
-        filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
+        # Neovim offers an item without this text whatever is typed.
+        filter_text=f"<{item.label}" if item.snippet.startswith("<") else item.label,
         text_edit=edit,
     )
 
