@@ -172,10 +172,15 @@ class LinkwrightServer(LanguageServer):
     @property
     def opens_pages(self) -> bool:
         """Whether the client follows the address of a finding's code, and asks for virtual documents."""
-        document, workspace = self.client_capabilities.text_document, self.client_capabilities.workspace
+        document = self.client_capabilities.text_document
         published = None if document is None else document.publish_diagnostics
-        asks = workspace is not None and workspace.text_document_content is not None
-        return asks and published is not None and bool(published.code_description_support)
+        return self.opens_virtual_documents and published is not None and bool(published.code_description_support)
+
+    @property
+    def opens_virtual_documents(self) -> bool:
+        """Whether the client asks for the content of virtual documents; other clients show an empty file."""
+        workspace = self.client_capabilities.workspace
+        return workspace is not None and workspace.text_document_content is not None
 
     async def when_indexed(self) -> None:
         """Wait until the folders have been searched."""

@@ -11,12 +11,13 @@ from lsprotocol import types
 from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind, complete
-from linkwright.language.definitions import NameDefinition
+from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at
 from linkwright.language.format import Target
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
+from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.workspace import Workspace
@@ -83,7 +84,8 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
-        filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
+        # Neovim offers an item without this text whatever is typed.
+        filter_text=f"<{item.label}" if item.snippet.startswith("<") else item.label,
         text_edit=edit,
     )
 
@@ -141,6 +143,20 @@ def definitions(
     """Return where the name at a place is defined."""
     found = definitions_at(positions.text, positions.offset(place), names)
     return [*_locations(found, text_of, uri)]
+
+
+async def parameter_definitions(
+    server: LinkwrightServer, path: Path, positions: TextPositions, place: types.Position
+) -> list[types.Location]:
+    """Return where the parameter of a macro at a place is declared; nothing for other names."""
+    project, texts = server.project, server.texts()
+    name = occurrence_at(positions.text, real(path), positions.offset(place))
+    if project is None or name is None or name.kind is not NameKind.PARAMETER:
+        return []
+    await server.when_indexed()
+    uses = await server.in_thread(lambda: references(project, texts, name))
+    declared = (Target(use.file, use.start, use.end) for use in uses if use.is_definition)
+    return [*target_locations(declared, server.positions, server.uri_of)]
 
 
 def _locations(
@@ -232,7 +248,9 @@ def add_requests(server: LinkwrightServer) -> None:
             return source
         known, values = await server.names(path), await server.values(path)
         server.check_unchanged(path, positions)
-        found = definitions(known, positions, asked.position, server.positions, server.uri_of)
+        found = await parameter_definitions(server, path, positions, asked.position) or definitions(
+            known, positions, asked.position, server.positions, server.uri_of
+        )
         offset, finder = positions.offset(asked.position), server.project.finder(real(path))
         links = () if found else file_references(positions.text, path, finder, values)
         top = types.Range(types.Position(0, 0), types.Position(0, 0))
