@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -67,6 +67,7 @@ class LinkwrightServer(LanguageServer):
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
+        self._background: dict[Path, Future[None]] = {}
         self._work: asyncio.Task[None] | None = None
 
     # --- files ------------------------------------------------------------------------------------------------
@@ -261,6 +262,13 @@ class LinkwrightServer(LanguageServer):
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", about)
             return None
+
+    def in_background(self, work: Callable[[], None], about: Path) -> None:
+        """Do work in the thread of the checks without waiting for it; work about a file replaces what still waits."""
+        waiting = self._background.get(about)
+        if waiting is not None:
+            waiting.cancel()
+        self._background[about] = self._thread.submit(work)
 
     async def in_thread(self, work: Callable[[], T]) -> T:
         """Return the result of work in the thread of the checks, which is the only one that reads the workspace."""

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from pathlib import Path
 
 from lsprotocol import types
 
 from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.completion import Completion, ItemKind, complete
+from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at
-from linkwright.language.format import Target
+from linkwright.language.format import Document, Target
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
 from linkwright.language.renaming import occurrence_at, references
+from linkwright.language.robot_names import PartNames
 from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
-from linkwright.language.workspace import Workspace
+from linkwright.language.xml_completion import complete
 from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
@@ -38,30 +38,6 @@ _KINDS = {
     ItemKind.FILE: types.CompletionItemKind.File,
     ItemKind.FOLDER: types.CompletionItemKind.Folder,
 }
-
-
-def completions(
-    project: Workspace,
-    path: Path,
-    names: Sequence[NameDefinition],
-    positions: TextPositions,
-    place: types.Position,
-    *,
-    takes_snippets: bool,
-) -> list[types.CompletionItem]:
-    """Return the completions at a place.
-
-    Args:
-        project: the files of the editor.
-        path: the file.
-        names: the names that the description defines.
-        positions: the text of the file.
-        place: the place.
-        takes_snippets: whether the editor understands snippets.
-    """
-    offset = positions.offset(place)
-    found = complete(positions.text, offset, path, names, partial(project.finder, path))
-    return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
 
 
 def items(
@@ -213,8 +189,17 @@ def add_requests(server: LinkwrightServer) -> None:
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:
             return None
-        known = await server.names(path)
-        return completions(server.project, path, known, positions, asked.position, takes_snippets=takes_snippets)
+        known, file = await server.names(path), real(path)
+        document = Document(server.project, server.texts(), file, positions.text)
+        parts = PartNames(server.project, document.texts, file)
+        found = complete(document, positions.offset(asked.position), known, parts)
+        if parts.is_missing:
+            await server.in_thread(parts.read)
+            server.check_unchanged(path, positions)
+            found = complete(document, positions.offset(asked.position), known, parts)
+        elif parts.is_stale:
+            server.in_background(parts.read, file)
+        return items(found, positions, asked.position, takes_snippets=takes_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
