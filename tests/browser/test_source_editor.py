@@ -262,3 +262,42 @@ def test_a_urdf_becomes_a_new_xacro_file(start, open_page, file):
     shows(page, "xmlns:xacro")
     text.press("Control+s")
     becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
+
+
+def test_definitions_and_references_lead_through_files_and_back(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4, 9)  # in xacro:leg
+    text.press("F12")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    go_to(text, 2, 23)  # in the name of the macro
+    text.press("Shift+F12")
+    page.get_by_role("listbox", name="2 references").wait_for()
+    places = page.locator(".place-list-place")
+    assert [" ".join(place.split()) for place in places.all_inner_texts()] == [
+        '4 <xacro:leg name="left"/>',
+        '2 <xacro:macro name="leg" params="name">',
+    ]
+    assert violations(page, ".source-panel") == []
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Home")
+    page.keyboard.press("Enter")
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 4")
+    text.press("Control+Home")
+    page.keyboard.insert_text("\n")  # the places behind move with the text
+    text.press("Alt+ArrowLeft")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    text.press("Alt+ArrowLeft")
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
+    text.press("Alt+ArrowRight")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro')")
+    places.first.click()
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
+    places.first.focus()
+    page.keyboard.press("Escape")
+    until(page, "document.activeElement.matches('.cm-content')")
+    page.locator(".cm-line").nth(4).get_by_text("leg").first.click(modifiers=["Control"])
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    go_to(text, 1)
+    text.press("F12")
+    page.get_by_text("There is no definition of this.").wait_for()

@@ -1,5 +1,5 @@
 import { LSPClient, LSPPlugin, Workspace, type LSPClientConfig, type WorkspaceFile } from "@codemirror/lsp-client";
-import { formatDocument, findReferences, hoverTooltips, jumpToDefinition, serverCompletion } from "@codemirror/lsp-client";
+import { formatDocument, hoverTooltips, serverCompletion } from "@codemirror/lsp-client";
 import { ChangeSet, type Extension, type Text, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap, ViewPlugin, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "../../connection/connection";
@@ -192,11 +192,7 @@ export class LanguageService {
       serverCompletion({ override: true }),
       hoverTooltips(),
       ViewPlugin.define(() => new Synchronizer(this.client)),
-      keymap.of([
-        { key: "F12", run: jumpToDefinition, preventDefault: true },
-        { key: "Shift-F12", run: findReferences, preventDefault: true },
-        { key: "Shift-Alt-f", run: formatDocument, preventDefault: true },
-      ]),
+      keymap.of([{ key: "Shift-Alt-f", run: formatDocument, preventDefault: true }]),
     ];
   }
 }

@@ -18,6 +18,8 @@ import { showFindings } from "./findings";
 import { LanguageService } from "./language-service";
 import { inspectMarks, marksOf } from "./marks";
 import { fitsMessage } from "./message-size";
+import { Navigation } from "./navigation";
+import { PlaceList } from "./place-list";
 import { renameAtCursor } from "./rename";
 import { SourceDocument } from "./source-document";
 import { messageOf } from "./workspace-edit";
@@ -42,6 +44,8 @@ export class SourceEditor implements Documents {
   private readonly found = new Map<string, readonly ServerFinding[]>();
   private readonly service: LanguageService;
   private readonly actions: CodeActions;
+  private readonly navigation: Navigation;
+  private readonly places = new PlaceList(() => this.view.focus());
   private readonly tree: FileTree;
   private readonly notice = h("div", { class: "editor-notice", role: "alert" });
   private readonly status = h("span", { class: "editor-status", role: "status" });
@@ -63,6 +67,7 @@ export class SourceEditor implements Documents {
     const { connection } = session;
     this.service = new LanguageService(connection, this);
     this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], (message) => this.tell(message));
+    this.navigation = new Navigation(this.service.client, this, this.places, (message) => this.tell(message));
     this.save = button(words.saveHint, () => this.saveAll(), "tool framed", icon("save"), words.save);
     this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
@@ -72,7 +77,7 @@ export class SourceEditor implements Documents {
     const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: words.label } }, files, this.save, actions, format, this.list, this.status);
     this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
     this.view = new EditorView({ dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
-    this.element = h("div", { class: "source-editor" }, bar, this.notice, h("div", { class: "editor-body" }, this.tree.element, this.view.dom));
+    this.element = h("div", { class: "source-editor" }, bar, this.notice, h("div", { class: "editor-body" }, this.tree.element, this.view.dom), this.places.element);
     // The page's own keys would change the scene or save the configuration.
     this.element.addEventListener("keydown", (event) => event.key !== "F11" && event.stopPropagation());
     this.changed.on(coalesced(() => this.refresh()));
@@ -138,6 +143,7 @@ export class SourceEditor implements Documents {
     this.view.dispatch({ effects });
     if (line === null || line < 1) return;
     const at = document.placeNow(document.savedText.line(Math.min(line, document.savedText.lines)).from);
+    this.navigation.leave();
     this.view.dispatch({ selection: { anchor: at }, effects: EditorView.scrollIntoView(at, { y: "center" }) });
   }
 
@@ -287,19 +293,30 @@ export class SourceEditor implements Documents {
     const keys = keymap.of([
       { key: "Mod-s", run: () => (this.saveAll(), true), preventDefault: true },
       { key: "F2", run: (view) => renameAtCursor(view, this, (message) => this.tell(message)), preventDefault: true },
+      { key: "F12", run: (view) => this.navigation.goToDefinition(view), preventDefault: true },
+      { key: "Shift-F12", run: (view) => this.navigation.listReferences(view), preventDefault: true },
+      { key: "Alt-ArrowLeft", mac: "Ctrl--", run: () => this.navigation.goBack(), preventDefault: true },
+      { key: "Alt-ArrowRight", mac: "Ctrl-Shift--", run: () => this.navigation.goForward(), preventDefault: true },
       { key: "Mod-.", run: (view) => this.actions.open(view), preventDefault: true },
       { key: "F8", run: nextDiagnostic, shift: previousDiagnostic, preventDefault: true },
       { key: "Mod-i", run: selectParentSyntax, preventDefault: true },
     ]);
+    const clicks = EditorView.domEventHandlers({
+      mousedown: (event, view) => {
+        const position = event.button === 0 && (event.ctrlKey || event.metaKey) ? view.posAtCoords({ x: event.clientX, y: event.clientY }) : null;
+        return position !== null && this.navigation.goToDefinition(view, position);
+      },
+    });
     const followClicks = EditorView.updateListener.of(({ transactions, state }) => {
       const { main } = state.selection;
       if (main.empty && transactions.some((each) => each.isUserEvent("select.pointer"))) this.onLine(path, state.doc.lineAt(main.head).number);
     });
-    return EditorState.create({ doc, extensions: [keys, baseExtensions(path, doc, isReadOnly), this.service.extension({ uri, path }), followClicks] });
+    return EditorState.create({ doc, extensions: [keys, baseExtensions(path, doc, isReadOnly), this.service.extension({ uri, path }), clicks, followClicks] });
   }
 
   private display(document: SourceDocument): void {
     this.service.client.sync();
+    this.navigation.leave();
     if (this.shown) this.shown.scrolledTo = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
     this.shown = document;
     this.view.setState(document.state);
@@ -325,6 +342,7 @@ export class SourceEditor implements Documents {
     document.record(transaction);
     if (!transaction.docChanged) return;
     this.service.record(document, transaction.changes);
+    this.navigation.record(document, transaction.changes);
     this.changed.emit();
   }
 
