@@ -204,3 +204,100 @@ def test_the_editor_is_accessible(start, open_page, file):
     page.locator(".cm-search").wait_for()
     assert violations(page, ".source-panel") == []
     assert page.evaluate("document.body.scrollHeight <= document.body.clientHeight")
+
+
+def choose(page, label: str) -> None:
+    """Choose an entry of the open menu with the keyboard."""
+    page.get_by_role("menuitem").first.wait_for()
+    labels = page.get_by_role("menuitem").all_inner_texts()
+    for _ in range(labels.index(label)):
+        page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+
+
+def test_findings_are_fixed_and_values_extracted_with_the_menu_of_actions(start, open_page, file):
+    leg = file.parent / "leg.xacro"
+    turning = LEG.replace('type="fixed">', 'type="continuous"><axis xyz="0 0 2"/>')
+    leg.write_text(turning)
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 2)
+    text.press("Control+.")
+    page.get_by_text("There is no fix or refactoring here.").wait_for()
+
+    go_to(text, 4, 9)
+    text.press("F12")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.findings.includes('LW221')")
+    page.locator(".cm-lintRange").first.hover()
+    page.get_by_role("button", name="Fix…").click()
+    choose(page, "fix everything that is safe to fix in this file")
+    shows(page, 'xyz="0 0 1"')
+    page.get_by_text("changed 1 file, not saved yet").wait_for()
+    until(page, "document.activeElement.matches('.cm-content')")
+    text.press("Control+z")
+    shows(page, 'xyz="0 0 2"')
+    until(page, f"{EDITOR}.findings.includes('LW221')")
+
+    text.press("Control+Home")
+    text.press("F8")
+    text.press("Control+.")
+    choose(page, "extract '0 0 2' to a property")
+    shows(page, "<xacro:property")
+    assert leg.read_text() == turning
+
+
+def test_a_urdf_becomes_a_new_xacro_file(start, open_page, file):
+    urdf = file.parent / "plain.urdf"
+    urdf.write_text('<robot name="r">\n  <link name="base"/>\n</robot>\n')
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    page.get_by_role("button", name="Files", exact=True).click()
+    page.get_by_role("treeitem", name="plain.urdf").click()
+    until(page, f"{EDITOR}.file.endsWith('plain.urdf')")
+    go_to(text, 1, 2)
+    page.locator(".editor-bar").get_by_role("button", name="Actions").click()
+    page.get_by_role("menuitem", name="xacro").first.wait_for()
+    page.get_by_role("menuitem", name="xacro").first.click()
+    until(page, f"{EDITOR}.file.endsWith('plain.urdf.xacro')")
+    shows(page, "xmlns:xacro")
+    text.press("Control+s")
+    becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
+
+
+def test_definitions_and_references_lead_through_files_and_back(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4, 9)  # in xacro:leg
+    text.press("F12")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    go_to(text, 2, 23)  # in the name of the macro
+    text.press("Shift+F12")
+    page.get_by_role("listbox", name="2 references").wait_for()
+    places = page.locator(".place-list-place")
+    assert [" ".join(place.split()) for place in places.all_inner_texts()] == [
+        '4 <xacro:leg name="left"/>',
+        '2 <xacro:macro name="leg" params="name">',
+    ]
+    assert violations(page, ".source-panel") == []
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Home")
+    page.keyboard.press("Enter")
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 4")
+    text.press("Control+Home")
+    page.keyboard.insert_text("\n")  # the places behind move with the text
+    text.press("Alt+ArrowLeft")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    text.press("Alt+ArrowLeft")
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
+    text.press("Alt+ArrowRight")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro')")
+    places.first.click()
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
+    places.first.focus()
+    page.keyboard.press("Escape")
+    until(page, "document.activeElement.matches('.cm-content')")
+    page.locator(".cm-line").nth(4).get_by_text("leg").first.click(modifiers=["Control"])
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    go_to(text, 1)
+    text.press("F12")
+    page.get_by_text("There is no definition of this.").wait_for()

@@ -10,14 +10,19 @@ import { Signal } from "../../signal";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import type { Highlight } from "../description/source-view";
+import { CodeActions } from "./code-actions";
+import type { Documents, ServerFinding } from "./documents";
 import { baseExtensions } from "./extensions";
 import { FileTree } from "./file-tree";
 import { showFindings } from "./findings";
-import { LanguageService, type Documents, type ServerFinding } from "./language-service";
+import { LanguageService } from "./language-service";
 import { inspectMarks, marksOf } from "./marks";
 import { fitsMessage } from "./message-size";
+import { Navigation } from "./navigation";
+import { PlaceList } from "./place-list";
 import { renameAtCursor } from "./rename";
 import { SourceDocument } from "./source-document";
+import { messageOf } from "./workspace-edit";
 import "../../styles/source-editor.css";
 
 const RESTARTS = 3;
@@ -35,8 +40,12 @@ export class SourceEditor implements Documents {
   private readonly documents = new Map<string, SourceDocument>();
   private readonly awaited = new Map<string, ((document: SourceDocument | null) => void)[]>();
   private readonly writing = new Map<number, SourceDocument>();
+  private readonly creating = new Map<number, { resolve: () => void; reject: (reason: Error) => void }>();
   private readonly found = new Map<string, readonly ServerFinding[]>();
   private readonly service: LanguageService;
+  private readonly actions: CodeActions;
+  private readonly navigation: Navigation;
+  private readonly places = new PlaceList(() => this.view.focus());
   private readonly tree: FileTree;
   private readonly notice = h("div", { class: "editor-notice", role: "alert" });
   private readonly status = h("span", { class: "editor-status", role: "status" });
@@ -57,15 +66,18 @@ export class SourceEditor implements Documents {
     const words = strings.sourceEditor;
     const { connection } = session;
     this.service = new LanguageService(connection, this);
+    this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], (message) => this.tell(message));
+    this.navigation = new Navigation(this.service.client, this, this.places, (message) => this.tell(message));
     this.save = button(words.saveHint, () => this.saveAll(), "tool framed", icon("save"), words.save);
     this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
-    this.tree = new FileTree(connection, (path) => void this.show(path), (path) => this.create(path));
+    this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
     const files = button(words.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), words.files);
     const format = button(words.formatHint, () => formatDocument(this.view), "tool framed", words.format);
-    const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: words.label } }, files, this.save, format, this.list, this.status);
+    const actions = button(words.actionsHint, () => this.actions.open(this.view), "tool framed", icon("bulb"), words.actions);
+    const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: words.label } }, files, this.save, actions, format, this.list, this.status);
     this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
     this.view = new EditorView({ dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
-    this.element = h("div", { class: "source-editor" }, bar, this.notice, h("div", { class: "editor-body" }, this.tree.element, this.view.dom));
+    this.element = h("div", { class: "source-editor" }, bar, this.notice, h("div", { class: "editor-body" }, this.tree.element, this.view.dom), this.places.element);
     // The page's own keys would change the scene or save the configuration.
     this.element.addEventListener("keydown", (event) => event.key !== "F11" && event.stopPropagation());
     this.changed.on(coalesced(() => this.refresh()));
@@ -104,6 +116,14 @@ export class SourceEditor implements Documents {
     });
   }
 
+  create(path: string): Promise<void> {
+    return new Promise((resolve, reject) => {
+      this.number += 1;
+      this.creating.set(this.number, { resolve, reject });
+      this.session.connection.send({ type: "create_source_file", number: this.number, path });
+    });
+  }
+
   change(document: SourceDocument, spec: TransactionSpec): void {
     if (document === this.shown) this.view.dispatch(spec);
     else this.record(document, document.state.update(spec));
@@ -111,7 +131,7 @@ export class SourceEditor implements Documents {
 
   findings(uri: string, findings: readonly ServerFinding[]): void {
     this.found.set(uri, findings);
-    if (this.shown?.uri === uri) this.view.dispatch(showFindings(this.view.state, findings));
+    if (this.shown?.uri === uri) this.showFindings(this.shown);
     this.changed.emit();
   }
 
@@ -123,6 +143,7 @@ export class SourceEditor implements Documents {
     this.view.dispatch({ effects });
     if (line === null || line < 1) return;
     const at = document.placeNow(document.savedText.line(Math.min(line, document.savedText.lines)).from);
+    this.navigation.leave();
     this.view.dispatch({ selection: { anchor: at }, effects: EditorView.scrollIntoView(at, { y: "center" }) });
   }
 
@@ -172,6 +193,8 @@ export class SourceEditor implements Documents {
       this.isOpen = false;
       for (const document of this.writing.values()) document.endWriting(null);
       this.writing.clear();
+      for (const { reject } of this.creating.values()) reject(new Error(strings.sourceEditor.disconnected));
+      this.creating.clear();
     });
     connection.on("diagnostics", () => this.reopen());
     connection.on("description_changed", () => {
@@ -235,14 +258,18 @@ export class SourceEditor implements Documents {
   private onWritten({ number, path, version, refusal }: SourceFileWritten): void {
     const document = this.writing.get(number);
     this.writing.delete(number);
+    const created = this.creating.get(number);
+    this.creating.delete(number);
     document?.endWriting(refusal === null ? version : null);
-    if (refusal) this.tell([refusal.message, ...refusal.hints].join(" "));
+    const why = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
+    if (refusal && created) created.reject(new Error(why));
+    else if (refusal) this.tell(why);
     else if (document) {
       this.service.client.notification("textDocument/didSave", { textDocument: { uri: document.uri } });
       this.tell(strings.sourceEditor.saved(nameOf(path)));
     } else {
       this.tree.reload();
-      void this.show(path);
+      created?.resolve();
     }
     this.changed.emit();
   }
@@ -253,36 +280,57 @@ export class SourceEditor implements Documents {
     for (const resolve of waiting) resolve(document);
   }
 
-  private create(path: string): void {
-    this.number += 1;
-    this.session.connection.send({ type: "create_source_file", number: this.number, path });
+  private async createAndShow(path: string): Promise<void> {
+    try {
+      await this.create(path);
+      await this.show(path);
+    } catch (error) {
+      this.tell(messageOf(error));
+    }
   }
 
   private stateOf(path: string, uri: string, doc: string, isReadOnly: boolean): EditorState {
     const keys = keymap.of([
       { key: "Mod-s", run: () => (this.saveAll(), true), preventDefault: true },
       { key: "F2", run: (view) => renameAtCursor(view, this, (message) => this.tell(message)), preventDefault: true },
+      { key: "F12", run: (view) => this.navigation.goToDefinition(view), preventDefault: true },
+      { key: "Shift-F12", run: (view) => this.navigation.listReferences(view), preventDefault: true },
+      { key: "Alt-ArrowLeft", mac: "Ctrl--", run: () => this.navigation.goBack(), preventDefault: true },
+      { key: "Alt-ArrowRight", mac: "Ctrl-Shift--", run: () => this.navigation.goForward(), preventDefault: true },
+      { key: "Mod-.", run: (view) => this.actions.open(view), preventDefault: true },
       { key: "F8", run: nextDiagnostic, shift: previousDiagnostic, preventDefault: true },
       { key: "Mod-i", run: selectParentSyntax, preventDefault: true },
     ]);
+    const clicks = EditorView.domEventHandlers({
+      mousedown: (event, view) => {
+        const position = event.button === 0 && (event.ctrlKey || event.metaKey) ? view.posAtCoords({ x: event.clientX, y: event.clientY }) : null;
+        return position !== null && this.navigation.goToDefinition(view, position);
+      },
+    });
     const followClicks = EditorView.updateListener.of(({ transactions, state }) => {
       const { main } = state.selection;
       if (main.empty && transactions.some((each) => each.isUserEvent("select.pointer"))) this.onLine(path, state.doc.lineAt(main.head).number);
     });
-    return EditorState.create({ doc, extensions: [keys, baseExtensions(path, doc, isReadOnly), this.service.extension({ uri, path }), followClicks] });
+    return EditorState.create({ doc, extensions: [keys, baseExtensions(path, doc, isReadOnly), this.service.extension({ uri, path }), clicks, followClicks] });
   }
 
   private display(document: SourceDocument): void {
     this.service.client.sync();
+    this.navigation.leave();
     if (this.shown) this.shown.scrolledTo = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
     this.shown = document;
     this.view.setState(document.state);
-    this.view.dispatch(showFindings(this.view.state, this.found.get(document.uri) ?? []));
+    this.showFindings(document);
     const at = Math.min(document.scrolledTo, document.state.doc.length);
     this.view.dispatch({ effects: EditorView.scrollIntoView(at, { y: "start" }) });
     this.status.textContent = "";
     this.tree.setCurrent(document.path);
     this.changed.emit();
+  }
+
+  private showFindings({ uri, whyNot }: SourceDocument): void {
+    const fix = whyNot === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
+    this.view.dispatch(showFindings(this.view.state, this.found.get(uri) ?? [], fix));
   }
 
   private dispatch(transactions: readonly Transaction[], view: EditorView): void {
@@ -294,6 +342,7 @@ export class SourceEditor implements Documents {
     document.record(transaction);
     if (!transaction.docChanged) return;
     this.service.record(document, transaction.changes);
+    this.navigation.record(document, transaction.changes);
     this.changed.emit();
   }
 

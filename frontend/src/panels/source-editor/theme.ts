@@ -53,6 +53,15 @@ const colors = EditorView.theme({
   ".cm-diagnostic-error": { borderLeft: "4px solid var(--error)" },
   ".cm-diagnostic-warning": { borderLeft: "4px solid var(--warn)" },
   ".cm-diagnostic-info, .cm-diagnostic-hint": { borderLeft: "4px solid var(--accent)" },
+  ".cm-diagnosticAction": {
+    background: "var(--bg-raised)",
+    border: "1px solid var(--line-strong)",
+    borderRadius: "3px",
+    color: "var(--text)",
+    padding: "1px 6px",
+  },
+  // An option of a list contains no buttons; Enter goes to the finding, whose fixes Ctrl+. shows.
+  ".cm-panel-lint .cm-diagnosticAction": { display: "none" },
   ".cm-panel.cm-panel-lint ul [aria-selected], .cm-panel.cm-panel-lint ul:focus [aria-selected]": {
     background: "var(--accent-wash)",
     color: "var(--text)",

@@ -130,7 +130,7 @@ class _MapSaving:
                 reason = (
                     f"no node publishes on '{subscription.name}'"
                     if not publisher_count
-                    else f"'{subscription.name}' has publishers ({publisher_count}), but no map arrived: is the QoS compatible?"
+                    else f"'{subscription.name}' has publishers ({publisher_count}), but no map arrived: check the QoS"
                 )
                 node.get_logger().error(
                     f"Failed to spin map subscription: no map arrived within {self._timeout:g} s; {reason}"
