@@ -39,7 +39,8 @@ class OtherFiles:
 
     def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, proof: ExpansionProof) -> None:
         self._project, self._texts, self._file, self._proof = project, texts, file, proof
-        self._own = {*project.index.related(file, texts)}
+        self._srdfs_added = False
+        self._own = {*project.index.related(file, texts, computed=True)}
         self._names: dict[Path, frozenset[tuple[NameKind, str]]] = {}
 
     def edits(self, names: Names) -> tuple[set[Edit], tuple[Mention, ...]]:
@@ -62,7 +63,7 @@ class OtherFiles:
                 if not mentions:
                     continue
                 if foreign is None:
-                    robots = self._robots_of(folder)
+                    robots = robots_of_package(self._project, self._texts, folder)
                     if robots and not any(self._is_affected(robot) for robot in robots):
                         break  # the package is about other robots
                     others = (robot for robot in robots if not self._is_affected(robot))
@@ -77,6 +78,18 @@ class OtherFiles:
                     else:
                         found.add(Edit(file, mention.start, mention.end, names[kind, mention.name]))
         return found, tuple(unchanged)
+
+    def add_srdfs(self) -> None:
+        """Compare the SRDF files in xacro of the packages that mean these robots alone, too."""
+        if self._srdfs_added:
+            return
+        self._srdfs_added = True
+        roots = {*self._project.index.roots(self._texts)}
+        for folder, files in self._files.items():
+            srdfs = [file for file in files if file.name.endswith(".srdf.xacro") and file in roots]
+            if srdfs and all(map(self._is_affected, robots_of_package(self._project, self._texts, folder))):
+                for file in srdfs:
+                    self._proof.add(file)
 
     def _literal_uses(self, names: Names) -> Iterator[Occurrence]:
         """Yield the literal uses in the descriptions, also those that no expansion reaches."""
@@ -96,36 +109,6 @@ class OtherFiles:
             files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen]
             seen.update(files[folder])
         return files
-
-    def _robots_of(self, folder: Path) -> list[Path]:
-        """Return the descriptions that a package may mean."""
-        entries = [entry for entry in self._project.index.roots(self._texts) if entry.name.endswith(_ENDINGS)]
-        entries = [entry for entry in entries if ".srdf" not in entry.name]
-        folders = {folder, *self._dependencies(folder)}
-        inside = [entry for entry in entries if any(entry.is_relative_to(each) for each in folders)]
-        return inside or entries
-
-    def _dependencies(self, folder: Path) -> set[Path]:
-        """Return the folders of the packages of the workspace that a package depends on, directly or not."""
-        manifests = {each: self._manifest(each) for each in map(real, self._project.index.packages)}
-        by_name = {manifest.name: each for each, manifest in manifests.items() if manifest is not None}
-        found: set[Path] = set()
-        pending = [folder]
-        while pending:
-            manifest = manifests.get(pending.pop())
-            for dependency in manifest.dependencies if manifest is not None else ():
-                other = by_name.get(dependency.name)
-                if other is not None and other not in found:
-                    found.add(other)
-                    pending.append(other)
-        return found
-
-    def _manifest(self, folder: Path) -> Manifest | None:
-        text = self._project.text(folder / MANIFEST, self._texts)
-        try:
-            return None if text is None else Manifest(parse(text, str(folder / MANIFEST)))
-        except LinkwrightError:
-            return None
 
     def _is_affected(self, robot: Path) -> bool:
         return robot in self._proof.entries
@@ -149,3 +132,41 @@ def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iter
         return (Mention(use.name, file, use.start, (use.kind,)) for use in uses)
     return mentions_in(text, file, olds)
 
+
+def robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
+    """Return the descriptions that a package may mean.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        folder: the folder of the package.
+    """
+    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
+    entries = [entry for entry in entries if ".srdf" not in entry.name]
+    folders = [real(folder), *_dependencies(project, texts, real(folder))]
+    inside = [entry for each in folders for entry in entries if entry.is_relative_to(each)]
+    return [*dict.fromkeys(inside or entries)]
+
+
+def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
+    """Return the folders of the packages of the workspace that a package depends on, directly or not."""
+    manifests = {each: _manifest(project, texts, each) for each in map(real, project.index.packages)}
+    by_name = {manifest.name: each for each, manifest in manifests.items() if manifest is not None}
+    found: dict[Path, None] = {}
+    pending = [folder]
+    while pending:
+        manifest = manifests.get(pending.pop(0))
+        for dependency in manifest.dependencies if manifest is not None else ():
+            other = by_name.get(dependency.name)
+            if other is not None and other not in found:
+                found[other] = None
+                pending.append(other)
+    return [*found]
+
+
+def _manifest(project: Workspace, texts: Mapping[Path, str], folder: Path) -> Manifest | None:
+    text = project.text(folder / MANIFEST, texts)
+    try:
+        return None if text is None else Manifest(parse(text, str(folder / MANIFEST)))
+    except LinkwrightError:
+        return None

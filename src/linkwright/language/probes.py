@@ -35,7 +35,7 @@ def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
         if macro is None:
             return True
         place = macro
-    files = {str(name.file), *proof.names_of(name.file)}
+    files = proof.names_of(name.file)
     return any(
         element.source is not None and element.source.name in files and place.start <= element.offset < place.end
         for trial in proof.trials

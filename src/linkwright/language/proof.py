@@ -113,6 +113,7 @@ class ExpansionProof:
         self._project, self._texts = project, texts
         self._is_partial = is_partial
         self._error: LinkwrightError | None = None
+        self._names: dict[Path, set[str]] = {}
         self._add_entries(file)
 
     @property
@@ -126,7 +127,7 @@ class ExpansionProof:
 
     def names_of(self, file: Path) -> set[str]:
         """Return the names under which the expansions know a file."""
-        return {path for trial in self.trials for path in trial.expansion.dependencies if real(path) == file}
+        return {str(file), *self._names.get(file, ())}
 
     def pairs(self, edits: Collection[Edit], renamed: Mapping[str, str] | None = None) -> Iterator[ExpansionPair]:
         """Yield the expansion of each description and argument set before and after edits.
@@ -178,7 +179,7 @@ class ExpansionProof:
 
     def _add_entries(self, file: Path) -> None:
         """Expand the descriptions that include a file, without the edits."""
-        for entry in self._project.index.entries(file, self._texts):
+        for entry in self._project.index.entries(file, self._texts, computed=self._is_partial):
             self._add_entry(entry)
 
     def _add_entry(self, entry: Path) -> None:
@@ -188,7 +189,9 @@ class ExpansionProof:
         found, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
         self._error = error or self._error
         self.trials += found
-        self.data.update(real(path) for trial in found for path in trial.expansion.dependencies)
+        for path in {path for trial in found for path in trial.expansion.dependencies}:
+            self.data.add(real(path))
+            self._names.setdefault(real(path), set()).add(path)
 
     def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
         """Return the expansion of a trial with edits; those of elements that it leaves out are left out, too."""

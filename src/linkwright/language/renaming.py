@@ -66,7 +66,7 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
     pending = [name.file]
     is_shared = name.kind not in OF_ROBOT  # a link of another robot with the same name is another link
     for start in pending:
-        for file in project.index.related(start, texts):
+        for file in project.index.related(start, texts, computed=True):
             if file not in found:
                 uses = occurrences_in(project.text(file, texts) or "", file)
                 found[file] = [use for use in uses if _is_same(use, name)]

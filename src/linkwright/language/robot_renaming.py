@@ -54,7 +54,7 @@ class RobotRenaming:
         self.unchanged: tuple[Mention, ...] = ()
         self._project, self._texts, self._name, self._new = project, texts, name, new
         self._proof = proof
-        self._files = project.index.related(name.file, texts)
+        self._files = project.index.related(name.file, texts, computed=True)
         self._sources = NameSources(project, texts, self._files)
         self._others = OtherFiles(project, texts, name.file, proof)
 
@@ -67,6 +67,7 @@ class RobotRenaming:
         Raises:
             UnprovedError: the expansions differ in more than names, or a reference cannot be edited.
         """
+        self._others.add_srdfs()
         required = self._required()
         literal = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
         error: UnprovedError | None = None
@@ -111,10 +112,11 @@ class RobotRenaming:
 
     def _elements_at_place(self) -> Iterator[tuple[Element, str]]:
         """Yield the elements of the expansions that are written at the place, each with the value of the name."""
+        files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:
             for element in trial.expansion.document.root.walk():
                 source = element.source
-                if source is None or source.name not in self._names_of_file:
+                if source is None or source.name not in files:
                     continue
                 if element.offset > self._name.start or start_tag_end(source.text, element.offset) <= self._name.start:
                     continue
@@ -122,10 +124,6 @@ class RobotRenaming:
                     place = attribute_value_range(source.text, element.offset, key)
                     if place is not None and place[0] == self._name.start:
                         yield element, value
-
-    @property
-    def _names_of_file(self) -> Collection[str]:
-        return {str(self._name.file), *self._proof.names_of(self._name.file)}
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
         """Yield the edits to begin with: those at the places, and those of the computed definitions."""
@@ -160,7 +158,7 @@ class RobotRenaming:
             wanted = {**names, **required}
             more: set[Edit] = set()
             for pair in pairs:
-                more |= {*self._stale(pair, wanted, edits | more)}
+                more |= {*self._stale(pair, wanted, edits)}
             found, unchanged = self._others.edits(wanted)
             more |= found
             if more <= edits:
@@ -200,8 +198,9 @@ class RobotRenaming:
         allowed = {*((old, new) for (_, old), new in names.items())}
         for pair in pairs:
             olds, news = _defined(pair.before), _defined(pair.after)
-            for old, new in _differences(pair.before, pair.after):
-                if (old, new) not in allowed or (old in olds and new not in news):
+            for key, old, new in _differences(pair.before, pair.after):
+                is_name = (old, new) in allowed and (old not in olds or new in news)
+                if not is_name and not (key == "name" and _is_derived(old, new, allowed)):
                     raise UnprovedError(phrase("'{old}' would become '{new}'", old=old, new=new))
             for kind in OF_ROBOT[:2]:
                 count = len({*_values(pair.after, kind)})
@@ -278,8 +277,13 @@ def _defined(root: Element) -> set[str]:
     return {value for kind in OF_ROBOT[:2] for value in _values(root, kind)}
 
 
-def _differences(before: Element, after: Element) -> Iterator[tuple[str, str]]:
-    """Yield the attribute values and texts that differ, each before and after."""
+def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:
+    """Return whether a name, such as that of a transmission, changed because it contains the name of a joint or link."""
+    return any(name in old and old.replace(name, changed) == new for name, changed in allowed)
+
+
+def _differences(before: Element, after: Element) -> Iterator[tuple[str, str, str]]:
+    """Yield the attribute values and texts that differ: the attribute or an empty text, the value before and after."""
     olds, news = [*before.walk()], [*after.walk()]
     if [old.tag for old in olds] != [new.tag for new in news]:
         raise UnprovedError(phrase("the robot would have other elements"))
@@ -288,6 +292,6 @@ def _differences(before: Element, after: Element) -> Iterator[tuple[str, str]]:
             raise UnprovedError(phrase("<{tag}> would have other attributes", tag=old.tag))
         for key, value in old.attributes.items():
             if new.attributes[key] != value:
-                yield value, new.attributes[key]
+                yield key, value, new.attributes[key]
         if old.text() != new.text():
-            yield old.text().strip(), new.text().strip()
+            yield "", old.text().strip(), new.text().strip()

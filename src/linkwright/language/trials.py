@@ -192,7 +192,7 @@ def _values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[
     """Return other values of arguments: the opposites of their defaults, and those that conditions compare."""
     values: dict[tuple[str, str], None] = {}
     documents = []
-    for file in project.index.related(entry, texts):
+    for file in project.index.related(entry, texts, computed=True):
         text = project.text(file, texts) or ""
         for token in tokens(text):
             if token.kind is Kind.START and token.name == "xacro:arg":

@@ -106,8 +106,13 @@ class Workspace:
 
     def configurations_below(self, folder: Path) -> list[Path]:
         """Return the files below a folder that may mention links and joints."""
-        found, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro"))
+        found, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
         return [real(path) for path in found]
+
+    def files(self, suffixes: tuple[str, ...]) -> list[Path]:
+        """Return the files of the workspace with some endings, also those outside of packages."""
+        found = (path for folder in self._folders for path in walk(folder, suffixes)[0])
+        return [*dict.fromkeys(map(real, found))]
 
     def neighbours(self, file: Path, known: Container[Path]) -> list[Path]:
         """Return the other descriptions in a file's package."""

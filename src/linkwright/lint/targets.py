@@ -167,11 +167,20 @@ def included_names(text: str) -> Iterator[str]:
 
     Arguments and `$(optenv ...)` are replaced by their default values.
     """
+    for _, path in written_includes(text):
+        yield Path(path).name
+
+
+def written_includes(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the paths that a description includes: as written, and with the default values of arguments.
+
+    `$(optenv ...)` is replaced by its default value in the second path, too.
+    """
     arguments = [dict(_ATTRIBUTE.findall(tag)) for tag in _ARGUMENT.findall(text)]
     defaults = {argument["name"]: argument.get("default", "") for argument in arguments if "name" in argument}
     for filename in _INCLUDE.findall(text):
         resolved = _ARGUMENT_USE.sub(lambda match: defaults.get(match[1], ""), filename)
-        yield Path(_OPTIONAL.sub(r"\1", resolved).strip()).name
+        yield filename.strip(), _OPTIONAL.sub(r"\1", resolved).strip()
 
 
 def _text(path: Path) -> str:
