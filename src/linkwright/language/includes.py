@@ -41,19 +41,20 @@ class IncludeIndex:
         self.files, self.packages = tuple(files), tuple(packages)
         self._package_folders = folders_by_package(map(real, packages))
 
-    def entries(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
+    def entries(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return the descriptions that include a file, directly or through others; the file itself if none does.
 
         Args:
             file: the file, as `real` returns it.
             texts: texts that replace those of files.
+            computed: whether an include with a computed path counts for each file that it can mean.
         """
         includers = self._includers(texts)
         found: dict[Path, None] = {}
         seen, pending = {file}, [file]
         while pending:
             current = pending.pop()
-            above = self._above(current, includers)
+            above = self._above(current, includers, computed=computed)
             if not above:
                 found[current] = None
             for other in above:
@@ -72,23 +73,29 @@ class IncludeIndex:
         includers = self._includers(texts)
         return [file for file in files if not self._above(file, includers)]
 
-    def related(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
-        """Return a file, the descriptions that include it, and all files that these include."""
+    def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
+        """Return a file, the descriptions that include it, and all files that these include.
+
+        Args:
+            file: the file.
+            texts: texts that replace those of files.
+            computed: whether an include with a computed path counts for each file that it can mean.
+        """
         by_name: dict[str, list[Path]] = {}
         for other in dict.fromkeys((*self.files, *texts)):
             by_name.setdefault(other.name, []).append(other)
         found: dict[Path, None] = {}
-        pending = [file, *self.entries(file, texts)]
+        pending = [file, *self.entries(file, texts, computed=computed)]
         while pending:
             current = pending.pop()
-            if current not in found:
-                found[current] = None
-                pending += [
-                    other
-                    for inclusion in self._included(current, texts)
-                    for other in by_name.get(inclusion.name, ())
-                    if inclusion.may_lead(current, other, self._package_folders)
-                ]
+            if current in found:
+                continue
+            found[current] = None
+            for inclusion in self._included(current, texts):
+                named = by_name.get(inclusion.name, ())
+                pending += [other for other in named if inclusion.may_lead(current, other, self._package_folders)]
+                if computed:
+                    pending += filter(inclusion.may_compute, self.files)
         return list(found)
 
     def _includers(self, texts: Mapping[Path, str]) -> dict[str, list[tuple[Path, Inclusion]]]:
@@ -99,13 +106,20 @@ class IncludeIndex:
                 found.setdefault(inclusion.name, []).append((file, inclusion))
         return found
 
-    def _above(self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]]) -> list[Path]:
+    def _above(
+        self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]], *, computed: bool = False
+    ) -> list[Path]:
         """Return the other files that include a file."""
-        return [
-            other
+        found = {
+            other: None
             for other, inclusion in includers.get(file.name, ())
-            if other != file and inclusion.may_lead(other, file, self._package_folders)
-        ]
+            if inclusion.may_lead(other, file, self._package_folders)
+        }
+        if computed:
+            every = (pair for pairs in includers.values() for pair in pairs)
+            found |= {other: None for other, inclusion in every if inclusion.may_compute(file)}
+        found.pop(file, None)
+        return [*found]
 
     def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[Inclusion]:
         text = texts.get(file)

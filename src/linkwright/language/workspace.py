@@ -104,13 +104,24 @@ class Workspace:
         """Return the argument sets of a description, each with the call that gives it, if its file has one."""
         return [({}, None), *self._checker.calls(entry, self.index.packages)]
 
+    def possible_arguments(self, entry: Path) -> list[Mapping[str, str]]:
+        """Return the argument sets of a description, also those of calls whose values are not all known."""
+        return [*self._checker.possible_arguments(entry, self.index.packages), {}]
+
     def configuration_files(self, file: Path) -> list[Path]:
         """Return the files of a file's package that may mention links and joints; empty if it is in no package."""
         package = enclosing_package(file.parent)
-        if package is None:
-            return []
-        found, _ = walk(package[1], (*MENTIONING_FILES, ".srdf"))
+        return [] if package is None else self.configurations_below(package[1])
+
+    def configurations_below(self, folder: Path) -> list[Path]:
+        """Return the files below a folder that may mention links and joints."""
+        found, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
         return [real(path) for path in found]
+
+    def files(self, suffixes: tuple[str, ...]) -> list[Path]:
+        """Return the files of the workspace with some endings, also those outside of packages."""
+        found = (path for folder in self._folders for path in walk(folder, suffixes)[0])
+        return [*dict.fromkeys(map(real, found))]
 
     def neighbours(self, file: Path, known: Container[Path]) -> list[Path]:
         """Return the other descriptions in a file's package."""

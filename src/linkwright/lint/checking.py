@@ -187,6 +187,15 @@ class Checker:
             if argument_set.is_complete
         ]
 
+    def possible_arguments(self, file: Path, packages: Sequence[Path]) -> list[Mapping[str, str]]:
+        """Return the argument values that callers pass to a description, also if some are known only at runtime.
+
+        Args:
+            file: the description.
+            packages: the folders that are searched for callers.
+        """
+        return [argument_set.values for argument_set in self._argument_sets(file, packages)]
+
     def _argument_sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
         """Return the argument sets that callers pass to a file.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -16,6 +17,9 @@ _ATTRIBUTE = lazy_pattern(r"""\b(name|default)\s*=\s*["']([^"']+)["']""")
 _ARGUMENT_USE = lazy_pattern(r"\$\(arg\s+(\S+?)\s*\)")
 _OPTIONAL = lazy_pattern(r"\$\(optenv\s+\S+\s+([^)]*)\)")
 _IN_PACKAGE = lazy_pattern(r"\$\(find\s+([\w-]+)\s*\)[/\\]*(.*)")
+_EXPRESSION = lazy_pattern(r"\$\{[^{}]*\}|\$\([^()]*\)")
+_SHORTEST = len("_.xacro")
+"""The number of literal characters that a computed path must have. A shorter one could mean any file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +29,13 @@ class Inclusion:
     Attributes:
         package: the package in a ``$(find ...)`` in front of the path; empty if there is none.
         path: the path in the package, or relative to the file with the include; it can contain expressions.
+        pattern: for a path that is computed, also by an argument with a default, a regular expression for the ends of
+            the paths that it can have; empty if there is none.
     """
 
     package: str
     path: str
+    pattern: str = ""
 
     @property
     def name(self) -> str:
@@ -60,6 +67,10 @@ class Inclusion:
         relative = Path(os.path.normpath(includer.parent / self.path))
         return file == relative or not relative.is_file()
 
+    def may_compute(self, file: Path) -> bool:
+        """Return whether the path is computed, and some values of its expressions lead to a file."""
+        return bool(self.pattern) and re.search(f"(?:^|/){self.pattern}$", str(file)) is not None
+
 
 def inclusions_in(text: str) -> Iterator[Inclusion]:
     """Yield the includes in the text of a description.
@@ -72,7 +83,17 @@ def inclusions_in(text: str) -> Iterator[Inclusion]:
         resolved = _ARGUMENT_USE.sub(lambda match: defaults.get(match[1], ""), filename)
         resolved = _OPTIONAL.sub(r"\1", resolved).strip()
         in_package = _IN_PACKAGE.fullmatch(resolved)
-        yield Inclusion(*in_package.groups()) if in_package else Inclusion("", resolved)
+        package, path = in_package.groups() if in_package else ("", resolved)
+        yield Inclusion(package, path, _pattern(filename.strip()))
+
+
+def _pattern(filename: str) -> str:
+    """Return the pattern of an include from its path as written; see `Inclusion.pattern`."""
+    in_package = _IN_PACKAGE.fullmatch(filename)
+    tail = in_package[2] if in_package else filename
+    literals = _EXPRESSION.split(tail)
+    is_computed = len(literals) > 1 and len("".join(literals)) >= _SHORTEST
+    return "[^/]*".join(map(re.escape, literals)) if is_computed else ""
 
 
 def folders_by_package(folders: Iterable[Path]) -> dict[str, list[Path]]:
