@@ -270,7 +270,7 @@ class Engine(AnyEngine):
             self._has_changed = self._record_token(appeared=appeared, key=key) or self._has_changed
         must_follow = self._departures.is_watched and not self._interests.subscribes_to_all
         if must_follow and (self._has_changed or not self._is_following):
-            live_sessions = self._remote.sessions() | self._departures.here
+            live_sessions = self._remote.sessions() | self._departures.live_sessions
             self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), live_sessions)
         self._is_following = must_follow
 
