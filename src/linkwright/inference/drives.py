@@ -40,7 +40,7 @@ class Verdict:
 Pair = tuple[Wheel, Wheel]
 
 
-def judge(
+def judge_drive(
     survey: Survey,
     undercarriage: Undercarriage,
     requested_kind: DriveKind | None = None,
