@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from linkwright.hosting.last_minutes import DEFAULT_HISTORY
+from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.inference.model import Drive, DriveKind, Wheel
+from linkwright.inference.results import Drive, DriveKind, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 
 _MAX_OFFSET = 0.06

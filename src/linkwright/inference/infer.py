@@ -9,7 +9,7 @@ from linkwright.inertia import MeshLibrary
 from linkwright.inference import gazebo
 from linkwright.inference.drives import Verdict, judge_drive
 from linkwright.inference.missing import missing_collisions, missing_masses
-from linkwright.inference.model import Drive, DriveKind, Finding, Inference, Wheel
+from linkwright.inference.results import Drive, DriveKind, Finding, Inference, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 from linkwright.urdf import Joint, Robot
 from linkwright.xmltree import Element

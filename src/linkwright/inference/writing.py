@@ -16,7 +16,7 @@ from linkwright.inertia.source_edits import (
     written_link,
 )
 from linkwright.inertia.writing import write_edits
-from linkwright.inference.model import Finding, Inference
+from linkwright.inference.results import Finding, Inference
 from linkwright.lint.fix import is_literal, value_edit
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Element, Text

@@ -29,10 +29,10 @@ if HERE:
 
     from linkwright.vision.training.learning.course import Course
     from linkwright.vision.training.learning.export import to_onnx
+    from linkwright.vision.training.learning.initial_weights import load_weights
     from linkwright.vision.training.learning.losses import assign, loss, overlaps
     from linkwright.vision.training.learning.network import Network, Shape, cells
     from linkwright.vision.training.learning.optimizer import orthogonalize
-    from linkwright.vision.training.learning.starting import load_weights
 
 
 @pytest.fixture(scope="module")

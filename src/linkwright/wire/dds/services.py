@@ -7,7 +7,7 @@ links them.
 
 rmw_fastrtps_cpp sends the same data outside the samples (inline QoS), which Cyclone neither passes on nor writes. For
 the clients and servers of rmw_fastrtps_cpp, each service and client has a second reader and writer
-(`linkwright.wire.dds.fast_services`).
+(`linkwright.wire.dds.fastdds_services`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from linkwright.wire.dds.cyclone import (
     write,
 )
 from linkwright.wire.dds.domain import Domain
-from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
+from linkwright.wire.dds.fastdds_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast

@@ -20,7 +20,7 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures

@@ -18,7 +18,7 @@ from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
-from linkwright.xacro.expressions.yamldata import COPIED_TYPES, YamlDict, YamlMapping, wrapped
+from linkwright.xacro.expressions.yaml_data import COPIED_TYPES, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault
 
 Closure = Callable[[Any], Any]

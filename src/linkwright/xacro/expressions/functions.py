@@ -15,7 +15,7 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import HASHING, check_codec, checked_keys
 from linkwright.xacro.expressions.scope import Environment, Local
-from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
+from linkwright.xacro.expressions.yaml_data import YamlDict, YamlList, YamlMapping
 from linkwright.xacro.limits import Budget
 
 _Closure = Callable[[Any], Any]

@@ -22,10 +22,10 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 from linkwright.vision.evaluation import Evaluation, GroundTruth, best_f1_threshold, evaluate
 from linkwright.vision.training.images import LabelledImages, augmented, repeat_factors, repeated_indices
+from linkwright.vision.training.learning.initial_weights import load_weights
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
-from linkwright.vision.training.learning.starting import load_weights
 from linkwright.vision.training.measuring import EVALUATION_LIMITS
 from linkwright.vision.training.options import Options
 

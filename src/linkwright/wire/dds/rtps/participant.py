@@ -46,7 +46,7 @@ from linkwright.wire.dds.rtps.reader import Reader
 from linkwright.wire.dds.rtps.values import Address, MalformedError
 from linkwright.wire.dds.rtps.writer import Packet, Writer
 from linkwright.wire.dds.settings import Settings
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 
 _LEASE_S = 10.0
 _ANNOUNCEMENT_INTERVAL_S = 3.0
