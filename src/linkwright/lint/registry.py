@@ -32,7 +32,7 @@ _NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
 
 def all_rules() -> tuple[Rule, ...]:
     """Return an instance of each rule, in the order of the codes."""
-    return _all_rules(whole=True)[0]
+    return _all_rules(include_packages=True)[0]
 
 
 def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
@@ -40,17 +40,17 @@ def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
 
     The modules of package rules are imported only if the scopes include packages.
     """
-    return tuple(rule for rule in _all_rules(whole=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
+    return tuple(rule for rule in _all_rules(include_packages=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
 def unusable_rules() -> tuple[Diagnostic, ...]:
     """Return a warning (LINT301) for each entry point of another package whose rules cannot be used."""
-    return _all_rules(whole=False)[1]
+    return _all_rules(include_packages=False)[1]
 
 
 def has_external_rules() -> bool:
     """Return whether another package adds rules. The findings of such rules may depend on anything."""
-    return any(is_external(rule) for rule in _all_rules(whole=False)[0])
+    return any(is_external(rule) for rule in _all_rules(include_packages=False)[0])
 
 
 def is_external(rule: Rule) -> bool:
@@ -76,15 +76,19 @@ def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
 def find_rule(code_or_name: str) -> Rule | None:
     """Return the rule with a code or name, ignoring case, or None if there is none."""
     key = code_or_name.strip().casefold()
-    rule = _index(whole=False).get(key)
+    rule = _index(include_packages=False).get(key)
     if rule is None and (key.startswith(_OWN_PREFIX.casefold()) or not _CODE.fullmatch(key.upper())):
-        return _index(whole=True).get(key)
+        return _index(include_packages=True).get(key)
     return rule
 
 
 @cache
 def _index(*, include_packages: bool) -> Mapping[str, Rule]:
-    return {key: rule for rule in _all_rules(whole=include_packages)[0] for key in (rule.code.casefold(), rule.name)}
+    return {
+        key: rule
+        for rule in _all_rules(include_packages=include_packages)[0]
+        for key in (rule.code.casefold(), rule.name)
+    }
 
 
 @cache
