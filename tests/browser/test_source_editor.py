@@ -301,3 +301,68 @@ def test_definitions_and_references_lead_through_files_and_back(start, open_page
     go_to(text, 1)
     text.press("F12")
     page.get_by_text("There is no definition of this.").wait_for()
+
+
+def test_the_scene_shows_what_is_typed_and_the_last_good_robot_while_it_has_errors(start, open_page, file):
+    program = start("view", str(file))
+    page = open_page(program)
+    text = open_editor(page)
+    go_to(text, 3, 10)
+    until(page, "lw.description.focus?.name === 'base'")  # the link at the cursor is selected in the scene
+    text.press("End")
+    page.keyboard.insert_text('\n  <xacro:leg name="right"/>')
+    until(page, f"lw.frames.right !== undefined && {EDITOR}.scene === 'shown'")
+    page.get_by_text("The scene shows the unsaved text").wait_for()
+    until(page, "lw.description.links === 3")
+    page.keyboard.insert_text("<link name=")
+    until(page, f"{EDITOR}.scene === 'errors'")
+    page.get_by_text("The scene shows the last robot without errors").wait_for()
+    assert page.evaluate("window.linkwright.frames.right !== undefined")
+    shows(page, '<xacro:leg name="right"/><link name=')  # the cursor has stayed
+    assert file.read_text() == ROBOT
+    assert "error[" not in "".join(program.output)
+
+    for _ in range(len("<link name=")):
+        text.press("Backspace")
+    until(page, f"{EDITOR}.scene === 'shown'")
+    text.press("Control+s")
+    becomes(lambda: "right" in file.read_text(), True)
+    until(page, f"{EDITOR}.scene === null && lw.frames.right !== undefined")
+    go_to(text, 4)
+    text.press("Shift+ArrowDown")
+    text.press("Delete")
+    until(page, "lw.frames.right === undefined")
+    assert "right" in file.read_text()
+
+
+def test_an_edit_in_the_scene_changes_the_unsaved_text_and_is_undone_with_it(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 3)
+    text.press("End")
+    page.keyboard.insert_text(
+        '<link name="tip"/><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
+    )
+    until(page, "lw.frames.tip !== undefined")
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("tip", exact=True).locator("visible=true").first.click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
+    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    type_in(page, "xyz2", "0.4")
+    page.get_by_role("button", name="Write", exact=True).click()
+    page.get_by_text("Changed in the editor, not saved yet").wait_for()
+    until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
+    assert file.read_text() == ROBOT
+    undo = page.get_by_role("button", name="Undo the last written edit")
+    undo.click()
+    until(page, "Math.abs(lw.frames.tip?.position[2]) < 1e-6")
+    page.get_by_role("button", name="Redo the edit").click()
+    until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
+
+    page.locator(".panel-tab", has_text="Source").first.click()
+    shows(page, "0.4")
+    text.click(position={"x": 30, "y": 8})
+    text.press("Control+z")
+    until(page, f"Math.abs(lw.frames.tip?.position[2]) < 1e-6 && {EDITOR}.unsaved.length === 1")
+    text.press("Control+z")
+    until(page, f"lw.frames.tip === undefined && {EDITOR}.unsaved.length === 0")

@@ -14,7 +14,7 @@ const colors = EditorView.theme({
   ".cm-gutters": { background: "var(--bg-field)", color: "var(--text-faint)", borderRight: "1px solid var(--line)" },
   ".cm-activeLine, .cm-activeLineGutter": { background: "color-mix(in srgb, var(--text) 5%, transparent)" },
   ".cm-line.cm-focus-line": { background: "var(--accent-wash)", boxShadow: "inset 2px 0 0 var(--accent)" },
-  ".cm-line.cm-problem-line": { background: "color-mix(in srgb, var(--error) 16%, transparent)" },
+  ".cm-line.cm-problem-line": { boxShadow: "inset 2px 0 0 var(--error)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": {
     background: "var(--selection)",
   },

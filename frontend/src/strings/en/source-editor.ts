@@ -23,6 +23,8 @@ export const sourceEditor = {
   definitions: (count: number): string => plural(count, "definition"),
   noReferences: "There is no name with uses here.",
   references: (count: number): string => plural(count, "reference"),
+  scene: { shown: "The scene shows the unsaved text", errors: "The scene shows the last robot without errors" },
+  robotNotEdited: "The text has changed at the same place, so the edit of the robot was not applied. Repeat it.",
   files: "Files",
   filesHint: "Show the files of the workspace",
   tree: "Files of the workspace",

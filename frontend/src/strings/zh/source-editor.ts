@@ -21,6 +21,8 @@ export const sourceEditor = {
   definitions: (count: number): string => `${count} 处定义`,
   noReferences: "这里没有可以查找引用的名称。",
   references: (count: number): string => `${count} 处引用`,
+  scene: { shown: "场景显示未保存的文本", errors: "场景显示最后一个没有错误的机器人" },
+  robotNotEdited: "文本的同一处已经改变，因此没有应用对机器人的编辑。请重新编辑。",
   files: "文件",
   filesHint: "显示工作区的文件",
   tree: "工作区的文件",
