@@ -200,6 +200,12 @@ class Workspace:
             file.name == MANIFEST and file.exists() != (file.parent in self.index.packages)
         ):
             self.index.refresh()
+        elif not is_description and file not in texts:
+            below = [other for other in (*self.index.files, *self._results) if other.is_relative_to(file)]
+            if below or file.is_dir():  # a folder that was created, moved or deleted
+                entries = [entry for other in below for entry in self.index.entries(other, texts)]
+                self.index.refresh()
+                return [*dict.fromkeys((*entries, *below))]
         package = enclosing_package(file.parent)
         found = self.index.entries(file, texts) if is_description else []
         return [*found, *([] if package is None else [real(package[1])])]
@@ -219,6 +225,11 @@ class Workspace:
         if found:
             self._results[subject] = _Result(tuple(map(without_element, found)), versions_of(texts))
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
+
+    def without_findings(self) -> dict[Path, list[Diagnostic]]:
+        """Return the files with findings, each with none, so that an editor removes those that it shows."""
+        results = self._results.items()
+        return {_file(finding, subject): [] for subject, result in results for finding in result.findings}
 
     def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
         """Return the findings about a file that have a fix, if the texts that the fix edits are those of the check.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
@@ -17,7 +17,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from linkwright._version import __version__
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
@@ -27,6 +27,7 @@ from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
+from linkwright.lsp.folders import with_progress
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.xacro.cache import BoundedCache
@@ -76,7 +77,16 @@ class LinkwrightServer(LanguageServer):
         """Open the folders of the editor, and check what changes from now on."""
         BoundedCache.divisor = _CACHE_DIVISOR
         seldom_collected.ages_objects = False
+        if self._work is not None:
+            self._work.cancel()
+        self._is_indexed.clear()
+        self._values.clear()
+        previous = self.project
         self.project = Workspace(folders)
+        if previous is not None:
+            self._publish(previous.without_findings(), {})
+            for uri in self.workspace.text_documents:
+                self.file_changed(uri)
         self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
 
     def end(self) -> None:
@@ -220,7 +230,8 @@ class LinkwrightServer(LanguageServer):
 
     async def _check_changes(self, project: Workspace) -> None:
         """Check files as they change, the newest change first; a subject that still waits is checked once."""
-        await self.in_thread(project.index.refresh)
+        search = self._attempt(project.index.refresh, Path())
+        await with_progress(self, phrase("Linkwright: searching the folders for robot descriptions"), search)
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
         while True:
@@ -240,9 +251,12 @@ class LinkwrightServer(LanguageServer):
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
         """Check one subject, and publish its findings."""
-        found = await self._attempt(partial(project.check, subject, texts, changed), subject)
+        self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+
+    def _publish(self, found: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
+        """Publish the findings about files; those about an open file only if its text is still that of the check."""
         positions = cache(self.positions)
-        for file, findings in (found or {}).items():
+        for file, findings in found.items():
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
