@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -32,7 +33,6 @@ from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 T = TypeVar("T")
@@ -41,6 +41,9 @@ _log = logging.getLogger(__name__)
 _MAX_TEXTS = 200
 """The number of files on the disk whose lines are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
+_CHECKS_PER_COLLECTION = 50
+_IDLE_SECONDS = 1.0
+"""The time without a change after which the server collects garbage."""
 
 
 class FormattedText(NamedTuple):
@@ -76,7 +79,6 @@ class LinkwrightServer(LanguageServer):
     def begin(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and check what changes from now on."""
         BoundedCache.divisor = _CACHE_DIVISOR
-        seldom_collected.ages_objects = False
         if self._work is not None:
             self._work.cancel()
         self._is_indexed.clear()
@@ -234,7 +236,12 @@ class LinkwrightServer(LanguageServer):
         await with_progress(self, phrase("Linkwright: searching the folders for robot descriptions"), search)
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
+        check_count = 0
         while True:
+            # An expansion leaves its garbage in the oldest generation (see `seldom_collected`).
+            if check_count >= _CHECKS_PER_COLLECTION or (check_count and not pending and await self._is_idle()):
+                await self.in_thread(gc.collect)
+                check_count = 0
             if not pending:
                 await self._has_changes.wait()
             self._has_changes.clear()
@@ -248,6 +255,15 @@ class LinkwrightServer(LanguageServer):
             if pending:
                 subject = next(iter(pending))
                 await self._check(project, subject, texts, pending.pop(subject))
+                check_count += 1
+
+    async def _is_idle(self) -> bool:
+        """Wait for a change, and return whether none has come for some time."""
+        try:
+            await asyncio.wait_for(self._has_changes.wait(), _IDLE_SECONDS)
+        except asyncio.TimeoutError:
+            return True
+        return False
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
         """Check one subject, and publish its findings."""
