@@ -76,7 +76,6 @@ def _package_of(folder: Path) -> str | None:
     return None if package is None else package[0]
 
 
-
 class IncludeIndex:
     """The descriptions and packages below some folders, and the names of the files that each description includes.
 

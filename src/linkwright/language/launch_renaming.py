@@ -102,7 +102,9 @@ class _Search:
                     self._edit(key)
                 elif not include.is_known:
                     self._result.notes.append(
-                        phrase("'{file}' passes arguments that are computed to '{other}'", file=other.name, other=file.name)
+                        phrase(
+                            "'{file}' passes arguments that are computed to '{other}'", file=other.name, other=file.name
+                        )
                     )
                 elif self._mentions_above(other, includers, {file}):
                     pending.append(other)
@@ -110,7 +112,9 @@ class _Search:
             names = self._names(file)
             for name in names.names:
                 if name.name == self._new:
-                    raise UnprovedError(phrase("{file} uses '{name}' already", file=file.name, name=self._new), self._span(name))
+                    raise UnprovedError(
+                        phrase("{file} uses '{name}' already", file=file.name, name=self._new), self._span(name)
+                    )
                 if name.name == self._old:
                     self._edit(name)
             self._result.unchanged += [
@@ -139,9 +143,7 @@ class _Search:
             return False
         seen.add(file)
         return self._mentions(file) or any(
-            include.target is not None
-            and self._passed(include) is None
-            and self._mentions_below(include.target, seen)
+            include.target is not None and self._passed(include) is None and self._mentions_below(include.target, seen)
             for include in self._names(file).includes
         )
 

@@ -42,6 +42,9 @@ _OF_JOINTS = frozenset(
 """Keys whose content is a mapping from joints."""
 _OF_LINKS = frozenset(("Links", "Frames", "Tree"))
 """Keys of displays of RViz whose content is a mapping from links or frames."""
+_TRANSFORM = "static_transform_publisher"
+_POSE = 6
+"""The numbers of a pose, in front of the frames in the arguments of a static transform."""
 _FRAME_OPTIONS = ("--frame-id", "--child-frame-id")
 
 
@@ -153,6 +156,12 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
                         yield id(item), kinds_of_key(key.value)
         elif isinstance(node, ast.keyword) and node.arg:
             yield id(node.value), kinds_of_key(node.arg)
+        elif isinstance(node, ast.Call):
+            given = {keyword.arg: keyword.value for keyword in node.keywords}
+            program, words = given.get("executable"), given.get("arguments")
+            if isinstance(program, ast.Constant) and program.value == _TRANSFORM and isinstance(words, ast.List):
+                for item in words.elts[_POSE:] if len(words.elts) > _POSE else ():
+                    yield id(item), (NameKind.LINK,)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for option, item in zip(node.elts, node.elts[1:], strict=False):
                 if isinstance(option, ast.Constant) and option.value in _FRAME_OPTIONS:
@@ -173,12 +182,14 @@ def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Men
             continue
         given = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
         key = given["name"].value if "name" in given else ""
+        program = next((given[name].value for name in ("exec", "type") if name in given), "")
         for attribute in given.values():
             value = attribute.value or ""
             for found in words.finditer(value):
                 is_whole = found[0] == value and attribute.name in ("value", "default")
-                option = value[: found.start()].split()[-1:] if attribute.name == "args" else []
+                before = value[: found.start()].split() if attribute.name == "args" else []
                 kinds = kinds_of_key(key or "") if is_whole else ()
-                if option and option[0] in _FRAME_OPTIONS:
+                is_frame = before[-1:] and before[-1] in _FRAME_OPTIONS
+                if is_frame or (program == _TRANSFORM and len(before) >= _POSE and before[0][:1] != "-"):
                     kinds = (NameKind.LINK,)
                 yield Mention(found[0], file, attribute.value_start + found.start(), kinds)

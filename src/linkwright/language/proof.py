@@ -104,9 +104,7 @@ class ExpansionProof:
         trials: the expansions without the edits.
     """
 
-    def __init__(
-        self, project: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False
-    ) -> None:
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False) -> None:
         self.entries: set[Path] = set()
         self.data: set[Path] = set()
         self.trials: list[Trial] = []

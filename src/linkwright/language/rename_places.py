@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, phrase, term
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, phrase
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
 from linkwright.language.grammar import root_of
@@ -16,19 +17,18 @@ from linkwright.language.launch_renaming import launch_name_at, rename_launch_ar
 from linkwright.language.mentions import FILES, Mention, mentions_in
 from linkwright.language.name_sources import renamed_template
 from linkwright.language.occurrences import Occurrence
-from linkwright.language.other_files import robots_of_package
+from linkwright.language.other_files import names_of_robot, robots_of_file
 from linkwright.language.proof import UnprovedError
 from linkwright.language.renaming import Renaming, occurrence_at, rename
 from linkwright.language.robot_renaming import OF_ROBOT
 from linkwright.language.sdf_names import SdfName, rename_in_sdf, sdf_name_at
 from linkwright.language.srdf import is_srdf
 from linkwright.language.workspace import Workspace
-from linkwright.packages import enclosing_package
 from linkwright.sdf.worlds import SDF
 
 _WORD = re.compile(r"[^\s\"'\[\]{},<>=|#]+")
 _LAUNCH_NAME = re.compile(r"[\w.-]+")
-_MAX_ROBOTS = 40
+_MAX_ROBOTS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,27 +98,11 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
 
 def _robots_with(project: Workspace, texts: Mapping[Path, str], mention: Mention) -> Iterator[tuple[Path, NameKind]]:
     """Yield the descriptions that a file may mean and that have a link or joint of its name, each with the kind."""
-    package = enclosing_package(mention.file.parent)
-    folder = mention.file.parent if package is None else package[1]
-    for robot in robots_of_package(project, texts, folder)[:_MAX_ROBOTS]:
-        model = project.robot(robot, texts)
+    for robot in robots_of_file(project, texts, mention.file):
+        known = names_of_robot(project, texts, robot)
         for kind in mention.kinds:
-            if model is None:
-                if _may_define(project, texts, robot, kind, mention.name):
-                    yield robot, kind
-            elif mention.name in (model.links if kind is NameKind.LINK else model.joints):
+            if (kind, mention.name) in known:
                 yield robot, kind
-
-
-def _may_define(
-    project: Workspace, texts: Mapping[Path, str], robot: Path, kind: NameKind, name: str
-) -> bool:
-    """Return whether a description that cannot be expanded may define a name."""
-    return any(
-        one.kind is kind
-        and (one.name == name or ("$" in one.name and _fits(one.name, name)))
-        for one in project.names(robot, texts)
-    )
 
 
 def _fits(written: str, name: str) -> bool:
@@ -159,7 +143,7 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
 def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
     """Rename the link or joint of the first description with which the place of the mention gets the new name."""
     error: LinkwrightError | None = None
-    for robot, kind in _robots_with(project, texts, mention):
+    for robot, kind in islice(_robots_with(project, texts, mention), _MAX_ROBOTS):
         try:
             renaming = rename(project, texts, Occurrence(kind, mention.name, robot, 0), new)
         except LinkwrightError as reason:
@@ -168,7 +152,7 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
         if any((edit.file, edit.start) == (mention.file, mention.start) for edit in renaming.edits):
             return renaming
         error = error or _refused(mention.name, phrase("several robots have this name, and the file may mean each"))
-    raise error or _refused(mention.name, phrase("no description of the workspace has this {kind}", kind=term("link")))
+    raise error or _refused(mention.name, phrase("no description of the workspace has it"))
 
 
 def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -176,11 +160,8 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
     if "$" not in name.name:
         return _rename_mention(project, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
     error: LinkwrightError | None = None
-    package = enclosing_package(name.file.parent)
-    folder = name.file.parent if package is None else package[1]
-    for robot in robots_of_package(project, texts, folder)[:_MAX_ROBOTS]:
-        model = project.robot(robot, texts)
-        known = () if model is None else model.links if name.kind is NameKind.LINK else model.joints
+    for robot in robots_of_file(project, texts, name.file)[:_MAX_ROBOTS]:
+        known = sorted(value for kind, value in names_of_robot(project, texts, robot) if kind is name.kind)
         for value in (value for value in known if _fits(name.name, value)):
             changed = renamed_template(name.name, new, value)
             if changed is None or changed == value:
@@ -192,7 +173,7 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
                 continue
             if any((edit.file, edit.start) == (name.file, name.start) for edit in renaming.edits):
                 return renaming
-    raise error or _refused(name.name, phrase("no description of the workspace has this {kind}", kind=term("link")))
+    raise error or _refused(name.name, phrase("no description of the workspace has it"))
 
 
 def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:

@@ -6,7 +6,7 @@ these names alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from linkwright.diagnostics import Phrase, Span, phrase, quoted_names, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.mentions import Mention
 from linkwright.language.name_sources import NameSources, WrittenText, renamed_template, written_text
-from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text, occurrences_in
+from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text
 from linkwright.language.other_files import OtherFiles
 from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
@@ -69,6 +69,9 @@ class RobotRenaming:
         """
         self._others.add_srdfs()
         required = self._required()
+        if not any(self._defines(*name) for name in required):
+            self._rename_unused(seeds, required)
+            return
         literal = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
         error: UnprovedError | None = None
         for proposal in islice(self._proposals(required, literal), _MAX_PROPOSALS):
@@ -78,7 +81,26 @@ class RobotRenaming:
                 error = error or reason
             else:
                 return
-        raise error or UnprovedError(phrase("no link, joint or material takes its name from this place"))
+        raise error or UnprovedError(self._nothing())
+
+    def _rename_unused(self, seeds: Iterable[Occurrence], required: Names) -> None:
+        """Rename a name that no expansion has, such as a material that nothing uses: all expansions stay equal."""
+        name = self._name
+        edits = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
+        if "$" in name.name or not any(seed.is_definition for seed in seeds):
+            raise UnprovedError(self._nothing())
+        self._proof.check_equal(edits)
+        found, self.unchanged = self._others.edits(required)
+        self.edits = edits | found
+
+    def _nothing(self) -> Phrase:
+        reason = self._proof.gap_reason
+        nothing = phrase("no link, joint or material takes its name from this place")
+        return (
+            nothing
+            if reason is None
+            else phrase("{nothing}, as far as it can be expanded: {reason}", nothing=nothing, reason=reason)
+        )
 
     def _required(self) -> Names:
         """Return the names that must change, each with its new name: those that the place has in the expansions."""
@@ -86,13 +108,11 @@ class RobotRenaming:
         if "$" not in name.name:
             return {(self._kind(), name.name): self._new}
         required: dict[tuple[NameKind, str], str] = {}
-        for element, value in self._elements_at_place():
+        for value in self._values_at_place():
             new = renamed_template(name.name, self._new, value)
             if new is not None and new != value:
-                kind = name.kind
-                if (element.tag, kind) != (kind.value, kind) and not self._defines(kind, value):
-                    continue
-                required[kind, value] = new
+                if self._defines(name.kind, value):
+                    required[name.kind, value] = new
         return required
 
     def _kind(self) -> NameKind:
@@ -110,8 +130,8 @@ class RobotRenaming:
             for element in _definitions(trial.expansion.document.root, kind)
         )
 
-    def _elements_at_place(self) -> Iterator[tuple[Element, str]]:
-        """Yield the elements of the expansions that are written at the place, each with the value of the name."""
+    def _values_at_place(self) -> Iterator[str]:
+        """Yield the values that the name at the place has in the expansions."""
         files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:
             for element in trial.expansion.document.root.walk():
@@ -123,7 +143,7 @@ class RobotRenaming:
                 for key, value in element.attributes.items():
                     place = attribute_value_range(source.text, element.offset, key)
                     if place is not None and place[0] == self._name.start:
-                        yield element, value
+                        yield value
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
         """Yield the edits to begin with: those at the places, and those of the computed definitions."""
@@ -154,7 +174,7 @@ class RobotRenaming:
             pairs = [*self._proof.pairs(edits)]
             names = dict(_changed_names(pairs))
             if not names and not required:
-                raise UnprovedError(phrase("no link, joint or material takes its name from this place"))
+                raise UnprovedError(self._nothing())
             wanted = {**names, **required}
             more: set[Edit] = set()
             for pair in pairs:

@@ -20,7 +20,9 @@ from linkwright.language.written import WrittenElement, innermost, written_eleme
 
 _DEFINING = frozenset({"link", "joint", "frame", "model"})
 _SCOPES = frozenset({"model", "world"})
-_ATTRIBUTES = frozenset({"relative_to", "attached_to", "expressed_in", "rotate_to", "canonical_link", "placement_frame"})
+_ATTRIBUTES = frozenset(
+    {"relative_to", "attached_to", "expressed_in", "rotate_to", "canonical_link", "placement_frame"}
+)
 _OF_OWN_SCOPE = frozenset({"canonical_link", "placement_frame"})
 _MIMIC = ("mimic", "joint")
 _TEXTS = frozenset({"parent", "child", "link", "joint", "gripper_link", "palm_link", "placement_frame"})
@@ -93,7 +95,9 @@ def rename_in_sdf(project: Workspace, texts: Mapping[Path, str], name: SdfName, 
     if any(other.value("name") == new for other in _named(scope)):
         raise UnprovedError(phrase("'{name}' exists already", name=new), span)
     edits = {
-        Edit(use.file, use.start, use.end, new) for use in sdf_names(text, name.file) if use.definition == name.definition
+        Edit(use.file, use.start, use.end, new)
+        for use in sdf_names(text, name.file)
+        if use.definition == name.definition
     }
     top = _path_from_top(definition)
     if top is not None:
@@ -104,8 +108,10 @@ def rename_in_sdf(project: Workspace, texts: Mapping[Path, str], name: SdfName, 
 
 
 def _defines(element: WrittenElement) -> bool:
-    """Return whether a link or joint is one of a model, and not a parameter of a plugin."""
+    """Return whether a link or joint is one of a model, and not a parameter of a plugin or the state of a world."""
     parent = element.parent
+    if any(outer.name == "state" for outer in element.around()):
+        return False
     return parent is not None and (parent.name in _SCOPES or (element.name == "model" and parent.name == "sdf"))
 
 
@@ -129,6 +135,8 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
             scope = own or _scope_of_place(element)
             if scope is not None:
                 yield attribute.value, attribute.value_start, scope
+    if element.name in ("model", "link"):
+        yield from _of_state(element)
     is_named = element.name in _TEXTS or bool(kinds_of_text(element.name))
     if is_named and not element.children and not _defines(element) and element.end > 0:
         begin = element.tag.end
@@ -137,6 +145,22 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
         scope = _scope(element.parent)
         if value and scope is not None:
             yield value, begin + written.index(value), scope
+
+
+def _of_state(element: WrittenElement) -> Iterator[tuple[str, int, WrittenElement]]:
+    """Yield the name of a model in the state of a world, which is that of a model of the world, or of one of its links."""
+    around = [*element.around()]
+    state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
+    scope = None if state is None else _scope(around[state].parent)
+    name = next((one for one in element.tag.attributes() if one.name == "name" and one.value), None)
+    if state is None or scope is None or name is None:
+        return
+    for outer in reversed(around[1:state]):
+        found = next((one for one in _named(scope) if one.value("name") == outer.value("name")), None)
+        if found is None:
+            return
+        scope = found
+    yield name.value or "", name.value_start, scope
 
 
 def _scope_of_place(element: WrittenElement) -> WrittenElement | None:

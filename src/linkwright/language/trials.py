@@ -121,9 +121,7 @@ def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> It
             return
 
 
-def _repaired(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
-) -> Trial | None:
+def _repaired(project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]) -> Trial | None:
     """Return an expansion without the elements that fail; None if the root fails or there are too many."""
     gaps: dict[Path, tuple[Range, ...]] = {}
     reason: Phrase | None = None
@@ -153,9 +151,7 @@ def _repaired(
     return None
 
 
-def _element_around(
-    project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps
-) -> tuple[Path, Range] | None:
+def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
     """Return the file and the range of the element that contains a location; None for a root or outside of files."""
     file = real(span.file)
     text = project.text(file, texts)

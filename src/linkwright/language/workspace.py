@@ -58,6 +58,7 @@ class Workspace:
 
     Attributes:
         index: the descriptions in the folders.
+        kept: results about files that are kept until a file changes, each with the texts of the open files.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -67,10 +68,12 @@ class Workspace:
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
         self._robots: dict[Path, tuple[Mapping[Path, str], Robot | None]] = {}
+        self.kept: dict[tuple[str, Path], tuple[Mapping[Path, str], object]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
         self._robots.clear()
+        self.kept.clear()
         if file.name.endswith(_CALLERS):
             self._checker = Checker(folders=self._folders)
 
