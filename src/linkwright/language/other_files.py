@@ -123,8 +123,8 @@ def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iter
 def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
     """Return the descriptions that a configuration or launch file may mean, the likeliest first.
 
-    These are the robots of its package, else those of the packages that it depends on, else all. Of several, those count
-    that a file names together with this one, or else those whose folders are nearest.
+    These are the robots of its package, else those of the packages that it depends on, else all. Of several, those
+    count that a file names together with this one, or else those whose folders are nearest.
 
     Args:
         project: the workspace.
@@ -189,7 +189,7 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
     """
     known = project.kept.get(("names", robot))
     if known is None or known[0] != texts:
-        found, _ = trials(project, texts, robot, is_partial=True)
+        found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
         roots = [trial.expansion.document.root for trial in found]
         names = frozenset(
             (kind, element.attributes.get("name", ""))

@@ -146,7 +146,8 @@ def _equal(
 ) -> set[Edit]:
     """Return edits with which all expansions stay equal; a parameter may reach other macros by its name.
 
-    xacro's scopes are dynamic: a macro that is called in another one sees its parameters, and ``name:=^`` forwards them.
+    xacro's scopes are dynamic: a macro that is called in another one sees its parameters, and ``name:=^`` forwards
+    them.
 
     Raises:
         UnprovedError: the expansions differ.

@@ -6,8 +6,9 @@ these names alone.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names, term
@@ -20,6 +21,7 @@ from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, Unpro
 from linkwright.language.workspace import Workspace
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range, start_tag_end
+from linkwright.xmltree.tokens import Kind, tokens
 
 OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
 Names = Mapping[tuple[NameKind, str], str]
@@ -77,7 +79,7 @@ class RobotRenaming:
         for proposal in islice(self._proposals(required, literal), _MAX_PROPOSALS):
             try:
                 self._follow(proposal, required)
-            except UnprovedError as reason:
+            except UnprovedError as reason:  # noqa: PERF203 - each proposal may fail for itself
                 error = error or reason
             else:
                 return
@@ -110,9 +112,8 @@ class RobotRenaming:
         required: dict[tuple[NameKind, str], str] = {}
         for value in self._values_at_place():
             new = renamed_template(name.name, self._new, value)
-            if new is not None and new != value:
-                if self._defines(name.kind, value):
-                    required[name.kind, value] = new
+            if new is not None and new != value and self._defines(name.kind, value):
+                required[name.kind, value] = new
         return required
 
     def _kind(self) -> NameKind:
@@ -183,11 +184,28 @@ class RobotRenaming:
             more |= found
             if more <= edits:
                 self._check(pairs, names, required)
-                self.edits, self.names, self.unchanged = edits, names, unchanged
+                self.edits, self.names = edits, names
+                self.unchanged = (*unchanged, *self._leftovers(edits, names))
                 return
             edits = edits | more
             _check_overlap(edits)
         raise UnprovedError(phrase("some references keep the old name"))
+
+    def _leftovers(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
+        """Yield values in the descriptions that are old names and that no expansion uses, such as an unused default."""
+        edited = {(edit.file, edit.start) for edit in edits}
+        words = "|".join(re.escape(old) for old in dict.fromkeys(old for _, old in names))
+        pattern = re.compile(rf"(?<![^\s\"'=])({words})(?=[\"'\s])" if words else r"(?!)")
+        for file in self._files:
+            for token in tokens(self._project.text(file, self._texts) or ""):
+                if not token.name.startswith("xacro:") or token.kind is not Kind.START:
+                    continue
+                for attribute in token.attributes():
+                    written = f'{attribute.value or ""}"' if attribute.name != "name" else ""
+                    for found in pattern.finditer(written):
+                        start = attribute.value_start + found.start(1)
+                        if (file, start) not in edited:
+                            yield Mention(found[1], file, start)
 
     def _stale(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
         """Yield edits of the definitions and references in an expansion that still have an old name."""
@@ -215,6 +233,8 @@ class RobotRenaming:
         missing = next((old for (kind, old), new in required.items() if names.get((kind, old)) != new), None)
         if missing is not None:
             raise UnprovedError(phrase("'{name}' is not defined in the expansion of a description", name=missing))
+        if "$" not in self._name.name:
+            self._check_sharing(pairs, required)
         allowed = {*((old, new) for (_, old), new in names.items())}
         for pair in pairs:
             olds, news = _defined(pair.before), _defined(pair.after)
@@ -227,6 +247,27 @@ class RobotRenaming:
                 if count != len([*_values(pair.after, kind)]) and count != len({*_values(pair.before, kind)}):
                     raise UnprovedError(phrase("two {kind}s would have the same name", kind=term(kind.value)))
 
+    def _check_sharing(self, pairs: Sequence[ExpansionPair], required: Names) -> None:
+        """Check that no description without the name changes, which would be another robot with the same macros."""
+        owners = {
+            pair.entry
+            for pair in pairs
+            for kind, old in required
+            for value in _values(pair.before, kind)
+            if value == old
+        }
+        for pair in pairs:
+            changed = next(_changed_names([pair]), None) if pair.entry not in owners else None
+            if changed is not None:
+                (_, old), new = changed
+                message = phrase(
+                    "'{old}' of '{file}', which uses the same macro, would become '{new}'",
+                    old=old,
+                    new=new,
+                    file=pair.entry.name,
+                )
+                raise UnprovedError(message)
+
 
 def _computed(written: WrittenText, value: str, span: Span | None = None) -> UnprovedError:
     return UnprovedError(phrase("'{value}' is computed from '{written}'", value=value, written=written.text), span)
@@ -235,7 +276,7 @@ def _computed(written: WrittenText, value: str, span: Span | None = None) -> Unp
 def _check_overlap(edits: Iterable[Edit]) -> None:
     """Raise an error for two edits of the same text."""
     ordered = sorted(edits)
-    for first, second in zip(ordered, ordered[1:], strict=False):
+    for first, second in pairwise(ordered):
         if first.file == second.file and first.end > second.start:
             raise UnprovedError(
                 phrase("one text would have to be {names}", names=quoted_names((first.text, second.text), " and "))
@@ -298,7 +339,7 @@ def _defined(root: Element) -> set[str]:
 
 
 def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:
-    """Return whether a name, such as that of a transmission, changed because it contains the name of a joint or link."""
+    """Return whether a name, such as that of a transmission, changed because it contains that of a joint or link."""
     return any(name in old and old.replace(name, changed) == new for name, changed in allowed)
 
 

@@ -148,7 +148,7 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
 
 
 def _of_state(element: WrittenElement) -> Iterator[tuple[str, int, WrittenElement]]:
-    """Yield the name of a model in the state of a world, which is that of a model of the world, or of one of its links."""
+    """Yield the name of a model or link in the state of a world, which is that of one in the world."""
     around = [*element.around()]
     state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
     scope = None if state is None else _scope(around[state].parent)
