@@ -1,4 +1,4 @@
-"""Renaming from any file: computed names, mentions, launch arguments, SDF names, and descriptions that lack a package."""
+"""Renaming from any file: computed names, mentions, launch arguments, SDF, and descriptions that lack a package."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.language.file_renaming import rename_file
 from linkwright.language.includes import real
 from linkwright.language.rename_places import place_at, rename_place
 from linkwright.language.renaming import Renaming
@@ -177,7 +178,7 @@ def test_a_macro_that_nothing_calls_is_checked_with_a_call_of_its_own(make: Make
 def test_a_robot_of_other_macro_calls_is_not_changed_by_a_name_that_it_does_not_have(make: Make):
     other = ROBOT.replace('name="prefix" default=""', 'name="prefix" default="other_"')
     files = make({**ROBOT_FILES, "description/urdf/other.urdf.xacro": other})
-    with pytest.raises(LinkwrightError, match="'other_left_wheel_joint' of 'other.urdf.xacro'"):
+    with pytest.raises(LinkwrightError, match=r"'other_left_wheel_joint' of 'other\.urdf\.xacro'"):
         files.rename("bringup/config/rover.yaml", '["left', "left_tire_joint")
 
 
@@ -342,3 +343,31 @@ def test_a_nested_model_and_one_in_the_state_of_a_world_follow(make: Make):
 def test_a_name_that_exists_in_the_model_is_refused(make: Make):
     with pytest.raises(LinkwrightError, match="exists already"):
         make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "wheel")
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_renamed_file_is_followed_into_python_launch_files_yaml_and_build_files(make: Make):
+    launch = (
+        "import os\n"
+        "from ament_index_python.packages import get_package_share_directory\n"
+        "FILE = os.path.join(get_package_share_directory('rover_description'), 'urdf', 'wheel.xacro')\n"
+        "NAME = 'wheel.xacro'\n"
+    )
+    files = make(
+        {
+            **ROBOT_FILES,
+            "description/CMakeLists.txt": "install(FILES urdf/wheel.xacro DESTINATION share/x)\n",
+            "bringup/launch/main.launch.py": launch,
+            "bringup/config/part.yaml": "file: package://rover_description/urdf/wheel.xacro\n",
+        }
+    )
+    folder = files.folder / "description" / "urdf"
+    edits, unchanged = rename_file(files.workspace, {}, folder / "wheel.xacro", folder / "parts.xacro")
+    changed = {edit.file.name: edit.file.read_text()[edit.start : edit.end] for edit in edits}
+    assert changed.keys() == {"rover.urdf.xacro", "CMakeLists.txt", "main.launch.py", "part.yaml"}
+    assert {edit.text.rpartition("/")[2] for edit in edits} == {"parts.xacro"}
+    assert [(mention.file.name, mention.start) for mention in unchanged] == [
+        ("main.launch.py", launch.index("NAME = '") + len("NAME = '"))
+    ]
