@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import takewhile
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
@@ -27,6 +28,7 @@ from linkwright.xmltree import parse
 Names = Mapping[tuple[NameKind, str], str]
 _OF_ROBOT = (NameKind.LINK, NameKind.JOINT)
 _ENDINGS = (".urdf", ".xacro")
+_ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
 _LAUNCH = ("launch.py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
 
 
@@ -70,7 +72,7 @@ class OtherFiles:
                     if kind is None:
                         if not mention.kinds:
                             unchanged.append(mention)
-                    elif file in self._proof.data or any(
+                    elif (file in self._proof.data and ".srdf" not in file.name) or any(
                         (kind, mention.name) in names_of_robot(self._project, self._texts, robot) for robot in others
                     ):
                         unchanged.append(mention)
@@ -123,8 +125,8 @@ def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iter
 def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
     """Return the descriptions that a configuration or launch file may mean, the likeliest first.
 
-    These are the robots of its package, else those of the packages that it depends on, else all. Of several, those
-    count that a file names together with this one, or else those whose folders are nearest.
+    These are the robots of its package, else those with parts in it, else those of the packages that it depends on,
+    else all. Of several, those count that a file names together with this one, or else those whose folders are nearest.
 
     Args:
         project: the workspace.
@@ -135,24 +137,38 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
     folder = file.parent if package is None else real(package[1])
     robots = _robots_of_package(project, texts, folder)
     if len(robots) < 2:
-        return robots
-    return _named_together(project, texts, file, robots) or _nearest(file, folder, robots)
+        return [*robots]
+    return _named_together(project, texts, file, [*robots]) or _nearest(file, folder, robots)
 
 
-def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
+def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
+    """Return the descriptions that a package may mean, each with its own files in the package."""
     entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
     entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
-    own = [entry for entry in entries if entry.is_relative_to(folder)]
+    own = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
+    if own:
+        return own
+    for entry in entries:
+        parts = [file for file in project.index.related(entry, texts) if file.is_relative_to(folder)]
+        if parts:
+            own[entry] = parts
     if own:
         return own
     others = _dependencies(project, texts, folder)
-    return [entry for other in others for entry in entries if entry.is_relative_to(other)] or entries
+    inside = [entry for other in others for entry in entries if entry.is_relative_to(other)]
+    return {entry: [] for entry in inside or entries}
 
 
 def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
     """Return the robots that name a file, or that a launch file names together with it."""
     name = re.compile(rf"(?<![\w.-]){re.escape(file.name)}(?![\w-])")
     text = project.text(file, texts) or ""
+    if ".srdf" in file.name:
+        title = _ROBOT.search(text)
+        titles = {robot: _ROBOT.search(project.text(robot, texts) or "") for robot in robots}
+        same = [robot for robot, other in titles.items() if title is not None and other and other[1] == title[1]]
+        if same:
+            return same
     found = {robot for robot in robots if _named_in(robot, text)}
     for robot in robots:
         if any(name.search(project.text(one, texts) or "") for one in project.index.related(robot, texts)):
@@ -168,15 +184,15 @@ def _named_in(robot: Path, text: str) -> bool:
     return re.search(rf"(?<![\w.-]){re.escape(robot.name)}(?![\w-])", text) is not None
 
 
-def _nearest(file: Path, folder: Path, robots: Sequence[Path]) -> list[Path]:
-    """Return the robots that share most folders of their package with a file."""
+def _nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) -> list[Path]:
+    """Return the robots with files that share most folders of their package with a file."""
 
-    def shared(robot: Path) -> int:
-        parts = [path.relative_to(folder).parts[:-1] if path.is_relative_to(folder) else () for path in (file, robot)]
-        return next((n for n, (a, b) in enumerate(zip(*parts, strict=False)) if a != b), min(map(len, parts)))
+    def shared(one: Path) -> int:
+        names, others = (path.relative_to(folder).parts[:-1] for path in (file, one))
+        return len([*takewhile(lambda pair: pair[0] == pair[1], zip(names, others, strict=False))])
 
-    most = max(map(shared, robots))
-    return [robot for robot in robots if shared(robot) == most]
+    depths = {robot: max(map(shared, parts), default=0) for robot, parts in robots.items()}
+    return [robot for robot, depth in depths.items() if depth == max(depths.values())]
 
 
 def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -> frozenset[tuple[NameKind, str]]:

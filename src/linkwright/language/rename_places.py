@@ -28,6 +28,7 @@ from linkwright.sdf.worlds import SDF
 
 _WORD = re.compile(r"[^\s\"'\[\]{},<>=|#]+")
 _LAUNCH_NAME = re.compile(r"[\w.-]+")
+_UNPROVED = "LANG104"
 _MAX_ROBOTS = 4
 
 
@@ -124,9 +125,7 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
     """
     meaning = place.meaning
     if isinstance(meaning, Occurrence):
-        if is_srdf(place.file) and meaning.kind in OF_ROBOT[:2]:
-            return _rename_in_srdf(project, texts, meaning, new)
-        return rename(project, texts, meaning, new)
+        return _rename_occurrence(project, texts, meaning, new)
     if isinstance(meaning, Mention):
         return _rename_mention(project, texts, meaning, new)
     try:
@@ -138,6 +137,22 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
     except UnprovedError as error:
         raise _refused(place.name, error.reason, error.span) from None
     return Renaming(tuple(sorted(found.edits)), {}, tuple(found.unchanged), tuple(dict.fromkeys(found.notes)))
+
+
+def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+    """Rename a name of a description or an SRDF; a use in an SRDF, or in a part of one, is that of another file."""
+    is_use = name.kind in OF_ROBOT[:2] and not name.is_definition
+    if is_use and is_srdf(name.file):
+        return _rename_in_srdf(project, texts, name, new)
+    try:
+        return rename(project, texts, name, new)
+    except LinkwrightError as error:
+        if not is_use or error.diagnostics[0].code != _UNPROVED:
+            raise
+        try:
+            return _rename_in_srdf(project, texts, name, new)
+        except LinkwrightError:
+            raise error from None
 
 
 def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
@@ -177,7 +192,7 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
 
 
 def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
-    return LinkwrightError(Diagnostic("LANG104", phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
+    return LinkwrightError(Diagnostic(_UNPROVED, phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
 
 
 def _invalid(new: str, kind: Phrase) -> LinkwrightError:

@@ -97,13 +97,16 @@ def trials(
         is_partial: whether elements that fail are left out if nothing can be expanded.
         is_switched: whether arguments are switched, too, if `is_partial`.
     """
-    found: list[Trial] = []
+    distinct: dict[tuple[str, frozenset[str]], Trial] = {}
     error: LinkwrightError | None = None
     for arguments, _ in project.calls(entry):
         try:
-            found.append(Trial(entry, arguments, expanded(project, texts, entry, arguments)))
-        except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
+            expansion = expanded(project, texts, entry, arguments)
+        except LinkwrightError as reason:
             error = reason
+        else:
+            distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
+    found = [*distinct.values()]
     if is_partial and not found:
         found += _with_gaps(project, texts, entry)
     if is_partial and is_switched and found:
