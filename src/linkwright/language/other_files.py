@@ -27,6 +27,7 @@ from linkwright.xmltree import parse
 
 Names = Mapping[tuple[NameKind, str], str]
 _OF_ROBOT = (NameKind.LINK, NameKind.JOINT)
+_FOLLOWED = (*_OF_ROBOT, NameKind.MATERIAL)
 _ENDINGS = (".urdf", ".xacro")
 _ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
 _LAUNCH = ("launch.py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
@@ -45,6 +46,7 @@ class OtherFiles:
     def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, proof: ExpansionProof) -> None:
         self._project, self._texts, self._file, self._proof = project, texts, file, proof
         self._srdfs_added = False
+        self._robots: dict[Path, list[Path]] = {}
         self._own = {*project.index.related(file, texts, computed=True)}
 
     def edits(self, names: Names) -> tuple[set[Edit], tuple[Mention, ...]]:
@@ -63,7 +65,7 @@ class OtherFiles:
             for file in files:
                 text = self._project.text(file, self._texts) or ""
                 mentions = [*_mentions(text, file, names, olds)]
-                robots = robots_of_file(self._project, self._texts, file) if mentions else []
+                robots = self._robots_of(file) if mentions else []
                 if robots and not any(map(self._is_affected, robots)):
                     continue  # the file is about other robots
                 others = [robot for robot in robots if not self._is_affected(robot)]
@@ -89,15 +91,19 @@ class OtherFiles:
         for files in self._files.values():
             srdfs = [file for file in files if file.name.endswith(".srdf.xacro") and file in roots]
             for file in srdfs:
-                if all(map(self._is_affected, robots_of_file(self._project, self._texts, file))):
+                if all(map(self._is_affected, self._robots_of(file))):
                     self._proof.add(file)
 
     def _literal_uses(self, names: Names) -> Iterator[Occurrence]:
         """Yield the literal uses in the descriptions, also those that no expansion reaches."""
-        for file in self._own:
-            for use in occurrences_in(self._project.text(file, self._texts) or "", file):
-                if (use.kind, use.name) in names:
-                    yield use
+        for use in self._uses:
+            if (use.kind, use.name) in names:
+                yield use
+
+    @cached_property
+    def _uses(self) -> list[Occurrence]:
+        texts = ((file, self._project.text(file, self._texts) or "") for file in self._own)
+        return [use for file, text in texts for use in occurrences_in(text, file) if use.kind in _FOLLOWED]
 
     @cached_property
     def _files(self) -> dict[Path, list[Path]]:
@@ -110,6 +116,11 @@ class OtherFiles:
             files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen]
             seen.update(files[folder])
         return files
+
+    def _robots_of(self, file: Path) -> list[Path]:
+        if file not in self._robots:
+            self._robots[file] = robots_of_file(self._project, self._texts, file)
+        return self._robots[file]
 
     def _is_affected(self, robot: Path) -> bool:
         return robot in self._proof.entries

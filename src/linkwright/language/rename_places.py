@@ -1,4 +1,4 @@
-"""What a place in a file of any format names, and its renaming: the entry to renaming for an editor."""
+"""Renaming of the name at a place in a file of any format."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def trials(
     for arguments, _ in project.calls(entry):
         try:
             expansion = expanded(project, texts, entry, arguments)
-        except LinkwrightError as reason:
+        except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
             error = reason
         else:
             distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
