@@ -84,8 +84,31 @@ describe("a document", () => {
   it("finds places of the file in the edited text", () => {
     const document = documentOf();
     type(document, "<robot>\n", "<robot>\n\n\n");
-    const before = TEXT.indexOf("'b'");
-    expect(document.placeNow(before)).toBe(before + 2);
+    const before = TEXT.indexOf("  <link name='b'");
+    expect([document.lineNow(3), document.lineThen(before + 2)]).toEqual([before + 2, 3]);
+  });
+
+  it("finds places of the text that the scene shows, which may be older or newer than the file", () => {
+    const document = documentOf();
+    type(document, "<robot>\n", "<robot>\n\n\n");
+    document.beginShowing(1);
+    document.endShowing(1, true);
+    expect(document.lineThen(document.lineNow(5))).toBe(5);
+    type(document, "<robot>\n", "<robot>\n\n");
+    document.beginShowing(2);
+    document.endShowing(2, false); // it has errors
+    expect(document.state.doc.lineAt(document.lineNow(5)).number).toBe(6);
+  });
+
+  it("takes over an edit of the robot beside what was typed since, and not in the same place", () => {
+    const document = documentOf();
+    type(document, "'a'", "'c'");
+    document.beginShowing(1);
+    type(document, "'c'", "'d'");
+    apply(document, document.robotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
+    expect(textIn(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
+    expect(document.isUnsaved).toBe(true);
+    expect(document.robotEdited(TEXT.replace("'a'", "'e'"), 1)).toBeNull();
   });
 });
 

@@ -204,3 +204,165 @@ def test_the_editor_is_accessible(start, open_page, file):
     page.locator(".cm-search").wait_for()
     assert violations(page, ".source-panel") == []
     assert page.evaluate("document.body.scrollHeight <= document.body.clientHeight")
+
+
+def choose(page, label: str) -> None:
+    """Choose an entry of the open menu with the keyboard."""
+    page.get_by_role("menuitem").first.wait_for()
+    labels = page.get_by_role("menuitem").all_inner_texts()
+    for _ in range(labels.index(label)):
+        page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+
+
+def test_findings_are_fixed_and_values_extracted_with_the_menu_of_actions(start, open_page, file):
+    leg = file.parent / "leg.xacro"
+    turning = LEG.replace('type="fixed">', 'type="continuous"><axis xyz="0 0 2"/>')
+    leg.write_text(turning)
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 2)
+    text.press("Control+.")
+    page.get_by_text("There is no fix or refactoring here.").wait_for()
+
+    go_to(text, 4, 9)
+    text.press("F12")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.findings.includes('LW221')")
+    page.locator(".cm-lintRange").first.hover()
+    page.get_by_role("button", name="Fix…").click()
+    choose(page, "fix everything that is safe to fix in this file")
+    shows(page, 'xyz="0 0 1"')
+    page.get_by_text("changed 1 file, not saved yet").wait_for()
+    until(page, "document.activeElement.matches('.cm-content')")
+    text.press("Control+z")
+    shows(page, 'xyz="0 0 2"')
+    until(page, f"{EDITOR}.findings.includes('LW221')")
+
+    text.press("Control+Home")
+    text.press("F8")
+    text.press("Control+.")
+    choose(page, "extract '0 0 2' to a property")
+    shows(page, "<xacro:property")
+    assert leg.read_text() == turning
+
+
+def test_a_urdf_becomes_a_new_xacro_file(start, open_page, file):
+    urdf = file.parent / "plain.urdf"
+    urdf.write_text('<robot name="r">\n  <link name="base"/>\n</robot>\n')
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    page.get_by_role("button", name="Files", exact=True).click()
+    page.get_by_role("treeitem", name="plain.urdf").click()
+    until(page, f"{EDITOR}.file.endsWith('plain.urdf')")
+    go_to(text, 1, 2)
+    page.locator(".editor-bar").get_by_role("button", name="Actions").click()
+    page.get_by_role("menuitem", name="xacro").first.wait_for()
+    page.get_by_role("menuitem", name="xacro").first.click()
+    until(page, f"{EDITOR}.file.endsWith('plain.urdf.xacro')")
+    shows(page, "xmlns:xacro")
+    text.press("Control+s")
+    becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
+
+
+def test_definitions_and_references_lead_through_files_and_back(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4, 9)  # in xacro:leg
+    text.press("F12")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    go_to(text, 2, 23)  # in the name of the macro
+    text.press("Shift+F12")
+    page.get_by_role("listbox", name="2 references").wait_for()
+    places = page.locator(".place-list-place")
+    assert [" ".join(place.split()) for place in places.all_inner_texts()] == [
+        '4 <xacro:leg name="left"/>',
+        '2 <xacro:macro name="leg" params="name">',
+    ]
+    assert violations(page, ".source-panel") == []
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Home")
+    page.keyboard.press("Enter")
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 4")
+    text.press("Control+Home")
+    page.keyboard.insert_text("\n")  # the places behind move with the text
+    text.press("Alt+ArrowLeft")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    text.press("Alt+ArrowLeft")
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
+    text.press("Alt+ArrowRight")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro')")
+    places.first.click()
+    until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
+    places.first.focus()
+    page.keyboard.press("Escape")
+    until(page, "document.activeElement.matches('.cm-content')")
+    page.locator(".cm-line").nth(4).get_by_text("leg").first.click(modifiers=["Control"])
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    go_to(text, 1)
+    text.press("F12")
+    page.get_by_text("There is no definition of this.").wait_for()
+
+
+def test_the_scene_shows_what_is_typed_and_the_last_good_robot_while_it_has_errors(start, open_page, file):
+    program = start("view", str(file))
+    page = open_page(program)
+    text = open_editor(page)
+    go_to(text, 3, 10)
+    until(page, "lw.description.focus?.name === 'base'")  # the link at the cursor is selected in the scene
+    text.press("End")
+    page.keyboard.insert_text('\n  <xacro:leg name="right"/>')
+    until(page, f"lw.frames.right !== undefined && {EDITOR}.scene === 'shown'")
+    page.get_by_text("The scene shows the unsaved text").wait_for()
+    until(page, "lw.description.links === 3")
+    page.keyboard.insert_text("<link name=")
+    until(page, f"{EDITOR}.scene === 'errors'")
+    page.get_by_text("The scene shows the last robot without errors").wait_for()
+    assert page.evaluate("window.linkwright.frames.right !== undefined")
+    shows(page, '<xacro:leg name="right"/><link name=')  # the cursor has stayed
+    assert file.read_text() == ROBOT
+    assert "error[" not in "".join(program.output)
+
+    for _ in range(len("<link name=")):
+        text.press("Backspace")
+    until(page, f"{EDITOR}.scene === 'shown'")
+    text.press("Control+s")
+    becomes(lambda: "right" in file.read_text(), True)
+    until(page, f"{EDITOR}.scene === null && lw.frames.right !== undefined")
+    go_to(text, 4)
+    text.press("Shift+ArrowDown")
+    text.press("Delete")
+    until(page, "lw.frames.right === undefined")
+    assert "right" in file.read_text()
+
+
+def test_an_edit_in_the_scene_changes_the_unsaved_text_and_is_undone_with_it(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 3)
+    text.press("End")
+    page.keyboard.insert_text(
+        '<link name="tip"/><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
+    )
+    until(page, "lw.frames.tip !== undefined")
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("tip", exact=True).locator("visible=true").first.click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
+    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    type_in(page, "xyz2", "0.4")
+    page.get_by_role("button", name="Write", exact=True).click()
+    page.get_by_text("Changed in the editor, not saved yet").wait_for()
+    until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
+    assert file.read_text() == ROBOT
+    undo = page.get_by_role("button", name="Undo the last written edit")
+    undo.click()
+    until(page, "Math.abs(lw.frames.tip?.position[2]) < 1e-6")
+    page.get_by_role("button", name="Redo the edit").click()
+    until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
+
+    page.locator(".panel-tab", has_text="Source").first.click()
+    shows(page, "0.4")
+    text.click(position={"x": 30, "y": 8})
+    text.press("Control+z")
+    until(page, f"Math.abs(lw.frames.tip?.position[2]) < 1e-6 && {EDITOR}.unsaved.length === 1")
+    text.press("Control+z")
+    until(page, f"lw.frames.tip === undefined && {EDITOR}.unsaved.length === 0")

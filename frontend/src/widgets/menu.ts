@@ -18,7 +18,8 @@ export interface MenuEntry {
 /** Opens a menu below `anchor`; arrows move, Enter runs, Escape or a click elsewhere closes. */
 export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): void {
   const box = anchor.getBoundingClientRect();
-  showMenu(entries, { x: box.left, y: box.bottom + 4, above: box.top - 4 }, anchor);
+  anchor.setAttribute("aria-expanded", "true");
+  showMenu(entries, { x: box.left, y: box.bottom + 4, above: box.top - 4 }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
 }
 
 /** Opens a menu at a position; the focus returns to `origin` when it closes. */
@@ -33,11 +34,11 @@ interface Place {
   above: number;
 }
 
-function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLElement | null): void {
+function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLElement | null, onClosed: () => void = () => undefined): void {
   const close = (back: boolean): void => {
     menu.remove();
     document.removeEventListener("pointerdown", outside, true);
-    origin?.setAttribute("aria-expanded", "false");
+    onClosed();
     if (back) origin?.focus();
   };
   const outside = (event: Event): void => {
@@ -59,7 +60,6 @@ function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLEleme
   document.addEventListener("pointerdown", outside, true);
   // In a modal dialog, only its own elements are reachable.
   (origin?.closest("dialog") ?? document.body).append(menu);
-  origin?.setAttribute("aria-expanded", "true");
   const below = window.innerHeight - place.y;
   if (below < menu.offsetHeight + 8 && place.above > below) menu.style.bottom = `${window.innerHeight - place.above}px`;
   else menu.style.top = `${place.y}px`;

@@ -1,4 +1,4 @@
-"""Live reload: a saved description file is expanded again, and nodes receive the new text.
+"""Live reload: when a description file is saved, nodes receive its new text.
 
 The nodes continue to run, so that joint positions and the camera do not change. If a description cannot be read, the
 last valid one remains in use, and the errors are shown until the file is fixed.
@@ -7,6 +7,7 @@ last valid one remains in use, and the errors are shown until the file is fixed.
 from __future__ import annotations
 
 import asyncio
+import os
 import stat
 import threading
 from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
@@ -18,6 +19,7 @@ from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 
 if TYPE_CHECKING:
+    from linkwright.descriptions.unsaved import Outcome
     from linkwright.graph import Node
     from linkwright.nodes.followed_files import ReadWorld
 
@@ -29,7 +31,10 @@ _CATCH_UP_SECONDS = 0.4
 """The delay after which files are checked once for changes that were made before the watch began."""
 
 _STEP_MS = 20
-"""The interval in milliseconds at which the watcher checks for the end of notifications; it is also the latency."""
+"""The interval, in milliseconds, at which the watcher checks for the end of notifications.
+
+The interval is also the latency.
+"""
 _DEBOUNCE_MS = 100
 
 Apply = Callable[[str], None]
@@ -37,7 +42,7 @@ Apply = Callable[[str], None]
 
 
 class LiveReload:
-    """Watches the files of a launch's descriptions, and reloads a description when its files change.
+    """Watches the files of a launch's descriptions, and reloads descriptions whose files change.
 
     Args:
         descriptions: the descriptions of the launch.
@@ -58,6 +63,7 @@ class LiveReload:
         self._running: dict[XacroCall, asyncio.Task[None]] = {}
         self._pending_reloads: set[XacroCall] = set()
         self._saved_calls: set[XacroCall] = set()
+        self._failed_calls: set[XacroCall] = set()
         self._is_started = False
         self._closed = False
 
@@ -71,12 +77,15 @@ class LiveReload:
         self._callbacks[call].remove(apply)
 
     def show(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings that are already printed; they replace the earlier findings about the same object."""
+        """Show findings that are already printed.
+
+        They replace the earlier findings about the same object.
+        """
         self._findings[subject] = tuple(diagnostics)
         self._show(self.findings())
 
     def report(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print and show findings; they replace the earlier findings about the same object.
+        """Print and show findings. They replace the earlier findings about the same object.
 
         Errors are printed at each call, but warnings and notes only when they are new.
         """
@@ -94,9 +103,11 @@ class LiveReload:
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
-        """Start to watch the files; an event loop must be running."""
+        """Start to watch the files. An event loop must be running."""
         self._is_started = True
         self._watch_files()
+        if self.descriptions.reads_unsaved:
+            self.descriptions.library.unsaved.listen(self._reload_unsaved)
 
     def close(self) -> None:
         """Stop watching the files."""
@@ -151,6 +162,27 @@ class LiveReload:
             elif call in self._saved_calls:
                 self._start_reload(call)
 
+    async def _reload_unsaved(self, path: str) -> Outcome:
+        """Reload the descriptions that contain a file whose unsaved text has changed."""
+        concerned = [call for call in self._callbacks if self._contains(call, path)]
+        for call in concerned if not self._closed else ():
+            self._start_reload(call)
+        while tasks := [self._running[call] for call in concerned if call in self._running]:
+            await asyncio.wait(tasks)
+            await asyncio.sleep(0)  # a reload that waited begins now
+        if not concerned:
+            return "elsewhere"
+        return "errors" if any(call in self._failed_calls for call in concerned) else "shown"
+
+    def _contains(self, call: XacroCall, path: str) -> bool:
+        return any(os.path.realpath(file) == path for file in self._files_of_interest(call))
+
+    def _is_unsaved(self, call: XacroCall) -> bool:
+        """Return whether a description is read with unsaved texts, whose findings are shown and not printed."""
+        return self.descriptions.reads_unsaved and any(
+            self._contains(call, path) for path in self.descriptions.library.unsaved.texts
+        )
+
     def _is_broken(self, call: XacroCall) -> bool:
         return has_errors(self._findings.get(call, ()))
 
@@ -172,7 +204,13 @@ class LiveReload:
         for attempt in range(_MISSING_ATTEMPTS):
             text, findings = await self._read(call)
             if text is not None:
+                self._failed_calls.discard(call)
                 self._apply(call, text, findings)
+                return
+            if self._is_unsaved(call):
+                self._failed_calls.add(call)
+                self.show(call, findings)
+                self._watch_files()
                 return
             all_exist = all(path.is_file() for path in self._files_of_interest(call))
             if attempt > 0 and all_exist:
@@ -180,6 +218,7 @@ class LiveReload:
             await asyncio.sleep(_RETRY_SECONDS)
             if call in self._pending_reloads:
                 return  # A newer change has already started another reload.
+        self._failed_calls.add(call)
         known_keys = [_finding_key(finding) for finding in self._findings.get(call, ())]
         if call in self._saved_calls or known_keys != [_finding_key(finding) for finding in findings]:
             self.report(call, findings)
@@ -203,6 +242,10 @@ class LiveReload:
                 apply(text)
         except LinkwrightError as error:
             findings = (*findings, *error.diagnostics)
+        if self._is_unsaved(call):
+            self.show(call, findings)
+            self._watch_files()
+            return
         verb = "repaired" if was_broken and not has_errors(findings) else "reloaded"
         self._log.info_line("launch", f"{verb} {display_path(call.path)}")
         self.report(call, findings)
@@ -214,7 +257,7 @@ def _finding_key(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _modified_ns(path: Path) -> int:
-    """Return the modification time of a file in nanoseconds since the epoch, or 0 if it does not exist."""
+    """Return the modification time of a file in ns since the epoch, or 0 if there is no such file."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -224,9 +267,9 @@ def _modified_ns(path: Path) -> int:
 class FileWatch:
     """Calls a function on the event loop when files in certain folders change.
 
-    Folders are watched and not files, because editors save a file by writing a new one and renaming it. Files behind
-    links (``colcon build --symlink-install``) are also watched at their real location. If a folder does not exist, for
-    example because a build is about to create it again, its nearest existing parent is watched.
+    Folders are watched instead of files, because editors save a file by writing a new file and renaming it. Files
+    behind links (``colcon build --symlink-install``) are also watched at their real location. If a folder does not
+    exist, for example because a build is about to create it again, its nearest existing parent is watched.
 
     Args:
         on_change: called with the paths of the changed files.
@@ -305,7 +348,10 @@ class FileWatch:
 
 
 def _nearest_folder(file: Path) -> tuple[Path, int]:
-    """Return the nearest existing folder above a file, and a number that changes when the folder is replaced."""
+    """Return the nearest existing folder above a file, with its inode number.
+
+    The number changes when the folder is replaced.
+    """
     for folder in file.absolute().parents:
         try:
             status = folder.stat()
@@ -325,7 +371,7 @@ def real(path: Path) -> Path:
 
 
 class FollowedFiles:
-    """The `FileFollower` of a node, which watches the files of the node.
+    """Watches the files of a node (`FileFollower`).
 
     Args:
         reload: the live reload of the run to which the node belongs.
@@ -356,7 +402,9 @@ class FollowedFiles:
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Read the file of a world again when it is saved, and load the world unless it has new errors.
+        """Read the file of a world again when it is saved.
+
+        The world is loaded unless it has new errors.
 
         Args:
             world: the world that was read first.
@@ -373,7 +421,10 @@ class FollowedFiles:
         self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
 
     def follow_text(self, text: str, name: str, callback: Callable[[str], None]) -> None:
-        """Register a function for each new text of a description, if this process expanded it from a file."""
+        """Register a function for each new text of a description.
+
+        This has no effect unless this process expanded the text from a file.
+        """
         call = self._reload.descriptions.call_of(text)
         if call is not None and (call, name) not in self._followed:
             self._followed.add((call, name))

@@ -1,83 +1,17 @@
-"""Which descriptions include a file, found by the names of included files, before anything is expanded."""
+"""Which descriptions include a file, found by the texts of the includes, before anything is expanded."""
 
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
-from linkwright.lint.targets import DESCRIPTIONS, walk, written_includes
-from linkwright.loading.deferred import lazy_pattern
-from linkwright.packages import enclosing_package
-
-_SHARE = lazy_pattern(r"\$\(find\s+([\w.-]+)\s*\)/")
-_COMPUTED = lazy_pattern(r"\$\{[^{}]*\}|\$\([^()]*\)")
-
-
-class Include(NamedTuple):
-    """The path of an included file.
-
-    Attributes:
-        written: the path as written.
-        path: the path with the default values of arguments.
-    """
-
-    written: str
-    path: str
-
-    @property
-    def name(self) -> str:
-        """The name of the file without its folder, which may contain expressions."""
-        return Path(self.path).name
-
-    def may_mean(self, file: Path, includer: Path) -> bool:
-        """Return whether the path may lead to a file of that name, as far as the folders of the path tell.
-
-        Args:
-            file: the file.
-            includer: the file that includes it.
-        """
-        share = _SHARE.match(self.path)
-        tail = self.path if share is None else self.path[share.end() :]
-        if "$" in tail:
-            return True
-        if share is not None:
-            package = _package_of(file.parent)
-            return package in (None, share[1]) and str(file).endswith(f"/{os.path.normpath(tail)}")
-        target = real(includer.parent / tail)
-        return target == file or not target.is_file()
-
-    @property
-    def pattern(self) -> str | None:
-        """A pattern of the paths that a computed path may have; None for one that is not computed."""
-        share = _SHARE.match(self.written)
-        tail = self.written if share is None else self.written[share.end() :]
-        if "$" not in tail:
-            return None
-        literal = _COMPUTED.split(tail)
-        return None if len("".join(literal)) < _SHORTEST else "[^/]*".join(map(re.escape, literal))
-
-    def may_compute(self, file: Path) -> bool:
-        """Return whether the path, which is computed, may lead to a file."""
-        pattern = self.pattern
-        return pattern is not None and re.search(f"(?:^|/){pattern}$", str(file)) is not None
-
-
-_SHORTEST = len("_.xacro")
-"""The number of characters that a computed path must have, so that it does not mean all files."""
-
-
-@lru_cache(maxsize=500)
-def _package_of(folder: Path) -> str | None:
-    package = enclosing_package(folder)
-    return None if package is None else package[0]
+from linkwright.lint.inclusions import Inclusion, folders_by_package, inclusions_in
+from linkwright.lint.targets import DESCRIPTIONS, walk
 
 
 class IncludeIndex:
-    """The descriptions and packages below some folders, and the names of the files that each description includes.
+    """The descriptions and packages below some folders, and the includes of each description.
 
     A file is read again only when it has changed.
 
@@ -91,7 +25,8 @@ class IncludeIndex:
 
     def __init__(self, folders: Iterable[Path]) -> None:
         self._folders = [*folders]
-        self._names: dict[Path, tuple[int, frozenset[Include]]] = {}
+        self._inclusions: dict[Path, tuple[int, frozenset[Inclusion]]] = {}
+        self._package_folders: dict[str, list[Path]] = {}
         self.files: tuple[Path, ...] = ()
         self.packages: tuple[Path, ...] = ()
 
@@ -104,6 +39,7 @@ class IncludeIndex:
             files.update(dict.fromkeys(real(file) for file in found))
             packages.update(dict.fromkeys(below))
         self.files, self.packages = tuple(files), tuple(packages)
+        self._package_folders = folders_by_package(map(real, packages))
 
     def entries(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return the descriptions that include a file, directly or through others; the file itself if none does.
@@ -111,22 +47,14 @@ class IncludeIndex:
         Args:
             file: the file, as `real` returns it.
             texts: texts that replace those of files.
-            computed: whether an include whose path is computed counts for each file that it may mean.
+            computed: whether an include with a computed path counts for each file that it can mean.
         """
-        includers: dict[str, list[tuple[Path, Include]]] = {}
-        patterns: list[tuple[Path, Include]] = []
-        for other in dict.fromkeys((*self.files, *texts)):
-            for include in self._included(other, texts):
-                includers.setdefault(include.name, []).append((other, include))
-                if computed and include.pattern is not None:
-                    patterns.append((other, include))
+        includers = self._includers(texts)
         found: dict[Path, None] = {}
         seen, pending = {file}, [file]
         while pending:
             current = pending.pop()
-            named = [other for other, include in includers.get(current.name, ()) if include.may_mean(current, other)]
-            named += [other for other, include in patterns if include.may_compute(current)]
-            above = [other for other in dict.fromkeys(named) if other != current]
+            above = self._above(current, includers, computed=computed)
             if not above:
                 found[current] = None
             for other in above:
@@ -141,10 +69,9 @@ class IncludeIndex:
         Args:
             texts: texts that replace those of files.
         """
-        files = [*dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))]
-        includes = ((file, include) for file in files for include in self._included(file, texts))
-        included = {include.name for file, include in includes if include.name != file.name}
-        return [file for file in files if file.name not in included]
+        files = dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))
+        includers = self._includers(texts)
+        return [file for file in files if not self._above(file, includers)]
 
     def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return a file, the descriptions that include it, and all files that these include.
@@ -152,7 +79,7 @@ class IncludeIndex:
         Args:
             file: the file.
             texts: texts that replace those of files.
-            computed: whether an include whose path is computed counts for each file that it may mean.
+            computed: whether an include with a computed path counts for each file that it can mean.
         """
         by_name: dict[str, list[Path]] = {}
         for other in dict.fromkeys((*self.files, *texts)):
@@ -164,29 +91,49 @@ class IncludeIndex:
             if current in found:
                 continue
             found[current] = None
-            for include in self._included(current, texts):
-                pending += [other for other in by_name.get(include.name, ()) if include.may_mean(other, current)]
-                if computed and include.pattern is not None:
-                    pending += [other for other in self.files if include.may_compute(other)]
+            for inclusion in self._included(current, texts):
+                named = by_name.get(inclusion.name, ())
+                pending += [other for other in named if inclusion.may_lead(current, other, self._package_folders)]
+                if computed:
+                    pending += filter(inclusion.may_compute, self.files)
         return list(found)
 
-    def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[Include]:
+    def _includers(self, texts: Mapping[Path, str]) -> dict[str, list[tuple[Path, Inclusion]]]:
+        """Return the includes of all files, by the names of the included files."""
+        found: dict[str, list[tuple[Path, Inclusion]]] = {}
+        for file in dict.fromkeys((*self.files, *texts)):
+            for inclusion in self._included(file, texts):
+                found.setdefault(inclusion.name, []).append((file, inclusion))
+        return found
+
+    def _above(
+        self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]], *, computed: bool = False
+    ) -> list[Path]:
+        """Return the other files that include a file."""
+        found = {
+            other: None
+            for other, inclusion in includers.get(file.name, ())
+            if inclusion.may_lead(other, file, self._package_folders)
+        }
+        if computed:
+            every = (pair for pairs in includers.values() for pair in pairs)
+            found |= {other: None for other, inclusion in every if inclusion.may_compute(file)}
+        found.pop(file, None)
+        return [*found]
+
+    def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[Inclusion]:
         text = texts.get(file)
         if text is not None:
-            return _includes(text)
+            return frozenset(inclusions_in(text))
         try:
             changed_ns = file.stat().st_mtime_ns
-            known = self._names.get(file)
+            known = self._inclusions.get(file)
             if known is None or known[0] != changed_ns:
-                includes = _includes(file.read_text(encoding="utf-8", errors="replace"))
-                known = self._names[file] = (changed_ns, includes)
+                inclusions = frozenset(inclusions_in(file.read_text(encoding="utf-8", errors="replace")))
+                known = self._inclusions[file] = (changed_ns, inclusions)
         except OSError:
             return frozenset()
         return known[1]
-
-
-def _includes(text: str) -> frozenset[Include]:
-    return frozenset(Include(written, path) for written, path in written_includes(text))
 
 
 def real(path: str | os.PathLike[str]) -> Path:

@@ -19,7 +19,7 @@ from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof
 from linkwright.language.trials import trials
-from linkwright.language.workspace import Workspace
+from linkwright.language.workspace import Workspace, versions_of
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
@@ -214,8 +214,9 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
         texts: the texts of the open files.
         robot: the description.
     """
+    versions = versions_of(texts)
     known = project.kept.get(("names", robot))
-    if known is None or known[0] != texts:
+    if known is None or known[0] != versions:
         found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
         roots = [trial.expansion.document.root for trial in found]
         names = frozenset(
@@ -224,7 +225,7 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
             for kind in _OF_ROBOT
             for element in root.elements(kind.value)
         )
-        known = project.kept["names", robot] = (dict(texts), names)
+        known = project.kept["names", robot] = (versions, names)
     assert isinstance(known[1], frozenset)
     return known[1]
 

@@ -12,7 +12,7 @@ from linkwright.language.includes import IncludeIndex, real
 from linkwright.language.mentions import FILES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
-from linkwright.lint.finding import Finding
+from linkwright.lint.finding import Finding, without_element
 from linkwright.lint.folders import Examined, relevant_findings, relevant_package_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets, walk
 from linkwright.packages import PackageFinder, enclosing_package
@@ -37,14 +37,23 @@ _CALLERS = (
 """Files that decide how descriptions are checked: what calls them, where packages are, and settings."""
 
 
+_MAX_ROBOTS = 16
+"""The number of descriptions whose robots are stored."""
+
+
 class _Result(NamedTuple):
-    """The findings about a subject, and the texts of the open files with which it was checked."""
+    """The findings about a subject, and the versions of the open texts with which it was checked."""
 
     findings: tuple[Diagnostic, ...]
-    texts: Mapping[Path, str]
+    versions: Mapping[Path, int]
 
 
 _NOTHING = _Result((), {})
+
+
+def versions_of(texts: Mapping[Path, str]) -> dict[Path, int]:
+    """Return a number for each text that differs if the text differs, instead of a copy of all texts."""
+    return {file: hash(text) for file, text in texts.items()}
 
 
 class Workspace:
@@ -58,7 +67,7 @@ class Workspace:
 
     Attributes:
         index: the descriptions in the folders.
-        kept: results about files that are kept until a file changes, each with the texts of the open files.
+        kept: results about files that are kept until a file changes, each with the versions of the open texts.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -67,8 +76,8 @@ class Workspace:
         self._checker = Checker(folders=self._folders)
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
-        self._robots: dict[Path, tuple[Mapping[Path, str], Robot | None]] = {}
-        self.kept: dict[tuple[str, Path], tuple[Mapping[Path, str], object]] = {}
+        self._robots: dict[Path, tuple[Mapping[Path, int], Robot | None]] = {}
+        self.kept: dict[tuple[str, Path], tuple[Mapping[Path, int], object]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
@@ -144,14 +153,18 @@ class Workspace:
         texts = {
             file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
         }
-        known = self._robots.get(entry)
-        if known is None or known[0] != texts:
+        versions = versions_of(texts)
+        known = self._robots.pop(entry, None)
+        if known is None or known[0] != versions:
             overlay = Overlay({str(path): text for path, text in texts.items()})
             try:
                 robot = read(expand(entry, {}, packages=self.finder(entry), overlay=overlay).document).robot
             except LinkwrightError:
                 robot = None
-            known = self._robots[entry] = texts, robot
+            known = versions, robot
+        self._robots[entry] = known
+        if len(self._robots) > _MAX_ROBOTS:
+            del self._robots[next(iter(self._robots))]
         return known[1]
 
     def all_names(self, texts: Mapping[Path, str]) -> list[NameDefinition]:
@@ -190,6 +203,12 @@ class Workspace:
             file.name == MANIFEST and file.exists() != (file.parent in self.index.packages)
         ):
             self.index.refresh()
+        elif not is_description and file not in texts:
+            below = [other for other in (*self.index.files, *self._results) if other.is_relative_to(file)]
+            if below or file.is_dir():  # a folder that was created, moved or deleted
+                entries = [entry for other in below for entry in self.index.entries(other, texts)]
+                self.index.refresh()
+                return [*dict.fromkeys((*entries, *below))]
         package = enclosing_package(file.parent)
         found = self.index.entries(file, texts) if is_description else []
         return [*found, *([] if package is None else [real(package[1])])]
@@ -207,8 +226,13 @@ class Workspace:
         before = self._results.pop(subject, _NOTHING).findings
         found = self._checked(subject, texts) if subject in texts or subject.exists() else ()
         if found:
-            self._results[subject] = _Result(found, texts)
+            self._results[subject] = _Result(tuple(map(without_element, found)), versions_of(texts))
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
+
+    def without_findings(self) -> dict[Path, list[Diagnostic]]:
+        """Return the files with findings, each with none, so that an editor removes those that it shows."""
+        results = self._results.items()
+        return {_file(finding, subject): [] for subject, result in results for finding in result.findings}
 
     def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
         """Return the findings about a file that have a fix, if the texts that the fix edits are those of the check.
@@ -218,11 +242,12 @@ class Workspace:
             texts: the texts of the open files.
         """
         found = UniqueFindings()
+        versions = versions_of(texts)
         for subject, result in self._results.items():
             for finding in result.findings:
                 if isinstance(finding, Finding) and finding.fix is not None and _file(finding, subject) == file:
                     edited = {real(edit.source_file) for edit in finding.fix.edits}
-                    if all(result.texts.get(other) == texts.get(other) for other in edited):
+                    if all(result.versions.get(other) == versions.get(other) for other in edited):
                         found.add([finding])
         return [finding for finding in found.all() if isinstance(finding, Finding)]
 
@@ -234,8 +259,9 @@ class Workspace:
             texts: the texts of the open files.
         """
         found = UniqueFindings()
+        versions = versions_of(texts)
         for result in self._results.values():
-            if result.texts.get(file) == texts.get(file):
+            if result.versions.get(file) == versions.get(file):
                 found.add([one for one in result.findings if one.span is not None and real(one.span.file) == file])
         return found.all()
 

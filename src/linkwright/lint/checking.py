@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class UniqueFindings:
-    """A collection of findings without duplicates, which occur if two robots include the same file."""
+    """A collection of findings without duplicates, such as those of a file that two robots include."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, Span | None, str], Diagnostic] = {}
@@ -57,7 +57,7 @@ def _place(diagnostic: Diagnostic) -> Span | None:
 
 @dataclass(frozen=True, slots=True)
 class Checker:
-    """Checks files and packages; searches for packages and callers of descriptions only once.
+    """A checker of files and packages that searches for packages and callers of descriptions only once.
 
     Attributes:
         values: the values of arguments; if empty, the values of the settings or of callers are used.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -17,7 +17,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from linkwright._version import __version__
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
@@ -27,15 +27,20 @@ from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
+from linkwright.lsp.folders import with_progress
 from linkwright.lsp.positions import UTF_16, TextPositions
+from linkwright.lsp.protocol import LeanProtocol
+from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 T = TypeVar("T")
 
 _log = logging.getLogger(__name__)
-_KEPT_TEXTS = 200
-"""The number of files on the disk whose lines are kept, for the places of findings."""
+_MAX_TEXTS = 200
+"""The number of files on the disk whose lines are stored, for the positions of findings."""
+_CACHE_DIVISOR = 8
 
 
 class FormattedText(NamedTuple):
@@ -54,7 +59,7 @@ class LinkwrightServer(LanguageServer):
     """
 
     def __init__(self) -> None:
-        super().__init__("linkwright", __version__)
+        super().__init__("linkwright", __version__, protocol_cls=LeanProtocol)
         self.project: Workspace | None = None
         self._uris: dict[Path, str] = {}
         self._files: dict[Path, tuple[int, TextPositions]] = {}
@@ -63,13 +68,25 @@ class LinkwrightServer(LanguageServer):
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
+        self._background: dict[Path, Future[None]] = {}
         self._work: asyncio.Task[None] | None = None
 
     # --- files ------------------------------------------------------------------------------------------------
 
     def begin(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and check what changes from now on."""
+        BoundedCache.divisor = _CACHE_DIVISOR
+        seldom_collected.ages_objects = False
+        if self._work is not None:
+            self._work.cancel()
+        self._is_indexed.clear()
+        self._values.clear()
+        previous = self.project
         self.project = Workspace(folders)
+        if previous is not None:
+            self._publish(previous.without_findings(), {})
+            for uri in self.workspace.text_documents:
+                self.file_changed(uri)
         self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
 
     def end(self) -> None:
@@ -166,10 +183,15 @@ class LinkwrightServer(LanguageServer):
     @property
     def opens_pages(self) -> bool:
         """Whether the client follows the address of a finding's code, and asks for virtual documents."""
-        document, workspace = self.client_capabilities.text_document, self.client_capabilities.workspace
+        document = self.client_capabilities.text_document
         published = None if document is None else document.publish_diagnostics
-        asks = workspace is not None and workspace.text_document_content is not None
-        return asks and published is not None and bool(published.code_description_support)
+        return self.opens_virtual_documents and published is not None and bool(published.code_description_support)
+
+    @property
+    def opens_virtual_documents(self) -> bool:
+        """Whether the client asks for the content of virtual documents; other clients show an empty file."""
+        workspace = self.client_capabilities.workspace
+        return workspace is not None and workspace.text_document_content is not None
 
     async def when_indexed(self) -> None:
         """Wait until the folders have been searched."""
@@ -188,7 +210,7 @@ class LinkwrightServer(LanguageServer):
             if known is None or known[0] != changed_ns:
                 known = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
                 self._files[file] = known
-                if len(self._files) > _KEPT_TEXTS:
+                if len(self._files) > _MAX_TEXTS:
                     del self._files[next(iter(self._files))]
         except (OSError, LinkwrightError):
             return None
@@ -208,7 +230,8 @@ class LinkwrightServer(LanguageServer):
 
     async def _check_changes(self, project: Workspace) -> None:
         """Check files as they change, the newest change first; a subject that still waits is checked once."""
-        await self.in_thread(project.index.refresh)
+        search = self._attempt(project.index.refresh, Path())
+        await with_progress(self, phrase("Linkwright: searching the folders for robot descriptions"), search)
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
         while True:
@@ -228,9 +251,12 @@ class LinkwrightServer(LanguageServer):
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
         """Check one subject, and publish its findings."""
-        found = await self._attempt(partial(project.check, subject, texts, changed), subject)
+        self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+
+    def _publish(self, found: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
+        """Publish the findings about files; those about an open file only if its text is still that of the check."""
         positions = cache(self.positions)
-        for file, findings in (found or {}).items():
+        for file, findings in found.items():
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
@@ -250,6 +276,13 @@ class LinkwrightServer(LanguageServer):
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", about)
             return None
+
+    def in_background(self, work: Callable[[], None], about: Path) -> None:
+        """Do work in the thread of the checks without waiting for it; work about a file replaces what still waits."""
+        waiting = self._background.get(about)
+        if waiting is not None:
+            waiting.cancel()
+        self._background[about] = self._thread.submit(work)
 
     async def in_thread(self, work: Callable[[], T]) -> T:
         """Return the result of work in the thread of the checks, which is the only one that reads the workspace."""

@@ -1,13 +1,23 @@
 import { setDiagnostics, type Diagnostic } from "@codemirror/lint";
 import type { EditorState, TransactionSpec } from "@codemirror/state";
-import type { ServerFinding } from "./language-service";
+import type { EditorView } from "@codemirror/view";
+import { strings } from "../../strings";
+import type { ServerFinding } from "./documents";
 import { positionIn } from "./server-places";
 
 const SEVERITIES = ["error", "error", "warning", "info", "hint"] as const;
 
-/** Returns the transaction that shows findings in a text. */
-export function showFindings(state: EditorState, findings: readonly ServerFinding[]): TransactionSpec {
-  return setDiagnostics(state, findings.map((finding) => diagnosticOf(state, finding)));
+/** Opens the menu of the fixes of a finding. */
+export type FixFinding = (view: EditorView, range: { from: number; to: number }) => void;
+
+/**
+ * Returns the transaction that shows findings in a text.
+ *
+ * @param fix - opens the fixes of a finding; null in a text that cannot be edited.
+ */
+export function showFindings(state: EditorState, findings: readonly ServerFinding[], fix: FixFinding | null): TransactionSpec {
+  const actions = fix === null ? [] : [{ name: strings.sourceEditor.fix, apply: (view: EditorView, from: number, to: number) => fix(view, { from, to }) }];
+  return setDiagnostics(state, findings.map((finding) => ({ ...diagnosticOf(state, finding), actions })));
 }
 
 function diagnosticOf({ doc }: EditorState, { range, severity = 1, code, message }: ServerFinding): Diagnostic {

@@ -1,36 +1,15 @@
 import { LSPClient, LSPPlugin, Workspace, type LSPClientConfig, type WorkspaceFile } from "@codemirror/lsp-client";
-import { formatDocument, findReferences, hoverTooltips, jumpToDefinition, serverCompletion } from "@codemirror/lsp-client";
+import { formatDocument, hoverTooltips, serverCompletion } from "@codemirror/lsp-client";
 import { ChangeSet, type Extension, type Text, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap, ViewPlugin, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "../../connection/connection";
+import { ACTION_CAPABILITIES } from "./code-actions";
+import type { Documents, ServerFinding } from "./documents";
 import { languageId } from "./languages";
 import { fitsMessage } from "./message-size";
-import { pathOf, type ServerRange } from "./server-places";
+import { pathOf } from "./server-places";
 import { safeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
-
-/** A finding of the language server, as in the protocol. */
-export interface ServerFinding {
-  readonly range: ServerRange;
-  readonly severity?: number;
-  readonly code?: number | string;
-  readonly message: string;
-}
-
-/** The documents of the editor, for the language server. */
-export interface Documents {
-  readonly open: readonly SourceDocument[];
-  readonly view: EditorView;
-  readonly shown: SourceDocument | null;
-  /** Shows a file, and returns whether it can be shown. */
-  show(path: string): Promise<boolean>;
-  /** Opens a file without showing it; null if it cannot be read. */
-  load(path: string): Promise<SourceDocument | null>;
-  /** Changes a document, whether it is shown or not. */
-  change(document: SourceDocument, spec: TransactionSpec): void;
-  /** Receives the findings of a file. */
-  findings(uri: string, findings: readonly ServerFinding[]): void;
-}
 
 const TIMEOUT_MS = 20_000;
 /** Changes are sent this time after the last key, ms. */
@@ -163,7 +142,10 @@ export class LanguageService {
           return true;
         },
       },
-      extensions: [{ clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } }],
+      extensions: [
+        { clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } },
+        { clientCapabilities: ACTION_CAPABILITIES },
+      ],
     };
     this.client = new PatientClient(this.config);
     if (workspace === undefined) throw new Error("the client has made no workspace");
@@ -210,11 +192,7 @@ export class LanguageService {
       serverCompletion({ override: true }),
       hoverTooltips(),
       ViewPlugin.define(() => new Synchronizer(this.client)),
-      keymap.of([
-        { key: "F12", run: jumpToDefinition, preventDefault: true },
-        { key: "Shift-F12", run: findReferences, preventDefault: true },
-        { key: "Shift-Alt-f", run: formatDocument, preventDefault: true },
-      ]),
+      keymap.of([{ key: "Shift-Alt-f", run: formatDocument, preventDefault: true }]),
     ];
   }
 }

@@ -9,7 +9,6 @@ const PHRASES: Readonly<Record<Language, Readonly<Record<string, string>>>> = {
     "No diagnostics": "没有诊断",
     "Go to line": "转到行",
     "go": "转到",
-    "Reference list": "引用列表",
     "Selection deleted": "已删除选区",
     "close": "关闭",
     "current match": "当前匹配",
@@ -34,8 +33,6 @@ const PHRASES: Readonly<Record<Language, Readonly<Record<string, string>>>> = {
     "replaced $ matches": "已替换 $ 处",
     "replaced match on line $": "已替换第 $ 行的匹配",
     "Formatting request failed": "无法格式化",
-    "Find definition failed": "无法查找定义",
-    "Finding references failed": "无法查找引用",
   },
 };
 

@@ -13,6 +13,12 @@ export function positionIn(text: Text, { line, character }: ServerRange["start"]
   return Math.min(found.from + character, found.to);
 }
 
+/** Returns the place of a position in a text. */
+export function placeOf(text: Text, position: number): ServerRange["start"] {
+  const line = text.lineAt(position);
+  return { line: line.number - 1, character: position - line.from };
+}
+
 /** Returns the path of a file's URI; null for other URIs. */
 export function pathOf(uri: string): string | null {
   if (!uri.startsWith("file:///")) return null;

@@ -14,7 +14,7 @@ const colors = EditorView.theme({
   ".cm-gutters": { background: "var(--bg-field)", color: "var(--text-faint)", borderRight: "1px solid var(--line)" },
   ".cm-activeLine, .cm-activeLineGutter": { background: "color-mix(in srgb, var(--text) 5%, transparent)" },
   ".cm-line.cm-focus-line": { background: "var(--accent-wash)", boxShadow: "inset 2px 0 0 var(--accent)" },
-  ".cm-line.cm-problem-line": { background: "color-mix(in srgb, var(--error) 16%, transparent)" },
+  ".cm-line.cm-problem-line": { boxShadow: "inset 2px 0 0 var(--error)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": {
     background: "var(--selection)",
   },
@@ -53,6 +53,15 @@ const colors = EditorView.theme({
   ".cm-diagnostic-error": { borderLeft: "4px solid var(--error)" },
   ".cm-diagnostic-warning": { borderLeft: "4px solid var(--warn)" },
   ".cm-diagnostic-info, .cm-diagnostic-hint": { borderLeft: "4px solid var(--accent)" },
+  ".cm-diagnosticAction": {
+    background: "var(--bg-raised)",
+    border: "1px solid var(--line-strong)",
+    borderRadius: "3px",
+    color: "var(--text)",
+    padding: "1px 6px",
+  },
+  // An option of a list contains no buttons; Enter goes to the finding, whose fixes Ctrl+. shows.
+  ".cm-panel-lint .cm-diagnosticAction": { display: "none" },
   ".cm-panel.cm-panel-lint ul [aria-selected], .cm-panel.cm-panel-lint ul:focus [aria-selected]": {
     background: "var(--accent-wash)",
     color: "var(--text)",

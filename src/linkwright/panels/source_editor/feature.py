@@ -1,8 +1,9 @@
-"""The editor of source files: sends pages the files of the workspace, writes them, and runs language servers."""
+"""The editor of source files: sends, writes and watches files, and runs language servers."""
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Coroutine
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from itertools import count
@@ -11,6 +12,7 @@ from typing import Any
 
 from linkwright.descriptions.editing import EditRefusedError
 from linkwright.descriptions.editing.refusals import changed_file
+from linkwright.descriptions.unsaved import UnsavedText
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.extras import EXTRAS, install_hint
 from linkwright.page.audience import Page
@@ -19,16 +21,16 @@ from linkwright.page.protocol.message import PageMessage
 from linkwright.panels.description import DescriptionFeature, item_of
 from linkwright.panels.editing.feature import EditingFeature, elsewhere
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.panels.source_editor.files import FileContent, SourceFiles
+from linkwright.panels.source_editor.files import FileContent, SourceFiles, with_line_ends
 from linkwright.panels.source_editor.language_process import LanguageProcess
 
 _PERIOD = 0.4
-"""Seconds between two looks at the files on the disk."""
+"""Seconds between two checks of the files on the disk."""
 
 
 @dataclass(slots=True)
 class _OpenFile:
-    """A file that a page edits: its content on the disk, and the version number that the page knows it by."""
+    """A file that a page edits: its content on the disk, and its version number for the page."""
 
     version: int
     content: FileContent
@@ -54,11 +56,13 @@ class SourceEditorFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._editors: dict[Page, _Editor] = {}
+        self._unsaved = viewer.context.library.unsaved
+        self._shown: set[asyncio.Task[None]] = set()
         self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
 
     def receive(self, page: Page, message: Any) -> None:
-        """Pass on a message for the language server, or queue a request about files."""
+        """Forward a message to the language server, or queue a request about files."""
         if isinstance(message, messages.AskLanguageServer):
             if (editor := self._editors.get(page)) is not None:
                 editor.process.send(message.content)
@@ -73,13 +77,20 @@ class SourceEditorFeature(PageFeature):
         editor = self._editors.pop(page, None)
         if editor is not None:
             editor.process.close()
+            self._start(self._unsaved.remove_all(page))
 
     def close(self) -> None:
         """End all language servers, and stop handling requests."""
-        for task in self._tasks:
-            task.cancel()
         for page in list(self._editors):
             self.page_closed(page)
+        for task in (*self._tasks, *self._shown):
+            task.cancel()
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run work beside the requests, which need not wait for an expansion."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._shown.add(task)
+        task.add_done_callback(self._shown.discard)
 
     async def _work(self) -> None:
         while True:
@@ -89,7 +100,7 @@ class SourceEditorFeature(PageFeature):
             try:
                 await self._do(page, message)
             except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
-                self.context.node.get_logger().error(f"A source file: {type(error).__name__}: {error}")
+                self.context.node.get_logger().error(f"A source file request failed: {type(error).__name__}: {error}")
 
     async def _do(self, page: Page, message: Any) -> None:
         if isinstance(message, messages.OpenEditor):
@@ -103,6 +114,9 @@ class SourceEditorFeature(PageFeature):
             await self._send_file(page, editor, message.path)
         elif isinstance(message, messages.LeaveSourceFile):
             editor.open_files.pop(message.path, None)
+        elif isinstance(message, messages.ShowUnsavedText):
+            if (open_file := editor.open_files.get(message.path)) is not None:
+                self._start(self._show_unsaved(page, message, open_file.content.text or ""))
         elif isinstance(message, messages.AskSourceFolder):
             folders, files = await asyncio.to_thread(editor.files.names, Path(message.path))
             page.send(messages.SourceFolder(message.path, folders, files))
@@ -120,7 +134,10 @@ class SourceEditorFeature(PageFeature):
                 await self._send_file(page, editor, message.path)
 
     def _open(self, page: Page, file: str) -> messages.EditorOpened:
-        """Start the language server of a page, unless it runs or nothing can be edited."""
+        """Start a page's language server if necessary, and return the response to the page.
+
+        If no file can be edited, the language server is ended, and the response gives the reason.
+        """
         known = self._known(page)
         why_not = _refusal_reason(page, file, known)
         if why_not is not None:
@@ -149,7 +166,7 @@ class SourceEditorFeature(PageFeature):
         )
 
     async def _send_file(self, page: Page, editor: _Editor, path: str) -> None:
-        """Send a page a file, and remember its content."""
+        """Send a page a file, and store its content."""
         stamp, content = await asyncio.to_thread(_read, editor.files, path)
         open_file = editor.open_files.get(path)
         if open_file is None:
@@ -160,6 +177,15 @@ class SourceEditorFeature(PageFeature):
             open_file.content = content
         uri = Path(path).as_uri() if Path(path).is_absolute() else ""
         page.send(messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not))
+
+    async def _show_unsaved(self, page: Page, message: messages.ShowUnsavedText, on_disk: str) -> None:
+        """Show descriptions with an unsaved text, and send the page what became of it."""
+        if message.text is None:
+            outcome = await self._unsaved.remove(page, message.path)
+        else:
+            text = with_line_ends(message.text, on_disk)
+            outcome = await self._unsaved.put(UnsavedText(page, message.path, message.number, text))
+        page.send(messages.UnsavedTextShown(message.number, message.path, outcome))
 
     async def _change(
         self, page: Page, editor: _Editor, message: messages.WriteSourceFile | messages.CreateSourceFile
@@ -193,7 +219,10 @@ class SourceEditorFeature(PageFeature):
 
 
 def _differs(message: PageMessage, open_file: _OpenFile, refusal: Diagnostic | None) -> bool:
-    """Return whether a file that a page wrote differs from its text, because its encoding lacks some characters."""
+    """Return whether a file differs from the text of a page after a request.
+
+    The request may have been refused, or the encoding of the file may lack some characters.
+    """
     is_written = isinstance(message, messages.WriteSourceFile) and open_file.content.page_text == message.text
     return refusal is not None or not is_written
 
@@ -204,7 +233,10 @@ def _read(files: SourceFiles, path: str) -> tuple[tuple[int, ...], FileContent]:
 
 
 def _stamp(path: str) -> tuple[int, ...]:
-    """Return numbers that change with the content of a file; nothing if there is no file."""
+    """Return numbers that change with the content of a file.
+
+    The tuple is empty if there is no file.
+    """
     try:
         status = Path(path).stat()
     except (OSError, ValueError):
@@ -213,12 +245,12 @@ def _stamp(path: str) -> tuple[int, ...]:
 
 
 def _changed(stamps: dict[str, tuple[int, ...]]) -> list[str]:
-    """Return the paths of the files that no longer have their stamps."""
+    """Return the paths of the files whose stamps have changed."""
     return [path for path, stamp in stamps.items() if _stamp(path) != stamp]
 
 
 def _refusal_reason(page: Page, file: str, known: frozenset[str]) -> Phrase | None:
-    """Return why a page may not edit the workspace of a file, or None."""
+    """Return the reason why a page may not edit the workspace of a file, or None."""
     if not page.is_here:
         return elsewhere().message
     if find_spec(EXTRAS["lsp"]) is None:

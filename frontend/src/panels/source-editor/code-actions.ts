@@ -1,0 +1,101 @@
+import type { LSPClient } from "@codemirror/lsp-client";
+import type { EditorView } from "@codemirror/view";
+import { strings } from "../../strings";
+import { openMenuAt, type MenuEntry } from "../../widgets/menu";
+import type { Documents, ServerFinding } from "./documents";
+import { placeOf } from "./server-places";
+import { applyWorkspaceEdit, messageOf, type WorkspaceEdit } from "./workspace-edit";
+
+/** A fix or refactoring, as in the protocol of language servers. */
+interface CodeAction {
+  readonly title: string;
+  readonly kind?: string;
+  readonly isPreferred?: boolean;
+  readonly edit?: WorkspaceEdit | null;
+}
+
+const KINDS = ["quickfix", "source.fixAll", "refactor.extract", "refactor.inline", "refactor.rewrite"];
+
+/** What the client can do with code actions, for the server. */
+export const ACTION_CAPABILITIES = {
+  textDocument: {
+    codeAction: {
+      codeActionLiteralSupport: { codeActionKind: { valueSet: KINDS } },
+      isPreferredSupport: true,
+      dataSupport: true,
+      resolveSupport: { properties: ["edit"] },
+    },
+  },
+  workspace: { workspaceEdit: { documentChanges: true, resourceOperations: ["create"] } },
+};
+
+/** The menu of fixes and refactorings at a place of the text. */
+export class CodeActions {
+  /**
+   * @param client - the connection to the language server.
+   * @param findingsOf - returns the findings of a file by its URI.
+   * @param tell - called with messages for the user.
+   */
+  constructor(
+    private readonly client: LSPClient,
+    private readonly documents: Documents,
+    private readonly findingsOf: (uri: string) => readonly ServerFinding[],
+    private readonly tell: (message: string) => void,
+  ) {}
+
+  /** Opens the menu for the selection, or for another range. */
+  open(view: EditorView, range: { from: number; to: number } = view.state.selection.main): boolean {
+    void this.list(view, range).catch((error: unknown) => this.tell(messageOf(error)));
+    return true;
+  }
+
+  private async list(view: EditorView, { from, to }: { from: number; to: number }): Promise<void> {
+    const { shown } = this.documents;
+    if (!shown || shown.whyNot !== "") return;
+    this.client.sync();
+    const { doc } = view.state;
+    const range = { start: placeOf(doc, from), end: placeOf(doc, to) };
+    const [first, last] = [range.start.line, range.end.line];
+    const diagnostics = this.findingsOf(shown.uri).filter((finding) => finding.range.start.line <= last && finding.range.end.line >= first);
+    const asked = { textDocument: { uri: shown.uri }, range, context: { diagnostics } };
+    const actions = (await this.client.request<object, CodeAction[] | null>("textDocument/codeAction", asked)) ?? [];
+    if (shown !== this.documents.shown) return;
+    if (actions.length === 0) {
+      this.tell(strings.sourceEditor.noActions);
+      return;
+    }
+    const at = view.coordsAtPos(Math.min(from, view.state.doc.length)) ?? view.dom.getBoundingClientRect();
+    openMenuAt(at.left, at.bottom + 2, view.contentDOM, this.entries(actions));
+  }
+
+  private entries(actions: readonly CodeAction[]): MenuEntry[] {
+    const ordered = [...actions].sort((a, b) => rank(a) - rank(b));
+    return ordered.map((action, index) => {
+      const before = ordered[index - 1];
+      return {
+        label: action.title,
+        hint: action.title,
+        separate: before !== undefined && groupOf(before) !== groupOf(action),
+        run: () => void this.run(action).then(this.tell, (error: unknown) => this.tell(messageOf(error))),
+      };
+    });
+  }
+
+  private async run(action: CodeAction): Promise<string> {
+    const { edit } = action.edit ? action : await this.client.request<CodeAction, CodeAction>("codeAction/resolve", action);
+    const changed = edit ? await applyWorkspaceEdit(this.client, edit, this.documents, "action") : [];
+    const [only] = changed;
+    // The result may be in another file, such as the xacro that is made of a URDF.
+    if (only && changed.length === 1 && only !== this.documents.shown) await this.documents.show(only.path);
+    return strings.sourceEditor.acted(action.title, changed.length);
+  }
+}
+
+function groupOf({ kind = "" }: CodeAction): number {
+  return KINDS.findIndex((each) => kind === each || kind.startsWith(`${each}.`)) < 2 ? 0 : 1;
+}
+
+function rank(action: CodeAction): number {
+  const kind = action.kind ?? "";
+  return groupOf(action) * 4 + (kind === "source.fixAll" ? 2 : 0) + (action.isPreferred === true ? 0 : 1);
+}

@@ -1,0 +1,86 @@
+import type { LSPClient } from "@codemirror/lsp-client";
+import { strings } from "../../strings";
+import type { Documents } from "./documents";
+import { pathOf, positionIn, type ServerRange } from "./server-places";
+import type { SourceDocument } from "./source-document";
+
+export interface TextEdit {
+  readonly range: ServerRange;
+  readonly newText: string;
+}
+
+interface DocumentEdit {
+  readonly kind?: undefined;
+  readonly textDocument: { readonly uri: string; readonly version?: number | null };
+  readonly edits: readonly TextEdit[];
+}
+
+interface CreatedFile {
+  readonly kind: "create";
+  readonly uri: string;
+}
+
+/** Changes of files, as in the protocol of language servers. */
+export interface WorkspaceEdit {
+  readonly changes?: Readonly<Record<string, readonly TextEdit[]>> | null;
+  readonly documentChanges?: readonly (DocumentEdit | CreatedFile)[] | null;
+}
+
+/** The edits of each file by its URI, the files to create, and the versions of the edited texts as far as they are given. */
+interface FileEdits {
+  readonly edits: ReadonlyMap<string, readonly TextEdit[]>;
+  readonly created: readonly string[];
+  readonly versions: ReadonlyMap<string, number>;
+}
+
+/** Returns what an edit does to each file. */
+export function editsByFile(edit: WorkspaceEdit): FileEdits {
+  const edits = new Map<string, readonly TextEdit[]>(Object.entries(edit.changes ?? {}));
+  const created: string[] = [];
+  const versions = new Map<string, number>();
+  for (const change of edit.documentChanges ?? []) {
+    if (change.kind === "create") {
+      created.push(change.uri);
+      continue;
+    }
+    const { uri, version = null } = change.textDocument;
+    edits.set(uri, [...(edits.get(uri) ?? []), ...change.edits]);
+    if (version !== null) versions.set(uri, version);
+  }
+  return { edits, created, versions };
+}
+
+/**
+ * Applies an edit to all of its files, which are not saved yet, and returns them.
+ *
+ * @throws Error if one of them cannot be edited, or its text is no longer the one that the edit was made for; none is
+ * changed then.
+ */
+export async function applyWorkspaceEdit(client: LSPClient, edit: WorkspaceEdit, documents: Documents, userEvent: string): Promise<SourceDocument[]> {
+  const words = strings.sourceEditor;
+  const { edits, created, versions } = editsByFile(edit);
+  client.sync();
+  const isOutdated = (uri: string): boolean => versions.has(uri) && client.workspace.getFile(uri)?.version !== versions.get(uri);
+  const before = new Map(documents.open.map((document) => [document.uri, document.state.doc]));
+  const changed: [SourceDocument, readonly TextEdit[]][] = [];
+  for (const uri of new Set([...created, ...edits.keys()])) {
+    const path = pathOf(uri);
+    if (path !== null && created.includes(uri)) await documents.create(path);
+    const document = path === null ? null : await documents.load(path);
+    if (!document || document.whyNot !== "") throw new Error(words.notEditable(path ?? uri, document?.whyNot ?? ""));
+    if (isOutdated(uri) || before.get(uri)?.eq(document.state.doc) === false) throw new Error(words.changedMeanwhile);
+    changed.push([document, edits.get(uri) ?? []]);
+  }
+  for (const [document, own] of changed) {
+    const { doc } = document.state;
+    const changes = own.map(({ range, newText }) => ({ from: positionIn(doc, range.start), to: positionIn(doc, range.end), insert: newText }));
+    documents.change(document, { changes, userEvent });
+  }
+  client.sync();
+  return changed.map(([document]) => document);
+}
+
+/** Returns the message of an error, which may be one of the language server. */
+export function messageOf(error: unknown): string {
+  return typeof error === "object" && error !== null && "message" in error ? String(error.message) : String(error);
+}
