@@ -371,3 +371,38 @@ def test_a_renamed_file_is_followed_into_python_launch_files_yaml_and_build_file
     assert [(mention.file.name, mention.start) for mention in unchanged] == [
         ("main.launch.py", launch.index("NAME = '") + len("NAME = '"))
     ]
+
+
+def test_a_model_is_renamed_in_a_world_that_gives_it_no_name_and_listed_where_it_is_started(make: Make):
+    world = WORLD.replace("<name>one</name>", "").replace("one::", "cart::")
+    launch = "arguments = ['-name', 'cart']\n"
+    files = make({**SDF_FILES, "p/worlds/w.world": world, "p/launch/a.launch.py": launch})
+    renaming, texts = files.rename("p/models/cart/model.sdf", '<model name="ca', "wagon")
+    assert texts == {
+        "p/models/cart/model.sdf": MODEL.replace('"cart"', '"wagon"'),
+        "p/worlds/w.world": world.replace("cart::", "wagon::"),
+    }
+    assert [mention.file.name for mention in renaming.unchanged] == ["a.launch.py"]
+
+
+def test_a_computed_reference_in_a_model_in_xacro_is_refused_and_its_argument_is_renamed(make: Make):
+    text = """<sdf version="1.9" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="part" default="whe"/>
+<model name="m"><link name="body"/><link name="wheel"/>
+<joint name="j" type="fixed"><parent>body</parent><child>$(arg part)el</child></joint></model></sdf>
+"""
+    files = make({"p/package.xml": "<package format='3'><name>p</name></package>", "p/m.sdf.xacro": text})
+    with pytest.raises(LinkwrightError, match="some references keep the old name"):
+        files.rename("p/m.sdf.xacro", '<link name="whe', "tire")
+    assert files.rename("p/m.sdf.xacro", '<link name="bo', "base")[1] == {"p/m.sdf.xacro": text.replace("body", "base")}
+    assert files.rename("p/m.sdf.xacro", "$(arg pa", "side")[1] == {"p/m.sdf.xacro": text.replace("part", "side")}
+
+
+def test_an_interface_of_a_joint_follows_and_the_end_of_another_path_is_listed(make: Make):
+    lists = "    inputs: [left_wheel_joint/velocity, pid/left_wheel_joint]\n    dof_names: [left_wheel_joint]\n"
+    yaml = f"filter:\n  ros__parameters:\n{lists}"
+    files = make({**ROBOT_FILES, "bringup/config/filter.yaml": yaml})
+    renaming, texts = files.rename("bringup/config/filter.yaml", "dof_names: [left", "left_tire_joint")
+    assert texts["bringup/config/filter.yaml"] == yaml.replace("left_wheel", "left_tire").replace(
+        "pid/left_tire", "pid/left_wheel"
+    )
+    assert "filter.yaml" in {mention.file.name for mention in renaming.unchanged}

@@ -25,7 +25,9 @@ FILES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py"
 _MOST_TEXT = 1_000_000
 """Characters; longer files are data and not configuration."""
 _FRAMES = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
-_JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$")
+_JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$|^dof_names$")
+_INTERFACES = frozenset(("position", "velocity", "effort", "acceleration"))
+"""The interfaces of a joint, which stand behind its name and a slash."""
 _OF_JOINTS = frozenset(
     (
         "joint_limits",
@@ -105,10 +107,24 @@ def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
                 pending.append((key, keys, True))
         elif isinstance(node, yaml.SequenceNode):
             pending += [(item, keys, False) for item in reversed(node.value)]
-        elif isinstance(node, yaml.ScalarNode) and node.value in names:
-            start = node.start_mark.index + (1 if node.style in ("'", '"') else 0)
-            if text[start : start + len(node.value)] == node.value:
-                yield Mention(node.value, file, start, _kinds_of_keys(keys, is_key=is_key))
+        elif isinstance(node, yaml.ScalarNode) and node.value.removeprefix("/") in names:
+            name = node.value.removeprefix("/")  # frames of tf 1 began with a slash
+            start = node.start_mark.index + (1 if node.style in ("'", '"') else 0) + len(node.value) - len(name)
+            if text[start : start + len(name)] == name:
+                yield Mention(name, file, start, _kinds_of_keys(keys, is_key=is_key))
+        elif isinstance(node, yaml.ScalarNode) and "/" in node.value:
+            yield from _in_path(node.value, text, node.start_mark.index, file, names)
+
+
+def _in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    """Yield the parts of a value such as ``left_wheel_joint/velocity`` or ``controller/left_wheel_joint``."""
+    parts = value.split("/")
+    start = text.find(value, begin, begin + len(value) + 2)
+    for number, part in enumerate(parts):
+        if part in names and start >= 0:
+            is_joint = number == 0 and len(parts) == 2 and parts[1] in _INTERFACES
+            yield Mention(part, file, start, (NameKind.JOINT,) if is_joint else ())
+        start += len(part) + 1
 
 
 def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]:

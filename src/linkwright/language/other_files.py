@@ -66,8 +66,9 @@ class OtherFiles:
                 text = self._project.text(file, self._texts) or ""
                 mentions = [*_mentions(text, file, names, olds)]
                 robots = self._robots_of(file) if mentions else []
-                if robots and not any(map(self._is_affected, robots)):
-                    continue  # the file is about other robots
+                if robots and not any(map(self._is_affected, robots)):  # the file is about other robots
+                    unchanged += [mention for mention in mentions if self._depends(file, names, mention)]
+                    continue
                 others = [robot for robot in robots if not self._is_affected(robot)]
                 for mention in mentions:
                     kind = next((kind for kind in mention.kinds if (kind, mention.name) in names), None)
@@ -116,6 +117,13 @@ class OtherFiles:
             files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen]
             seen.update(files[folder])
         return files
+
+    def _depends(self, file: Path, names: Names, mention: Mention) -> bool:
+        """Return whether a mention is in a package that depends on the own one, and so may mean its robots, too."""
+        package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
+        if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
+            return False
+        return real(own[1]) in _dependencies(self._project, self._texts, real(package[1]))
 
     def _robots_of(self, file: Path) -> list[Path]:
         if file not in self._robots:

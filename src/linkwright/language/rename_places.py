@@ -15,14 +15,15 @@ from linkwright.language.grammar import root_of
 from linkwright.language.launch_names import LaunchName, is_launch_file
 from linkwright.language.launch_renaming import launch_name_at, rename_launch_argument
 from linkwright.language.mentions import FILES, Mention, mentions_in
-from linkwright.language.name_sources import renamed_template
+from linkwright.language.name_sources import renamed_template, written_text
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.other_files import names_of_robot, robots_of_file
 from linkwright.language.proof import UnprovedError
-from linkwright.language.renaming import Renaming, occurrence_at, rename
+from linkwright.language.renaming import Renaming, occurrence_at, rename, xacro_name_at
 from linkwright.language.robot_renaming import OF_ROBOT
 from linkwright.language.sdf_names import SdfName, rename_in_sdf, sdf_name_at
 from linkwright.language.srdf import is_srdf
+from linkwright.language.trials import trials
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
@@ -73,7 +74,10 @@ def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: 
             return RenamePlace(file, launch[0].start, launch[0].name, launch)
     elif root_of(file) is SDF:
         name = sdf_name_at(text, file, offset)
-        return None if name is None else RenamePlace(file, name.start, name.name, name)
+        if name is not None:
+            return RenamePlace(file, name.start, name.name, name)
+        occurrence = xacro_name_at(text, file, offset)
+        return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
     elif not file.name.endswith(FILES):
         occurrence = occurrence_at(text, file, offset)
         return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
@@ -90,7 +94,8 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
     line = text[begin : end if end >= 0 else len(text)]
     for word in _WORD.finditer(line):
         if word.start() <= offset - begin <= word.end():
-            names = frozenset({word[0], word[0].rstrip(":")})
+            written = word[0].removeprefix("/")
+            names = frozenset({written, written.rstrip(":")})
             for mention in mentions_in(text, file, names):
                 if mention.start <= offset <= mention.end and mention.kinds:
                     return mention
@@ -130,7 +135,8 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
         return _rename_mention(project, texts, meaning, new)
     try:
         if isinstance(meaning, SdfName):
-            return Renaming(tuple(sorted(rename_in_sdf(project, texts, meaning, new))))
+            edits, unchanged = rename_in_sdf(project, texts, meaning, new)
+            return Renaming(tuple(sorted(edits)), {meaning.name: new}, tuple(unchanged))
         if not _LAUNCH_NAME.fullmatch(new):
             raise _invalid(new, phrase("launch argument"))
         found = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
@@ -181,14 +187,32 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
             changed = renamed_template(name.name, new, value)
             if changed is None or changed == value:
                 continue
+            definition = _definition(project, texts, robot, name, value)
             try:
-                renaming = rename(project, texts, Occurrence(name.kind, value, robot, 0), changed)
+                renaming = (
+                    rename(project, texts, Occurrence(name.kind, value, robot, 0), changed)
+                    if definition is None
+                    else rename(project, texts, definition, new)
+                )
             except LinkwrightError as reason:
                 error = error or reason
                 continue
             if any((edit.file, edit.start) == (name.file, name.start) for edit in renaming.edits):
                 return renaming
     raise error or _refused(name.name, phrase("no description of the workspace has it"))
+
+
+def _definition(
+    project: Workspace, texts: Mapping[Path, str], robot: Path, name: Occurrence, value: str
+) -> Occurrence | None:
+    """Return the definition of a link or joint that is written like a use, such as ``${prefix}wheel``; else None."""
+    found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+    for trial in found:
+        for element in trial.expansion.document.root.elements(name.kind.value):
+            written = written_text(element, "name") if element.attributes.get("name") == value else None
+            if written is not None and written.text == name.name:
+                return occurrence_at(project.text(written.file, texts) or "", written.file, written.start)
+    return None
 
 
 def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -51,7 +51,16 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset that can be renamed; None if there is none."""
     if root_of(file) is SDF:  # the names of a model have scopes of their own
         return None
-    found = [name for name in occurrences_in(text, file) if name.start <= offset <= name.end]
+    return _innermost(occurrences_in(text, file), offset)
+
+
+def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
+    """Return the macro, parameter, property or argument at an offset of a model in xacro; None if there is none."""
+    return _innermost((name for name in occurrences_in(text, file) if name.kind not in OF_ROBOT), offset)
+
+
+def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
+    found = [name for name in names if name.start <= offset <= name.end]
     return min(found, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
 
 
