@@ -67,6 +67,7 @@ class Workspace:
 
     Attributes:
         index: the descriptions in the folders.
+        kept: results about files that are kept until a file changes, each with the versions of the open texts.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -76,10 +77,12 @@ class Workspace:
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
         self._robots: dict[Path, tuple[Mapping[Path, int], Robot | None]] = {}
+        self.kept: dict[tuple[str, Path], tuple[Mapping[Path, int], object]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
         self._robots.clear()
+        self.kept.clear()
         if file.name.endswith(_CALLERS):
             self._checker = Checker(folders=self._folders)
 
