@@ -145,6 +145,7 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     name = page.get_by_role("textbox", name="New name")
     name.fill("limb")
     name.press("Enter")
+    page.get_by_role("dialog", name="Rename leg to limb").get_by_role("button", name="Rename", exact=True).click()
     page.get_by_text("Renamed to limb in 2 files, not saved yet").wait_for()
     page.get_by_role("button", name="Save 2 files").click()
     becomes(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
@@ -162,7 +163,7 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     page.locator(".cm-lintRange").first.wait_for()
     text.press("Control+Home")
     text.press("F8")
-    until(page, f"{EDITOR}.cursor === 4")
+    until(page, f"{EDITOR}.cursor === 4 && {EDITOR}.scene === 'errors'")
     page.locator(".cm-line").nth(1).get_by_text("macro", exact=False).first.hover()
     page.locator(".cm-lsp-hover-tooltip").wait_for()
 
@@ -366,3 +367,39 @@ def test_an_edit_in_the_scene_changes_the_unsaved_text_and_is_undone_with_it(sta
     until(page, f"Math.abs(lw.frames.tip?.position[2]) < 1e-6 && {EDITOR}.unsaved.length === 1")
     text.press("Control+z")
     until(page, f"lw.frames.tip === undefined && {EDITOR}.unsaved.length === 0")
+
+
+def test_a_rename_shows_what_changes_and_what_stays_before_it_is_applied(start, open_page, file):
+    launch = file.parent / "config" / "arm.yaml"
+    launch.parent.mkdir()
+    launch.write_text("arm:\n  ros__parameters:\n    base: base\n    base_frame: base\n")
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 3, 15)  # in the name of the link
+    text.press("F2")
+    name = page.get_by_role("textbox", name="New name")
+    name.fill("chassis")
+    name.press("Enter")
+    preview = page.get_by_role("dialog", name="Rename base to chassis")
+    preview.wait_for()
+    preview.get_by_text("4 places in 3 files will change.").wait_for()
+    preview.get_by_text("not renamed, because the file does not tell what is meant: arm.yaml:3 (base)").wait_for()
+    lines = [" ".join(line.split()) for line in preview.locator("li").all_inner_texts()]
+    assert lines[0].startswith('3 <link name="basechassis">')
+    assert violations(page, ".rename-preview") == []
+    page.keyboard.press("Escape")
+    page.get_by_text("Nothing was renamed.").wait_for()
+    until(page, f"document.activeElement.matches('.cm-content') && {EDITOR}.unsaved.length === 0")
+
+    text.press("F2")
+    name.fill("chassis")
+    name.press("Enter")
+    preview.wait_for()
+    page.keyboard.press("Enter")
+    page.get_by_text("Renamed to chassis in 3 files, not saved yet").wait_for()
+    until(page, f"document.activeElement.matches('.cm-content') && {EDITOR}.unsaved.length === 3")
+    text.press("F2")
+    name.fill("left")
+    name.press("Enter")
+    page.get_by_text("'chassis' is not renamed: two links would have the same name").wait_for()
+    assert preview.count() == 0

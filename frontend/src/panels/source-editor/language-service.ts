@@ -3,6 +3,7 @@ import { formatDocument, hoverTooltips, serverCompletion } from "@codemirror/lsp
 import { ChangeSet, type Extension, type Text, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap, ViewPlugin, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "../../connection/connection";
+import { Signal } from "../../signal";
 import { ACTION_CAPABILITIES } from "./code-actions";
 import type { Documents, ServerFinding } from "./documents";
 import { languageId } from "./languages";
@@ -122,6 +123,8 @@ class DocumentWorkspace extends Workspace {
 /** The page's language server, to which the messages go through the page's own connection. */
 export class LanguageService {
   readonly client: LSPClient;
+  /** The server has sent a message for the user. */
+  readonly message = new Signal<string>();
   private readonly workspace: DocumentWorkspace;
   private readonly config: LSPClientConfig;
   private receive: (content: string) => void = () => undefined;
@@ -139,6 +142,10 @@ export class LanguageService {
         "textDocument/publishDiagnostics": (_, { uri, version, diagnostics }: { uri: string; version?: number | null; diagnostics: ServerFinding[] }) => {
           const file = this.workspace.getFile(uri);
           if (file && (version === undefined || version === null || version === file.version)) documents.findings(uri, diagnostics);
+          return true;
+        },
+        "window/showMessage": (_, { message }: { message: string }) => {
+          this.message.emit(message);
           return true;
         },
       },

@@ -65,6 +65,7 @@ export class SourceEditor implements Documents {
     const { connection } = session;
     const tell = (message: string): void => this.tell(message);
     this.service = new LanguageService(connection, this);
+    this.service.message.on(tell);
     this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], tell);
     this.navigation = new Navigation(this.service.client, this, this.places, tell);
     this.live = new LiveTexts(connection, this, () => this.changed.emit());
@@ -215,7 +216,7 @@ export class SourceEditor implements Documents {
     const { navigation, actions } = this;
     const keys = keymap.of([
       { key: "Mod-s", run: () => (this.files.saveAll(), true), preventDefault: true },
-      { key: "F2", run: (view) => renameAtCursor(view, this, (message) => this.tell(message)), preventDefault: true },
+      { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.tell(message)), preventDefault: true },
       { key: "F12", run: (view) => navigation.goToDefinition(view), preventDefault: true },
       { key: "Shift-F12", run: (view) => navigation.listReferences(view), preventDefault: true },
       { key: "Alt-ArrowLeft", mac: "Ctrl--", run: () => navigation.goBack(), preventDefault: true },
